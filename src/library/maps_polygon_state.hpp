@@ -54,8 +54,7 @@ struct PolygonCore::State {
     const PolygonWorld world;
     const double tolerance;
     // What planners keep with a world. Each is used by one file of the library, which knows its type.
-    Memory walls, surroundings, polyanya, visibility_graph, visibility, exact_cells, quadtree, voronoi,
-        samples;
+    Memory walls, sites, polyanya, visibility_graph, visibility, exact_cells, quadtree, voronoi, samples;
 
     Settled settle(Point p) const { return world.settle(p, tolerance); }
     // Start and goal taken off walls; false where one is not free.

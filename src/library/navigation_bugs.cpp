@@ -4,7 +4,6 @@
 #include "cspace/navigation/bugs/bug_2.hpp"
 #include "cspace/navigation/bugs/contact_robot.hpp"
 #include "cspace/navigation/bugs/range_robot.hpp"
-#include "cspace/navigation/bugs/surroundings.hpp"
 #include "cspace/navigation/bugs/tangent_bug.hpp"
 #include "cspace/navigation/bugs/voronoi_bug.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
@@ -95,10 +94,10 @@ bool plan_voronoi_bug(const Query<PolygonCore>& query, VoronoiBugAnswer& answer,
     Shut shut;
     Exploration trip;
     const auto explore = [&](const Walls& walls, Point from, Point to) {
-        Exploration made = deviation > 0
-                               ? voronoi_bug(walls, from, to, range, {deviation, seed})
-                               : voronoi_bug(walls, state.surroundings.get<Surroundings>(state.world.walls),
-                                             from, to, range);
+        Exploration made =
+            deviation > 0
+                ? voronoi_bug(walls, from, to, range, {deviation, seed})
+                : voronoi_bug(walls, state.sites.get<voronoi::Sites>(state.world.walls), from, to, range);
         // Else it went through a gap as narrow as a rounding.
         if (made.route.status == Status::found && !can_walk(walls, made.route.path))
             made.route.status = Status::undetermined;

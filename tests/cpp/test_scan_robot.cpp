@@ -97,7 +97,7 @@ TEST(readings_deviate_as_said_and_are_clipped) {
     for (int i = 0; i < looks; ++i) {
         Scan scan;
         scanner.look({4, 5}, scan);
-        const double off = scan.reading[Scanner::beams / 2] - 4;
+        const double off = scan.reading[Scan::beams / 2] - 4;
         sum += off;
         squares += off * off;
         for (const double reading : scan.reading) CHECK(reading >= 0 && reading <= 6);
@@ -108,7 +108,7 @@ TEST(readings_deviate_as_said_and_are_clipped) {
     CHECK_NEAR(std::sqrt(squares / looks), scan.deviation, 0.1 * scan.deviation);
     // At the end of its range half of the readings are clipped: their mean is short by σ / √2π.
     scanner.look({6, 5}, scan);
-    CHECK_NEAR(scan.reading[Scanner::beams / 2], 6 - 0.1 / std::sqrt(2 * std::numbers::pi), 0.1);
+    CHECK_NEAR(scan.reading[Scan::beams / 2], 6 - 0.1 / std::sqrt(2 * std::numbers::pi), 0.1);
 }
 
 TEST(the_end_of_a_wall_without_thickness_is_seen) {
@@ -120,6 +120,6 @@ TEST(the_end_of_a_wall_without_thickness_is_seen) {
     Scanner scanner(walls, 6, {0, 0});
     Scan scan;
     scanner.look({5, 5}, scan);
-    CHECK_NEAR(scan.reading[Scanner::beams / 2], 2, 1e-12);
-    CHECK_NEAR(scan.reading[Scanner::beams / 4], 5, 1e-3);
+    CHECK_NEAR(scan.reading[Scan::beams / 2], 2, 1e-12);
+    CHECK_NEAR(scan.reading[Scan::beams / 4], 5, 1e-3);
 }

@@ -35,7 +35,7 @@ double error_of(const Diagram& d) {
             worst = std::max(worst, std::abs(slow_distance(d.sites, p) - r));
             worst = std::max(worst, std::abs(d.sites.distance_to(arc.a, p) - r));
             worst = std::max(worst, std::abs(d.sites.distance_to(arc.b, p) - r));
-            worst = std::max(worst, arc.least - r);
+            worst = std::max(worst, arc.curve.least_radius(arc.begin, arc.end) - r);
         }
     return worst / d.sites.extent;
 }
@@ -68,8 +68,9 @@ struct Room : Outlines {
 };
 
 std::vector<int> degrees(const Diagram& d) {
-    std::vector<int> count(10, 0);
-    for (const Vertex& v : d.vertices) ++count[std::size_t(std::min(v.degree, 9))];
+    std::vector<int> count(10, 0), degree(d.vertices.size(), 0);
+    for (const Arc& arc : d.arcs) ++degree[std::size_t(arc.from)], ++degree[std::size_t(arc.to)];
+    for (const int arcs : degree) ++count[std::size_t(std::min(arcs, 9))];
     return count;
 }
 

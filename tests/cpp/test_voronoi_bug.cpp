@@ -75,10 +75,10 @@ void judge(const PlaneWorld& world, const Walls& walls, Point start, Point goal,
                                    0.4 * walls.extent(),
                                    2.5,
                                    std::numeric_limits<double>::infinity()};
-    const Surroundings around(walls.boundary());
+    const voronoi::Sites sites(walls.boundary());
     for (int k = 0; k < reaches; ++k) {
         const auto begin = std::chrono::steady_clock::now();
-        const Exploration trip = voronoi_bug(walls, around, start, goal, reach[k]);
+        const Exploration trip = voronoi_bug(walls, sites, start, goal, reach[k]);
         const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
         Tally& t = tally[k];
         t.times.push_back(time.count());

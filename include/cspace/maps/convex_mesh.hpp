@@ -124,8 +124,7 @@ inline ConvexMesh make_convex_mesh(const FreeSpace& space) {
     const detail::Merger merged(space);
     const Sectors sectors = find_sectors(space);
     ConvexMesh mesh;
-    mesh.points = sectors.points;
-    mesh.turns = sectors.turns;
+    for (const Sector& s : sectors.all) mesh.points.push_back(s.at), mesh.turns.push_back(s.turns);
     mesh.of_triangle.assign(space.mesh.triangles.size(), none);
     mesh.first.push_back(0);
     std::vector<Index> number(merged.next.size(), none), half;

@@ -36,20 +36,6 @@ inline bool rounded_crossing(Point a, Point b, Point c, Point d, Point& at) {
     return true;
 }
 
-// Whether a segment meets the closed unit square around a point.
-inline bool meets_cell(Point a, Point b, Point center) {
-    const Point low = center - Point{0.5, 0.5}, high = center + Point{0.5, 0.5};
-    if (std::max(a.x, b.x) < low.x || std::min(a.x, b.x) > high.x || std::max(a.y, b.y) < low.y ||
-        std::min(a.y, b.y) > high.y)
-        return false;
-    int left = 0, right = 0;
-    for (const Point corner : {low, Point{high.x, low.y}, high, Point{low.x, high.y}}) {
-        const int side = orientation(a, b, corner);
-        left += side >= 0, right += side <= 0;
-    }
-    return left > 0 && right > 0;
-}
-
 }  // namespace detail
 
 inline Outlines snap_rounded(const Outlines& world) {
@@ -85,11 +71,12 @@ inline Outlines snap_rounded(const Outlines& world) {
         }
     for (const Outlines::Edge& edge : world.edges) {
         const auto [a, b] = ends_of(edge);
+        const Point half{0.5, 0.5};  // of a cell
         std::vector<std::pair<double, Index>> met;
         for (Index i = 0; i < Index(made.points.size()); ++i) {
             poll.step();
             const Point p = made.points[std::size_t(i)];
-            if (detail::meets_cell(a, b, p)) met.push_back({dot(p - a, b - a), i});
+            if (meets(a, b, {p - half, p + half}) != BoxPart::none) met.push_back({dot(p - a, b - a), i});
         }
         std::sort(met.begin(), met.end());
         for (std::size_t i = 1; i < met.size(); ++i)

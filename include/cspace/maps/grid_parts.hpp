@@ -75,11 +75,11 @@ class GridParts {
         InterruptPoll poll(16);
         for (int row = 0; row < grid.rows(); ++row) {
             poll.step();
-            const std::uint64_t* line = grid.row(row);
+            const auto word = [line = grid.row(row)](std::size_t w) { return line[w]; };
             std::size_t k = 0;
             here.clear();
-            for (int begin = first_free(line, 0, grid.columns()); begin < grid.columns();) {
-                Run run{begin, first_set([&](std::size_t w) { return line[w]; }, begin), unlabelled};
+            for (int begin = first_clear(word, 0, grid.columns()); begin < grid.columns();) {
+                Run run{begin, first_set(word, begin), unlabelled};
                 while (k < before.size() && before[k].end + reach <= run.begin) ++k;
                 for (std::size_t j = k; j < before.size() && before[j].begin < run.end + reach; ++j)
                     if (run.label == unlabelled)
@@ -89,17 +89,10 @@ class GridParts {
                 if (run.label == unlabelled) run.label = next++;
                 visit(row, run);
                 here.push_back(run);
-                begin = first_free(line, run.end, grid.columns());
+                begin = first_clear(word, run.end, grid.columns());
             }
             std::swap(before, here);
         }
-    }
-    static int first_free(const std::uint64_t* line, int from, int columns) {
-        const std::size_t last = std::size_t(columns + 1) >> 6;  // the border's word; behind it all is clear
-        if (from >= columns) return columns;
-        return std::min(
-            columns,
-            first_set([&](std::size_t w) { return w <= last ? ~line[w] : ~std::uint64_t(0); }, from));
     }
     static void fill(std::uint64_t* line, int begin, int end) {
         for (int at = begin; at < end;) {

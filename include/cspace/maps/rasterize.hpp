@@ -10,20 +10,14 @@ namespace cspace::maps {
 
 namespace detail {
 
-// Whether the open square of a side at `low` meets the convex polygon: no line along a side of either divides
-// them.
-inline bool reaches_into(const Point* corner, int count, Point low, double side) {
-    const Box box = bounds_of(std::span(corner, std::size_t(count)));
-    if (box.high.x <= low.x || box.low.x >= low.x + side || box.high.y <= low.y || box.low.y >= low.y + side)
+// Whether the open square meets the convex polygon: no line along a side of either divides them.
+inline bool reaches_into(const Point* corner, int count, const Box& square) {
+    const auto [low, high] = bounds_of(std::span(corner, std::size_t(count)));
+    if (high.x <= square.low.x || low.x >= square.high.x || high.y <= square.low.y || low.y >= square.high.y)
         return false;
     for (int i = 0; i < count; ++i) {
-        const Point a = corner[i], b = corner[(i + 1) % count];
-        int right = 0, left = 0;
-        for (const Point c : {low, low + Point{side, 0}, low + Point{side, side}, low + Point{0, side}}) {
-            const int turn = orientation(a, b, c);
-            right += turn <= 0, left += turn >= 0;
-        }
-        if (right == 4 || (count == 2 && left == 4)) return false;
+        const auto [least, greatest] = sides_of(corner[i], corner[(i + 1) % count], square);
+        if (greatest <= 0 || (count == 2 && least >= 0)) return false;
     }
     return true;
 }
@@ -53,7 +47,8 @@ inline void rasterize(const FreeSpace& space, Point origin, double side, int row
                     blocked[std::size_t(row) * std::size_t(columns) + std::size_t(column)];
                 if (cell_of) continue;
                 const Point at = origin + Point{column * side + inset, row * side + inset};
-                cell_of = detail::reaches_into(corner, count, at, side - 2 * inset);
+                const double inner = side - 2 * inset;
+                cell_of = detail::reaches_into(corner, count, {at, at + Point{inner, inner}});
             }
     };
     for (Index t = 0; t < Index(mesh.triangles.size()); ++t) {

@@ -127,32 +127,24 @@ class RunMesh {
         }
     }
 
-    int end_of_run(int row, int column) const {
-        const std::uint64_t* line = grid_.row(row);
-        return first_set([&](std::size_t k) { return line[k]; }, column);
+    // The words of one row, or of what two have in common, for scans.
+    auto blocked_in(int row) const {
+        return [line = grid_.row(row)](std::size_t k) { return line[k]; };
     }
-    int first_of_run(int row, int column) const {
-        const std::uint64_t* line = grid_.row(row);
-        return 1 + last_set([&](std::size_t k) { return line[k]; }, column);
+    auto blocked_in(int row, int other) const {
+        return [a = grid_.row(row), b = grid_.row(other)](std::size_t k) { return a[k] | b[k]; };
     }
+    int end_of_run(int row, int column) const { return first_set(blocked_in(row), column); }
+    int first_of_run(int row, int column) const { return 1 + last_set(blocked_in(row), column); }
     // Where two rows are both free: from a column on, up to the end of the row; and how far.
     int first_open(int row, int other, int column) const {
-        if (column >= grid_.columns()) return grid_.columns();
-        const std::uint64_t *a = grid_.row(row), *b = grid_.row(other);
-        const std::size_t last = std::size_t(grid_.columns() + 1) >> 6;  // the border's word
-        const unsigned at = unsigned(column + 1);
-        std::size_t k = at >> 6;
-        std::uint64_t open = ~(a[k] | b[k]) & (~std::uint64_t(0) << (at & 63));
-        while (!open && k < last) ++k, open = ~(a[k] | b[k]);
-        return open ? std::min(int(64 * k) + std::countr_zero(open) - 1, grid_.columns()) : grid_.columns();
+        return first_clear(blocked_in(row, other), column, grid_.columns());
     }
     int end_of_door(int row, int other, int column) const {
-        const std::uint64_t *a = grid_.row(row), *b = grid_.row(other);
-        return first_set([&](std::size_t k) { return a[k] | b[k]; }, column);
+        return first_set(blocked_in(row, other), column);
     }
     int first_of_door(int row, int other, int column) const {
-        const std::uint64_t *a = grid_.row(row), *b = grid_.row(other);
-        return 1 + last_set([&](std::size_t k) { return a[k] | b[k]; }, column);
+        return 1 + last_set(blocked_in(row, other), column);
     }
 };
 

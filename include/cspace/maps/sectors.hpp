@@ -9,16 +9,17 @@
 
 namespace cspace::maps {
 
-struct Sectors {
-    std::vector<Index> of;      // of corner i of triangle t at 3t + i
-    std::vector<Point> points;  // of each sector
-    std::vector<Index> first;   // its first corner counterclockwise, as 3t + i
-    std::vector<Point> begin,
-        end;  // the ends of the walls that it begins and ends at, the sector on the left of the first
-    std::vector<std::uint8_t>
-        turns;  // whether it is larger than half a turn and ends at walls: paths turn there
+struct Sector {
+    Point at;
+    Index first;  // its first corner counterclockwise, as 3t + i for corner i of triangle t
+    Point begin,
+        end;     // the ends of the walls that it begins and ends at, the sector on the left of the first
+    bool turns;  // whether it is larger than half a turn and ends at walls: paths turn there
+};
 
-    std::size_t size() const { return points.size(); }
+struct Sectors {
+    std::vector<Index> of;  // of corner i of triangle t at 3t + i
+    std::vector<Sector> all;
 };
 
 inline Sectors find_sectors(const FreeSpace& space) {
@@ -39,8 +40,7 @@ inline Sectors find_sectors(const FreeSpace& space) {
         }
         const bool has_walls = space.is_wall(t, before(i));
         const Point first = mesh.point(mesh[t].corner[std::size_t(after(i))]), center = mesh.point(v);
-        const Index sector = Index(found.points.size());
-        found.first.push_back(3 * t + i);
+        const Index sector = Index(found.all.size()), first_corner = 3 * t + i;
         for (;;) {
             found.of[std::size_t(3 * t + i)] = sector;
             if (space.is_wall(t, after(i))) break;
@@ -50,11 +50,9 @@ inline Sectors find_sectors(const FreeSpace& space) {
         }
         const Point last = mesh.point(mesh[t].corner[std::size_t(before(i))]);
         const int turn = orientation(last, center, first);
-        found.points.push_back(center);
-        found.begin.push_back(first);
-        found.end.push_back(last);
-        found.turns.push_back(
-            has_walls && (turn < 0 || (turn == 0 && (first == last || !is_between(last, center, first)))));
+        const bool turns =
+            has_walls && (turn < 0 || (turn == 0 && (first == last || !is_between(last, center, first))));
+        found.all.push_back({center, first_corner, first, last, turns});
     }
     return found;
 }

@@ -42,6 +42,15 @@ struct Triangulation {
     const Triangle& operator[](Index t) const { return triangles[std::size_t(t)]; }
     Triangle& operator[](Index t) { return triangles[std::size_t(t)]; }
     Point point(Index v) const { return points[std::size_t(v)]; }
+    // The corner 0 of a triangle and the ways from there to the others.
+    std::array<Point, 3> spanned(Index t) const {
+        const auto& c = (*this)[t].corner;
+        return {point(c[0]), point(c[1]) - point(c[0]), point(c[2]) - point(c[0])};
+    }
+    Point middle_of(Index t) const {
+        const auto [a, b, c] = spanned(t);
+        return a + (1.0 / 3) * (b + c);
+    }
 
     // Where p lies, walking from a triangle near it. The walk tries the edges of each triangle in an order
     // that a small generator draws, so it cannot run in circles (Devillers, Pion & Teillaud 2002, "Walking in

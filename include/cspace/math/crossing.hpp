@@ -1,9 +1,12 @@
 // Where two lines cross, rounded to the nearest doubles: the same point whichever points of the lines are
-// given.
+// given. What a segment meets of a box.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "cspace/math/predicates.hpp"
 
@@ -43,6 +46,26 @@ inline Point crossing(const Line& a, const Line& b) {
         return std::clamp(value, std::min(from, to), std::max(from, to));
     };
     return {inside(at.x, a.from.x, a.to.x), inside(at.y, a.from.y, a.to.y)};
+}
+
+// The least and the greatest orientation of the corners of a box, seen from a towards b.
+inline std::pair<int, int> sides_of(Point a, Point b, const Box& box) {
+    const auto& [low, high] = box;
+    return std::minmax({orientation(a, b, low), orientation(a, b, {high.x, low.y}), orientation(a, b, high),
+                        orientation(a, b, {low.x, high.y})});
+}
+
+// What a segment meets of a box.
+enum class BoxPart : std::int8_t { none, border, inside };
+inline BoxPart meets(Point a, Point b, const Box& box) {
+    const auto [low, high] = bounds_of(std::array{a, b});
+    if (high.x < box.low.x || low.x > box.high.x || high.y < box.low.y || low.y > box.high.y)
+        return BoxPart::none;
+    const auto [least, greatest] = sides_of(a, b, box);
+    if (least > 0 || greatest < 0) return BoxPart::none;
+    const bool beside =
+        high.x <= box.low.x || low.x >= box.high.x || high.y <= box.low.y || low.y >= box.high.y;
+    return beside || least == 0 || greatest == 0 ? BoxPart::border : BoxPart::inside;
 }
 
 }  // namespace cspace

@@ -31,10 +31,12 @@ inline Point nearest_on(Point a, Point b, Point p) {
 struct Box {
     Point low, high;
 
+    Point middle() const { return 0.5 * (low + high); }
     void include(Point p) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
+    void include(const Box& box) { include(box.low), include(box.high); }
 };
 // Of at least one point.
 template <class Points>

@@ -16,19 +16,27 @@ struct Nearest {
     double along = 0;  // how far along the ring from the hit point [m]
 };
 
+// What a directed edge adds to the winding number around a point: whether it crosses the ray from there to
+// the right, upwards (1) or downwards (−1).
+inline int turn_around(Point p, Point begin, Point end) {
+    const bool begin_above = begin.y > p.y, end_above = end.y > p.y;
+    if (begin_above == end_above) return 0;
+    const int side = orientation(begin, end, p);
+    return end_above ? side > 0 : -(side < 0);
+}
+
 class Round {
   public:
     Nearest free, blocked;  // the nearest points from which the line to the goal is free, and is not
 
     Round(Point goal, const Touch& hit) : goal_(goal), hit_(hit) {
-        if (hit.is_corner()) return;
-        count_turn(hit.in);
+        if (!hit.is_corner()) turns_ += turn_around(goal, hit.in.begin, hit.in.end);
     }
 
     // A piece that was walked from its one end to the other, or the part of the piece with the hit point.
     void add(const Wall& piece, Point from, Point to) {
         const bool with_hit = !hit_.is_corner() && piece.name == hit_.in.name;
-        if (!with_hit) count_turn(piece);
+        if (!with_hit) turns_ += turn_around(goal_, piece.begin, piece.end);
         add_foot(piece, from, to);
         length_ += distance(from, to);
     }
@@ -48,7 +56,7 @@ class Round {
     Point goal_;
     Touch hit_;
     double length_ = 0;
-    int turns_ = 0;
+    int turns_ = 0;  // the winding number around the goal
     bool is_outer_ = true, any_corner_ = false;
     Point leftmost_;
 
@@ -69,15 +77,6 @@ class Round {
         const bool is_free = orientation(piece.begin, piece.end, goal_) > 0;
         const Point at = is_free && is_next_to(foot, goal_) ? goal_ : foot;
         offer({{at, piece, piece}, near, length_ + distance(from, foot)}, is_free);
-    }
-
-    // The winding number around the goal: pieces that cross the ray from the goal to the right.
-    void count_turn(const Wall& piece) {
-        const bool begin_above = piece.begin.y > goal_.y, end_above = piece.end.y > goal_.y;
-        if (begin_above == end_above) return;
-        const int side = orientation(piece.begin, piece.end, goal_);
-        if (end_above && side > 0) ++turns_;
-        if (begin_above && side < 0) --turns_;
     }
 
     // The ring encloses the robot unless the free space at its leftmost corner opens to the left.

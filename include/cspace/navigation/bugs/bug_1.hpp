@@ -4,7 +4,6 @@
 // than the distance from start to goal and one and a half times the perimeters of the rings met.
 #pragma once
 
-#include "cspace/navigation/bugs/boundary_tour.hpp"
 #include "cspace/navigation/bugs/walk_log.hpp"
 
 namespace cspace::navigation {
@@ -18,20 +17,15 @@ class Bug1 {
         Walker<Robot> walker(robot);
         double nearest = std::numeric_limits<double>::infinity();
         while (!walker.advance({robot.position(), goal_})) {
-            walker.begin_follow();
             Round round(goal_, robot.touch());
-            if (walk_around(walker, round)) {
-                walker.end_follow();
-                return walker.finish(Status::found);
-            }
-            walker.trip.follows.back().whole = true;
+            const auto stays_on = [](const Wall&, Point, Point) { return std::optional<Point>(); };
+            if (walker.follow(hand_, goal_, &round, stays_on, [] { return false; }) == FollowEnd::goal) break;
             const bool shut = round.shuts_off_goal();
             const Nearest& leave = shut ? round.blocked : round.free;
             if (!(leave.squared_distance < nearest)) return walker.finish(Status::undetermined);
             nearest = leave.squared_distance;
             const bool onwards = leave.along <= round.length() - leave.along;
             walker.go_to(leave.touch, onwards ? hand_ : other(hand_));
-            walker.end_follow();
             if (!shut) continue;
             walker.trip.witness = robot.touch();
             return walker.finish(Status::unreachable);
@@ -42,29 +36,6 @@ class Bug1 {
   private:
     Point goal_;
     Hand hand_;
-
-    // Around the ring back to the hit point; true if the goal is reached on the way.
-    template <ContactSensor Robot>
-    bool walk_around(Walker<Robot>& walker, Round& round) const {
-        const Touch hit = walker.robot.touch();
-        for (bool first = true;; first = false) {
-            const Wall piece = ahead(walker.robot.touch(), hand_);
-            if (is_on(piece, goal_)) {
-                walker.stop(hand_, goal_);
-                return true;
-            }
-            const bool last = !first && !hit.is_corner() && piece.name == hit.in.name;
-            const Point from = walker.robot.position();
-            if (last)
-                walker.stop(hand_, hit.at);
-            else
-                walker.walk(hand_);
-            round.add(piece, from, walker.robot.position());
-            if (last) return false;
-            round.add(walker.robot.touch());
-            if (walker.robot.touch().is_place_of(hit)) return false;
-        }
-    }
 };
 
 template <ContactSensor Robot>

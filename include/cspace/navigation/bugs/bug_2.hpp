@@ -23,11 +23,13 @@ class Bug2 {
             const Touch hit = robot.touch();
             for (const Follow& earlier : walker.trip.follows)
                 if (hit.is_place_of(earlier.hit)) return walker.finish(Status::undetermined);
-            walker.begin_follow();
-            const bool whole = follow(walker, hit);
-            walker.end_follow();
-            if (!whole) continue;
-            walker.trip.follows.back().whole = true;
+            const auto leaves_piece = [&](const Wall& piece, Point, Point) {
+                return is_free_at(piece, hit) ? std::optional(crossing_point(m_, piece)) : std::nullopt;
+            };
+            const auto leaves_corner = [&] { return is_free_at_corner(robot.touch(), hit); };
+            // At the goal the next line has no length.
+            if (walker.follow(hand_, m_.to, nullptr, leaves_piece, leaves_corner) != FollowEnd::whole)
+                continue;
             walker.trip.witness = hit;
             return walker.finish(Status::unreachable);
         }
@@ -37,30 +39,6 @@ class Bug2 {
   private:
     Line m_;
     Hand hand_;
-
-    // Along the wall to the goal or to a leave point; true if the hit point is met first.
-    template <ContactSensor Robot>
-    bool follow(Walker<Robot>& walker, const Touch& hit) const {
-        for (bool first = true;; first = false) {
-            const Wall piece = ahead(walker.robot.touch(), hand_);
-            if (is_on(piece, m_.to)) {
-                walker.stop(hand_, m_.to);
-                return false;
-            }
-            if (!first && !hit.is_corner() && piece.name == hit.in.name) {
-                walker.stop(hand_, hit.at);
-                return true;
-            }
-            if (is_free_at(piece, hit)) {
-                walker.stop(hand_, crossing_point(m_, piece));
-                return false;
-            }
-            walker.walk(hand_);
-            const Touch corner = walker.robot.touch();
-            if (corner.is_place_of(hit)) return true;
-            if (is_free_at_corner(corner, hit)) return false;
-        }
-    }
 
     bool is_free_at(const Wall& piece, const Touch& hit) const {
         if (crossing(m_, piece) != -1 || orientation(piece.begin, piece.end, m_.to) <= 0) return false;

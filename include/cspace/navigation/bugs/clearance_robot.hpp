@@ -6,7 +6,6 @@
 
 #include "cspace/navigation/bugs/clearance_sensor.hpp"
 #include "cspace/navigation/bugs/range_robot.hpp"
-#include "cspace/navigation/bugs/surroundings.hpp"
 #include "cspace/navigation/voronoi/feet.hpp"
 #include "cspace/navigation/voronoi/rolling.hpp"
 
@@ -27,13 +26,12 @@ class ClearanceRobot : public RangeRobot {
     static constexpr double touches2 = 1e-9;   // of a square: a curve that touches the goal's circle meets it
     static constexpr double on_mark = 1e-7;    // of how far it keeps: it has come by its mark
 
-    ClearanceRobot(const Walls& walls, const Surroundings& around, Point start, double range,
+    ClearanceRobot(const Walls& walls, const voronoi::Sites& sites, Point start, double range,
                    voronoi::Grain grain)
         : RangeRobot(walls, start, range),
-          s_(around.sites),
-          tree_(around.tree),
-          grain_{grain.fine * around.sites.extent, grain.share},
-          contacts_(around.sites, around.tree, grain_),
+          s_(sites),
+          grain_{grain.fine * sites.extent, grain.share},
+          contacts_(sites, grain_),
           keeps_(kept_share * range) {}
 
     Likeness likeness() const { return {like.share, like.fine * s_.extent, like.turn, like.far, like.loop}; }
@@ -41,10 +39,6 @@ class ClearanceRobot : public RangeRobot {
     double keeps() const { return keeps_; }
     double clearance() const { return radius_; }
     const std::vector<Foot>& feet() const { return feet_; }
-    void stand_at(Point p) {
-        at_ = p;
-        place_ = {};
-    }
 
     Halt begin(Log& log) {
         if (s_.size() == 0) return Halt::open;
@@ -54,11 +48,11 @@ class ClearanceRobot : public RangeRobot {
             if (is_tapered(place_)) return begin_in_corner(log);
             up = away_from_wall(from);
         } else {
-            const voronoi::Nearest near = voronoi::nearest_site(s_, tree_, from);
+            const voronoi::Nearest near = voronoi::nearest_site(s_, from);
             if (near.site == voronoi::none) return Halt::lost;
             if (near.distance > keeps_) return Halt::open;
             const Index wall = near.distance <= beside * s_.extent ? wall_behind() : voronoi::none;
-            up = wall == voronoi::none ? voronoi::retract(s_, tree_, from) : away_from(wall, from);
+            up = wall == voronoi::none ? voronoi::retract(s_, from) : away_from(wall, from);
         }
         const bool is_far = up.b == voronoi::none || up.radius >= keeps_ * (1 - tolerance::widening);
         if (is_far && !std::isfinite(keeps_)) return Halt::lost;
@@ -66,7 +60,7 @@ class ClearanceRobot : public RangeRobot {
         const Point to = is_far ? up.foot + keeps_ * away : up.at;
         const Point target = to + s_.origin;
         if (!advance({at_, target}, log.path)) return Halt::lost;
-        note(target, log);
+        log.note(target);
         place_ = {};
         radius_ = is_far ? keeps_ : up.radius;
         feet_ =
@@ -136,10 +130,9 @@ class ClearanceRobot : public RangeRobot {
         const double far = distance(from, to), end = std::max(far - keeps_, 0.0);
         if (!(far > 0)) return Halt::goal;
         const voronoi::StraightWay way{from, (1 / far) * (to - from)};
-        const voronoi::FirstMeeting met =
-            voronoi::first_meeting(s_, tree_, grain_, way, keeps_, voronoi::none, end);
+        const voronoi::FirstMeeting met = voronoi::first_meeting(s_, grain_, way, keeps_, voronoi::none, end);
         move_to(way.at(met.at));
-        note(at_, log);
+        log.note(at_);
         if (met.site == voronoi::none) return Halt::goal;
         radius_ = keeps_;
         feet_ = {contacts_.contact(met.site, way.at(met.at))};
@@ -148,20 +141,13 @@ class ClearanceRobot : public RangeRobot {
 
   private:
     const voronoi::Sites& s_;
-    const voronoi::EdgeTree& tree_;
     voronoi::Grain grain_;
     voronoi::Contacts contacts_;
     double keeps_, radius_ = 0;
     std::vector<Foot> feet_;
 
     Point local(Point p) const { return p - s_.origin; }
-    void move_to(Point p) {
-        at_ = p + s_.origin;
-        place_ = {};
-    }
-    static void note(Point p, Log& log) {
-        if (log.path.empty() || log.path.back() != p) log.path.push_back(p);
-    }
+    void move_to(Point p) { stand_at(p + s_.origin); }
     Halt arrive(Point p, Halt cause, Log& log) {
         move_to(p);
         if (!log.path.empty()) log.path.back() = at_;  // as polished
@@ -205,8 +191,8 @@ class ClearanceRobot : public RangeRobot {
         Index nearest = voronoi::none;
         double least = beside * s_.extent;
         walls_->at(at_, [&](int e) {
-            const double along = s_.advance(e, local(at_)), off = std::abs(s_.height(e, local(at_)));
-            if (!(off <= least) || along < 0 || along > s_.length[std::size_t(e)]) return;
+            const double off = std::abs(s_.height(e, local(at_)));
+            if (!(off <= least) || !s_.is_beside(e, local(at_), 0)) return;
             if (orientation(walls_->begin(e), walls_->end(e), at_) <= 0) return;
             least = off;
             nearest = e;
@@ -214,7 +200,7 @@ class ClearanceRobot : public RangeRobot {
         return nearest;
     }
     voronoi::Retraction away_from(Index wall, Point from) const {
-        return voronoi::retract_along(s_, tree_, wall, from, s_.normal(wall), s_.rounding());
+        return voronoi::retract_along(s_, wall, from, s_.normal(wall), s_.rounding());
     }
     // From a place on a wall straight into free space.
     voronoi::Retraction away_from_wall(Point from) const {
@@ -222,12 +208,12 @@ class ClearanceRobot : public RangeRobot {
         if (!place_.is_corner() || s_.turn_at(e) != voronoi::Turn::around) return away_from(e, from);
         const Point both = s_.normal(e) + s_.normal(place_.in);
         const Point away = norm(both) > folded ? (1 / norm(both)) * both : s_.direction(place_.in);
-        return voronoi::retract_along(s_, tree_, s_.size() + e, from, away, s_.rounding());
+        return voronoi::retract_along(s_, s_.size() + e, from, away, s_.rounding());
     }
 
     // The arc of two sites from here on, up to where the robot ends it: at the limit or at the goal.
     voronoi::ArcPiece next_arc(Index a, Index b, const Aim& aim, Halt& cause) const {
-        return voronoi::next_piece(s_, tree_, grain_, a, b, local(at_), [&](const voronoi::ArcPiece& arc) {
+        return voronoi::next_piece(s_, grain_, a, b, local(at_), [&](const voronoi::ArcPiece& arc) {
             const double limit = reaches_limit(arc);
             cause = Halt::limit;
             if (!aim.stops) return limit;
@@ -289,10 +275,10 @@ class ClearanceRobot : public RangeRobot {
             if (!bends) step = std::max(step, (t1 - t0) / 32);
             t = t + step < t1 ? t + step : t1;
             move_to(curve.at(t));
-            if (bends || t == t1) note(at_, log);
+            if (bends || t == t1) log.note(at_);
             radius_ = curve.radius(t);
             if (!look()) continue;
-            note(at_, log);
+            log.note(at_);
             return true;
         }
         return false;
@@ -304,7 +290,7 @@ class ClearanceRobot : public RangeRobot {
                                    double& rolled) {
         radius_ = keeps_;
         log.least = std::min(log.least, keeps_);
-        const voronoi::FirstMeeting met = voronoi::first_meeting(s_, tree_, grain_, way, keeps_, a, end);
+        const voronoi::FirstMeeting met = voronoi::first_meeting(s_, grain_, way, keeps_, a, end);
         const Point goal = local(aim.goal);
         double stop = met.at;
         Halt cause = met.site == voronoi::none ? Halt::told : Halt::meet;
@@ -339,9 +325,9 @@ class ClearanceRobot : public RangeRobot {
                 }
             }
             move_to(way.at(t));
-            if (!s_.is_edge(a) || i == steps) note(at_, log);
+            if (!s_.is_edge(a) || i == steps) log.note(at_);
             if (!look()) continue;
-            note(at_, log);
+            log.note(at_);
             return Halt::told;
         }
         rolled += way.length(stop);

@@ -31,6 +31,10 @@ struct Log {
     std::vector<Touch> corners;                              // that its feet came by
     double least = std::numeric_limits<double>::infinity();  // distance from walls [m]
     std::optional<std::size_t> low;                          // the point of the path nearest to the goal
+
+    void note(Point p) {
+        if (path.empty() || path.back() != p) path.push_back(p);
+    }
 };
 
 // By how much places and directions may differ that the robot takes for one.

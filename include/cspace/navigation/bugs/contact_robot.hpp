@@ -159,6 +159,11 @@ class ContactRobot {
         at_ = start_;
         place_ = places_[side];
     }
+    // In the open.
+    void stand_at(Point p) {
+        at_ = p;
+        place_ = {};
+    }
     Point position() const { return at_; }
     Touch touch() const {
         if (place_.is_open()) return {at_, {}, {}};

@@ -22,11 +22,116 @@ struct Noise {
     std::uint64_t seed = 0;
 };
 
-// What the beams read from one place: the middle of beam k lies at angle k / size of a full circle.
-struct Scan {
+// A run of beams that read about the same, the nearest there are around; beam numbers continue past a full
+// circle.
+struct Near {
+    int first, last;
+    Point towards;  // unit
+};
+
+// Unit vectors all around, one for each beam.
+inline std::vector<Point> list_directions(int beams, double first) {
+    std::vector<Point> made;
+    for (int k = 0; k < beams; ++k) {
+        const double angle = 2 * std::numbers::pi * k / beams + first;
+        made.push_back({std::cos(angle), std::sin(angle)});
+    }
+    return made;
+}
+
+// What the beams read from one place: the middle of beam k lies at angle k / beams of a full circle. Numbers
+// of beams may lie outside 0 … beams − 1.
+class Scan {
+  public:
+    static constexpr int beams = 720;
+    static constexpr double slack = 0.03, trust = 3.5;  // of the distance, and of a reading's deviation
+    static constexpr double grazing = 8;      // a wall is seen at up to this secant of the angle of incidence
+    static constexpr double level = 1e-3;     // of the distance: gives beams that read just that a weight
+    static constexpr int apart = beams / 12;  // runs of one wall lie no farther from each other
+
+    double range = std::numeric_limits<double>::infinity();
     std::vector<double> reading;  // the range where nothing returned
     double deviation = 0;         // of a reading, after averaging
     double least = 0;
+
+    double at(int beam) const { return reading[std::size_t(wrapped(beam))]; }
+    double tolerance(double distance) const { return slack * distance + trust * deviation; }
+    static Point direction(int beam) {
+        static const std::vector<Point> all = list_directions(beams, 0);
+        return all[std::size_t(wrapped(beam))];
+    }
+    static int wrapped(int beam) { return (beam % beams + beams) % beams; }
+    static int beam_of(Point towards) {
+        const double turns = std::atan2(towards.y, towards.x) / (2 * std::numbers::pi);
+        return wrapped(int(std::lround(turns * beams)));
+    }
+    // How many beams it is from one counterclockwise to another.
+    static int ahead(int from, int to) { return wrapped(to - from); }
+
+    bool returns(int beam) const { return at(beam) < range; }
+
+    // Whether between two beams, counterclockwise, there is nothing that the scan does not show.
+    bool is_closed(int first, int last) const {
+        for (int k = first; k < last; ++k)
+            if (jumps(k)) return false;
+        return true;
+    }
+
+    // The beam that reads least, of some.
+    int nearest(int first, int last) const {
+        int best = first;
+        for (int k = first; k <= last; ++k)
+            if (smooth(k) < smooth(best)) best = k;
+        return best;
+    }
+    // The mean of neighbours where the view does not jump: less noise, and less of the luck of the least.
+    double smooth(int beam) const {
+        double sum = at(beam), count = 1;
+        if (!jumps(beam)) sum += at(beam + 1), ++count;
+        if (!jumps(beam - 1)) sum += at(beam - 1), ++count;
+        return sum / count;
+    }
+    double smooth(Point towards) const { return smooth(beam_of(towards)); }
+
+    // Counterclockwise, all walls within a distance. Runs are one unless they lie far apart or the view opens
+    // between them.
+    std::vector<Near> within(double distance) const {
+        std::vector<Near> runs;
+        int begin = 0;
+        while (begin < beams && is_near(begin, distance)) ++begin;
+        if (begin == beams) return {{0, beams - 1, direction_of(0, beams - 1, distance)}};
+        for (int k = begin; k < begin + beams; ++k) {
+            if (!is_near(k, distance)) continue;
+            if (!runs.empty() && is_one(runs.back().last, k))
+                runs.back().last = k;
+            else
+                runs.push_back({k, k, {}});
+        }
+        if (runs.size() > 1 && is_one(runs.back().last, runs.front().first + beams)) {
+            runs.front().first = runs.back().first - beams;
+            runs.pop_back();
+        }
+        for (Near& run : runs) run.towards = direction_of(run.first, run.last, distance);
+        return runs;
+    }
+
+  private:
+    bool is_near(int beam, double distance) const { return returns(beam) && at(beam) <= distance; }
+    bool is_one(int last, int next) const { return next - last < apart && is_closed(last, next); }
+    // Whether the view opens between a beam and the next one.
+    bool jumps(int beam) const {
+        if (!returns(beam) || !returns(beam + 1)) return true;
+        const double a = at(beam), b = at(beam + 1);
+        const double step = 2 * std::numbers::pi / beams * std::min(a, b);
+        return std::abs(a - b) > grazing * step + 2 * trust * deviation;
+    }
+    Point direction_of(int first, int last, double distance) const {
+        Point sum;
+        for (int k = first; k <= last; ++k)
+            if (at(k) <= distance) sum = sum + (distance - at(k) + level * distance) * direction(k);
+        const double size = norm(sum);
+        return size > 0 ? (1 / size) * sum : direction((first + last) / 2);
+    }
 };
 
 // Beams are as wide as they lie apart, so no corner hides between two of them. Each reading is the distance
@@ -34,25 +139,21 @@ struct Scan {
 // within the range reads the range. Deviates are independent of each other.
 class Scanner {
   public:
-    static constexpr int beams = 720, first_scans = 16, most_scans = 400;
+    static constexpr int beams = Scan::beams, first_scans = 16, most_scans = 400;
     // Scans are repeated until their mean deviates by this share of the least reading.
     static constexpr double wanted = 0.01;
     static constexpr double touching = 1e-3;  // of the noise: walls read as nearer are as good as touched
     static constexpr double at_wall = 1e-12;  // of its reach: a wall so little behind is the one it stands on
 
     Scanner(const Walls& walls, double range, Noise noise)
-        : walls_(walls), range_(range), noise_(noise.deviation), draws_(noise.seed), far_(beams) {
-        for (int k = 0; k < beams; ++k) {
-            const double angle = 2 * std::numbers::pi * k / beams, half = std::numbers::pi / beams;
-            directions_.push_back({std::cos(angle), std::sin(angle)});
-            sides_.push_back({std::cos(angle + half), std::sin(angle + half)});
-        }
-    }
+        : walls_(walls),
+          range_(range),
+          noise_(noise.deviation),
+          draws_(noise.seed),
+          far_(beams),
+          sides_(list_directions(beams, std::numbers::pi / beams)) {}
 
-    double range() const { return range_; }
-    double noise() const { return noise_; }
     std::int64_t scans() const { return scans_; }
-    Point direction(int beam) const { return directions_[std::size_t((beam % beams + beams) % beams)]; }
 
     void look(Point from, Scan& scan) {
         sweep(from);
@@ -68,7 +169,7 @@ class Scanner {
     double range_, noise_;
     search::Draws draws_;
     std::vector<double> far_;
-    std::vector<Point> directions_, sides_;  // of each beam its middle and its left side
+    std::vector<Point> sides_;  // the left side of each beam
     std::int64_t scans_ = 0;
     int last_ = first_scans;
 
@@ -94,6 +195,7 @@ class Scanner {
     }
 
     void read(int count, Scan& scan) {
+        scan.range = range_;
         scan.reading.resize(beams);
         last_ = noise_ > 0 ? count : 1;
         scans_ += last_;
@@ -148,101 +250,6 @@ class Scanner {
             },
             [&](auto covered) { return nearest < none && covered(from + nearest * along); });
         return nearest <= most ? nearest : none;
-    }
-};
-
-// A run of beams that read about the same, the nearest there are around; beam numbers continue past a full
-// circle.
-struct Near {
-    int first, last;
-    Point towards;  // unit
-};
-
-class ScanFeet {
-  public:
-    static constexpr double slack = 0.03, trust = 3.5;  // of the distance, and of a reading's deviation
-    static constexpr double grazing = 8;   // a wall is seen at up to this secant of the angle of incidence
-    static constexpr double level = 1e-3;  // of the distance: gives beams that read just that a weight
-    static constexpr int apart = Scanner::beams / 12;  // runs of one wall lie no farther from each other
-
-    ScanFeet(const Scanner& scanner, const Scan& scan) : scanner_(scanner), scan_(scan) {}
-
-    double at(int beam) const { return scan_.reading[std::size_t(wrapped(beam))]; }
-    double tolerance(double distance) const { return slack * distance + trust * scan_.deviation; }
-    static int wrapped(int beam) { return (beam % Scanner::beams + Scanner::beams) % Scanner::beams; }
-    static int beam_of(Point towards) {
-        const double turns = std::atan2(towards.y, towards.x) / (2 * std::numbers::pi);
-        return wrapped(int(std::lround(turns * Scanner::beams)));
-    }
-    // How many beams it is from one counterclockwise to another.
-    static int ahead(int from, int to) { return wrapped(to - from); }
-
-    bool returns(int beam) const { return at(beam) < scanner_.range(); }
-
-    // Whether between two beams, counterclockwise, there is nothing that the scan does not show.
-    bool is_closed(int first, int last) const {
-        for (int k = first; k < last; ++k)
-            if (jumps(k)) return false;
-        return true;
-    }
-
-    // The beam that reads least, of some.
-    int nearest(int first, int last) const {
-        int best = first;
-        for (int k = first; k <= last; ++k)
-            if (smooth(k) < smooth(best)) best = k;
-        return best;
-    }
-    // The mean of neighbours where the view does not jump: less noise, and less of the luck of the least.
-    double smooth(int beam) const {
-        double sum = at(beam), count = 1;
-        if (!jumps(beam)) sum += at(beam + 1), ++count;
-        if (!jumps(beam - 1)) sum += at(beam - 1), ++count;
-        return sum / count;
-    }
-
-    // Counterclockwise, all walls within a distance. Runs are one unless they lie far apart or the view opens
-    // between them.
-    std::vector<Near> within(double distance) const {
-        std::vector<Near> runs;
-        int begin = 0;
-        while (begin < Scanner::beams && is_near(begin, distance)) ++begin;
-        if (begin == Scanner::beams)
-            return {{0, Scanner::beams - 1, direction_of(0, Scanner::beams - 1, distance)}};
-        for (int k = begin; k < begin + Scanner::beams; ++k) {
-            if (!is_near(k, distance)) continue;
-            if (!runs.empty() && is_one(runs.back().last, k))
-                runs.back().last = k;
-            else
-                runs.push_back({k, k, {}});
-        }
-        if (runs.size() > 1 && is_one(runs.back().last, runs.front().first + Scanner::beams)) {
-            runs.front().first = runs.back().first - Scanner::beams;
-            runs.pop_back();
-        }
-        for (Near& run : runs) run.towards = direction_of(run.first, run.last, distance);
-        return runs;
-    }
-
-  private:
-    const Scanner& scanner_;
-    const Scan& scan_;
-
-    bool is_near(int beam, double distance) const { return returns(beam) && at(beam) <= distance; }
-    bool is_one(int last, int next) const { return next - last < apart && is_closed(last, next); }
-    // Whether the view opens between a beam and the next one.
-    bool jumps(int beam) const {
-        if (!returns(beam) || !returns(beam + 1)) return true;
-        const double a = at(beam), b = at(beam + 1);
-        const double step = 2 * std::numbers::pi / Scanner::beams * std::min(a, b);
-        return std::abs(a - b) > grazing * step + 2 * trust * scan_.deviation;
-    }
-    Point direction_of(int first, int last, double distance) const {
-        Point sum;
-        for (int k = first; k <= last; ++k)
-            if (at(k) <= distance) sum = sum + (distance - at(k) + level * distance) * scanner_.direction(k);
-        const double size = norm(sum);
-        return size > 0 ? (1 / size) * sum : scanner_.direction((first + last) / 2);
     }
 };
 

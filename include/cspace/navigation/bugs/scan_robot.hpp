@@ -21,7 +21,7 @@ class ScanRobot : public ContactRobot {
           keeps_(std::isfinite(range) ? 0.95 * range - 3 * noise.deviation : range) {}
 
     double range() const { return range_; }
-    Likeness likeness() const { return {0.25, 0, 2, ScanFeet::slack, 6}; }
+    Likeness likeness() const { return {0.25, 0, 2, Scan::slack, 6}; }
     bool again() {
         keeps_ *= 0.8;
         return ++rounds_ < most_rounds && !is_tired();
@@ -30,10 +30,6 @@ class ScanRobot : public ContactRobot {
     double clearance() const { return clearance_; }
     const std::vector<Foot>& feet() const { return feet_; }
     std::int64_t scans() const { return scanner_.scans(); }
-    void stand_at(Point p) {
-        at_ = p;
-        place_ = {};
-    }
 
     // It takes a goal for visible that reads as far as it is, and goes there to make sure.
     double sees(Point target) {
@@ -45,7 +41,7 @@ class ScanRobot : public ContactRobot {
         if (!(far > 0)) return seen_ = far;
         if (far > range_ || is_tried()) return seen_;
         const double reading = scanner_.read(at_, (1 / far) * (target - at_));
-        if (reading < far - ScanFeet::trust * scan_.deviation - tolerance::widening * far) return seen_;
+        if (reading < far - Scan::trust * scan_.deviation - tolerance::widening * far) return seen_;
         std::vector<Point> way;
         const Position end = follow_line({at_, target}, at_, place_, way);
         if (end.at == target) return seen_ = far;
@@ -65,20 +61,18 @@ class ScanRobot : public ContactRobot {
             look();
             if (scan_.least >= keeps_)
                 return moves == 0 ? Halt::open : halt({nearest_foot()}, Halt::limit, log);
-            const ScanFeet feet(scanner_, scan_);
             const std::vector<Near> all = nearest_runs(1);
             if (all.size() > 1) return halt(feet_of(all, 0), Halt::meet, log);
-            const int away = ScanFeet::beam_of(-1.0 * all[0].towards);
-            const int other = feet.nearest(away - 2 * ScanFeet::apart, away + 2 * ScanFeet::apart);
-            const double room = std::min(feet.at(other), keeps_ + scan_.least) - scan_.least;
-            if (room <= feet.tolerance(scan_.least)) {
+            const int away = Scan::beam_of(-1.0 * all[0].towards);
+            const int other = scan_.nearest(away - 2 * Scan::apart, away + 2 * Scan::apart);
+            const double room = std::min(scan_.at(other), keeps_ + scan_.least) - scan_.least;
+            if (room <= scan_.tolerance(scan_.least)) {
                 const std::vector<Near> both = nearest_runs(2);
                 if (both.size() > 1) return halt(feet_of(both, 0), Halt::meet, log);
-                return halt(
-                    {Foot{next_name_++, all[0].towards}, Foot{next_name_++, scanner_.direction(other)}},
-                    Halt::meet, log);
+                return halt({Foot{next_name_++, all[0].towards}, Foot{next_name_++, Scan::direction(other)}},
+                            Halt::meet, log);
             }
-            if (!step(at_ + std::max(0.5 * room, 0.01 * scan_.least) * scanner_.direction(away), log))
+            if (!step(at_ + std::max(0.5 * room, 0.01 * scan_.least) * Scan::direction(away), log))
                 return halt({nearest_foot()}, Halt::lost, log);
         }
         return Halt::lost;
@@ -129,20 +123,19 @@ class ScanRobot : public ContactRobot {
             if (!step(at_ + rolling * stride * keeps_ * ahead, log)) return end_branch(log);
             look();
             right = foot_near(right, foot_at, ahead, false);
-            const double off = ScanFeet(scanner_, scan_).smooth(ScanFeet::beam_of(right)) - keeps_;
+            const double off = scan_.smooth(right) - keeps_;
             if (!step(at_ + std::clamp(off, -stride * keeps_, stride * keeps_) * right, log))
                 return end_branch(log);
             look();
             if (glimpses(see, log)) return Halt::told;
-            const ScanFeet now(scanner_, scan_);
             right = foot_near(right, at_ + keeps_ * right, ahead, false);
-            const double height = now.smooth(ScanFeet::beam_of(right));
+            const double height = scan_.smooth(right);
             if (height >= range_) return end_branch(log);
             log.least = std::min(log.least, scan_.least);
             rolled += distance(last, at_);
-            const double limit = std::max(height, keeps_) + now.tolerance(keeps_);
-            const std::vector<Near> ring = arc(now, right, -1.0 * right, limit);
-            if (ring.size() > 1 && std::abs(height - keeps_) <= now.tolerance(keeps_))
+            const double limit = std::max(height, keeps_) + scan_.tolerance(keeps_);
+            const std::vector<Near> ring = arc(right, -1.0 * right, limit);
+            if (ring.size() > 1 && std::abs(height - keeps_) <= scan_.tolerance(keeps_))
                 return halt(feet_of(ring, 0), Halt::meet, log);
             right = ring.front().towards;
             const double near = rolling * stride * keeps_;
@@ -170,7 +163,7 @@ class ScanRobot : public ContactRobot {
             const Point ahead = (1 / far) * (aim.goal - at_);
             const std::vector<Near> all = nearest_runs(1);
             if (scan_.least <= keeps_ && !all.empty() && dot(all[0].towards, ahead) > 0.02)
-                return halt(feet_of(all, ScanFeet::beam_of(-1.0 * ahead)),
+                return halt(feet_of(all, Scan::beam_of(-1.0 * ahead)),
                             all.size() > 1 ? Halt::meet : Halt::limit, log);
             const double free = std::max(scan_.least - keeps_, stride * keeps_);
             if (!step(at_ + std::min(far, free) * ahead, log))
@@ -218,67 +211,61 @@ class ScanRobot : public ContactRobot {
         return is_seen;
     }
     void flush(Log& log) {
-        note(at_, log);
-        for (const Point& p : detour_) note(p, log);
+        log.note(at_);
+        for (const Point& p : detour_) log.note(p);
         detour_.clear();
-    }
-    static void note(Point p, Log& log) {
-        if (log.path.empty() || log.path.back() != p) log.path.push_back(p);
     }
 
     // From where it touches walls into the middle of the widest way that it feels to be free.
     bool leave_wall(Log& log) {
-        const auto free = [&](int beam) {
-            return std::min({scan_.reading[std::size_t(ScanFeet::wrapped(beam))], keeps_, walls_->extent()});
-        };
+        const auto free = [&](int beam) { return std::min({scan_.at(beam), keeps_, walls_->extent()}); };
         std::vector<Point> touched;
         const auto leads_away = [&](int beam) {
-            const Point to = at_ + 0.01 * free(beam) * scanner_.direction(beam);
+            const Point to = at_ + 0.01 * free(beam) * Scan::direction(beam);
             return to != at_ && follow_line({at_, to}, at_, place_, touched).at == to;
         };
         int first = 0, best = 0, longest = 0;
-        while (first < Scanner::beams && leads_away(first)) ++first;
-        for (int k = first, run = 0; k < first + Scanner::beams; ++k) {
+        while (first < Scan::beams && leads_away(first)) ++first;
+        for (int k = first, run = 0; k < first + Scan::beams; ++k) {
             run = leads_away(k) ? run + 1 : 0;
             if (run > longest) longest = run, best = k;
         }
         const int beam = best - longest / 2;
         for (const double share : {0.3, 0.1, 0.03, 0.01})
-            if (longest > 0 && step(at_ + share * free(beam) * scanner_.direction(beam), log)) return true;
+            if (longest > 0 && step(at_ + share * free(beam) * Scan::direction(beam), log)) return true;
         return false;
     }
 
     // Straight to a place; where a wall is touched on the way, back again.
     bool step(Point to, Log& log) {
         const Point from = at_;
-        note(from, log);
+        log.note(from);
         const Place was = place_;
         const bool arrived = advance({at_, to}, log.path);
-        note(at_, log);
+        log.note(at_);
         if (arrived) return true;
-        note(from, log);
+        log.note(from);
         at_ = from;
         place_ = was;
         return false;
     }
     Halt halt(std::vector<Foot> feet, Halt cause, Log& log) {
         look();
-        note(at_, log);
+        log.note(at_);
         feet_ = std::move(feet);
         clearance_ = scan_.least;
         log.least = std::min(log.least, clearance_);
         return cause;
     }
     Halt end_branch(Log& log) {
-        note(at_, log);
+        log.note(at_);
         clearance_ = scan_.least;
         return Halt::corner;
     }
 
     // All that is as near as the nearest wall, as far as readings tell, times a share.
     std::vector<Near> nearest_runs(double share) const {
-        const ScanFeet feet(scanner_, scan_);
-        return feet.within(scan_.least + share * feet.tolerance(scan_.least));
+        return scan_.within(scan_.least + share * scan_.tolerance(scan_.least));
     }
     Foot nearest_foot() {
         const std::vector<Near> all = nearest_runs(1);
@@ -287,8 +274,7 @@ class ScanRobot : public ContactRobot {
     // Counterclockwise from a beam on.
     static void sort_from(int beam, std::vector<Near>& runs) {
         std::sort(runs.begin(), runs.end(), [&](const Near& a, const Near& b) {
-            return ScanFeet::ahead(beam, ScanFeet::beam_of(a.towards)) <
-                   ScanFeet::ahead(beam, ScanFeet::beam_of(b.towards));
+            return Scan::ahead(beam, Scan::beam_of(a.towards)) < Scan::ahead(beam, Scan::beam_of(b.towards));
         });
     }
     // In their order from a beam on, counterclockwise.
@@ -305,70 +291,63 @@ class ScanRobot : public ContactRobot {
     }
 
     double reading(const Pair& feet) const {
-        const ScanFeet now(scanner_, scan_);
-        return std::max(now.smooth(ScanFeet::beam_of(feet.right)), now.smooth(ScanFeet::beam_of(feet.left)));
+        return std::max(scan_.smooth(feet.right), scan_.smooth(feet.left));
     }
     // Whether all that lies ahead is in view.
     bool is_closed(const Pair& feet) const {
-        const int right = ScanFeet::beam_of(feet.right);
-        return ScanFeet(scanner_, scan_)
-            .is_closed(right, right + ScanFeet::ahead(right, ScanFeet::beam_of(feet.left)));
+        const int right = Scan::beam_of(feet.right);
+        return scan_.is_closed(right, right + Scan::ahead(right, Scan::beam_of(feet.left)));
     }
     // A step between two walls, and back to where they are as near. Gives all that is as near there ahead,
     // from the wall on the right to that on the left; nothing where it was stopped.
     std::vector<Near> glide(Pair& feet, double pace, Log& log) {
-        const ScanFeet then(scanner_, scan_);
         const Point ahead = between(feet.right, feet.left);
-        const Point right_at = at_ + then.at(ScanFeet::beam_of(feet.right)) * feet.right;
-        const Point left_at = at_ + then.at(ScanFeet::beam_of(feet.left)) * feet.left;
+        const Point right_at = at_ + scan_.at(Scan::beam_of(feet.right)) * feet.right;
+        const Point left_at = at_ + scan_.at(Scan::beam_of(feet.left)) * feet.left;
         if (!step(at_ + pace * std::max(scan_.least, scan_.deviation) * ahead, log)) return {};
         for (int corrections = 0; corrections < 4; ++corrections) {
             look();
             feet = {foot_near(feet.right, right_at, ahead, false),
                     foot_near(feet.left, left_at, ahead, true)};
-            const ScanFeet now(scanner_, scan_);
-            if (!now.returns(ScanFeet::beam_of(feet.right)) || !now.returns(ScanFeet::beam_of(feet.left)))
+            if (!scan_.returns(Scan::beam_of(feet.right)) || !scan_.returns(Scan::beam_of(feet.left)))
                 return {};
             const Point across = feet.right - feet.left;
-            const double width = norm(across), off = now.smooth(ScanFeet::beam_of(feet.right)) -
-                                                     now.smooth(ScanFeet::beam_of(feet.left));
-            if (std::abs(off) <= 0.3 * now.tolerance(scan_.least) || width < 0.05) break;
+            const double width = norm(across), off = scan_.smooth(feet.right) - scan_.smooth(feet.left);
+            if (std::abs(off) <= 0.3 * scan_.tolerance(scan_.least) || width < 0.05) break;
             const double by = std::clamp(off / width, -stride * scan_.least, stride * scan_.least);
             if (!step(at_ + (by / width) * across, log)) break;
         }
         look();
         const double apart = reading(feet);
-        const ScanFeet now(scanner_, scan_);
-        return arc(now, feet.right, feet.left, apart + now.tolerance(apart));
+        return arc(feet.right, feet.left, apart + scan_.tolerance(apart));
     }
 
     // Where the wall under a foot is nearest after a move: the foot of a wall keeps its direction, that of a
     // corner its place.
     Point foot_near(Point towards, Point was_at, Point ahead, bool is_left) const {
-        constexpr int behind = Scanner::beams / 30, before = Scanner::beams / 14;
-        const ScanFeet feet(scanner_, scan_);
-        const int now = ScanFeet::beam_of(was_at - at_), old = ScanFeet::beam_of(towards);
+        constexpr int behind = Scan::beams / 30, before = Scan::beams / 14;
+        const int now = Scan::beam_of(was_at - at_), old = Scan::beam_of(towards);
         const auto signed_from = [](int a, int b) {
-            const int n = ScanFeet::ahead(a, b);
-            return n > Scanner::beams / 2 ? n - Scanner::beams : n;
+            const int n = Scan::ahead(a, b);
+            return n > Scan::beams / 2 ? n - Scan::beams : n;
         };
         const int turned = signed_from(old, now);
         int first = old + std::min(turned, 0) - (is_left ? before : behind);
         int last = old + std::max(turned, 0) + (is_left ? behind : before);
-        const int heading = old + signed_from(old, ScanFeet::beam_of(ahead));
+        const int heading = old + signed_from(old, Scan::beam_of(ahead));
         if (is_left)
             first = std::max(first, std::min(heading, last));
         else
             last = std::min(last, std::max(heading, first));
-        return scanner_.direction(feet.nearest(first, last));
+        return Scan::direction(scan_.nearest(first, last));
     }
 
     // The walls within a distance, counterclockwise from that under one direction to that under another.
-    std::vector<Near> arc(const ScanFeet& feet, Point right, Point left, double limit) const {
-        const std::vector<Near> all = feet.within(limit);
-        const int r = ScanFeet::beam_of(right), gap = ScanFeet::ahead(r, ScanFeet::beam_of(left));
+    std::vector<Near> arc(Point right, Point left, double limit) const {
+        const std::vector<Near> all = scan_.within(limit);
+        const int r = Scan::beam_of(right), gap = Scan::ahead(r, Scan::beam_of(left));
         const auto holds = [](const Near& run, int beam) {
-            return ScanFeet::ahead(ScanFeet::wrapped(run.first), beam) <= run.last - run.first;
+            return Scan::ahead(Scan::wrapped(run.first), beam) <= run.last - run.first;
         };
         std::vector<Near> ring;
         std::optional<Near> first, last;
@@ -376,7 +355,7 @@ class ScanRobot : public ContactRobot {
             const bool is_first = holds(run, r), is_last = holds(run, r + gap);
             if (is_first) first = run;
             if (is_last) last = run;
-            if (!is_first && !is_last && ScanFeet::ahead(r, ScanFeet::beam_of(run.towards)) < gap)
+            if (!is_first && !is_last && Scan::ahead(r, Scan::beam_of(run.towards)) < gap)
                 ring.push_back(run);
         }
         if (!first) first = Near{r, r, right};
@@ -392,8 +371,7 @@ class ScanRobot : public ContactRobot {
         const auto names = [&] { settled_ = feet_of(ring, 0); };
         names();
         for (int moves = 0; moves < 4; ++moves) {
-            const ScanFeet feet(scanner_, scan_);
-            const auto read = [&](const Near& n) { return feet.smooth(feet.nearest(n.first, n.last)); };
+            const auto read = [&](const Near& n) { return scan_.smooth(scan_.nearest(n.first, n.last)); };
             const Near &a = ring.front(), &c = ring.back();
             std::size_t middle = 1;
             double best = -1;
@@ -407,14 +385,12 @@ class ScanRobot : public ContactRobot {
             const double p = read(b) - read(a), q = read(c) - read(a), det = cross(u, v);
             if (std::abs(det) < 0.02) return;
             const Point by{(p * v.y - q * u.y) / det, (q * u.x - p * v.x) / det};
-            if (norm(by) <= 0.2 * feet.tolerance(apart)) return;
+            if (norm(by) <= 0.2 * scan_.tolerance(apart)) return;
             const Point to = at_ + std::min(1.0, 0.5 * stride * apart / norm(by)) * by;
             if (distance(to, before) > stride * apart || !step(to, log)) return;
             look();
-            const ScanFeet now(scanner_, scan_);
-            const double limit = std::max({now.smooth(ScanFeet::beam_of(a.towards)),
-                                           now.smooth(ScanFeet::beam_of(c.towards)), scan_.least});
-            const std::vector<Near> next = arc(now, a.towards, c.towards, limit + now.tolerance(limit));
+            const double limit = std::max({scan_.smooth(a.towards), scan_.smooth(c.towards), scan_.least});
+            const std::vector<Near> next = arc(a.towards, c.towards, limit + scan_.tolerance(limit));
             if (next.size() < 3) return;
             ring = next;
             names();

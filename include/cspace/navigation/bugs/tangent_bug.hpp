@@ -9,7 +9,6 @@
 
 #include <optional>
 
-#include "cspace/navigation/bugs/boundary_tour.hpp"
 #include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/bugs/walk_log.hpp"
 #include "cspace/tolerances.hpp"
@@ -43,9 +42,7 @@ class TangentBug {
             if (way == Stage::tired || (patient && !nearer)) return walker_.finish(Status::undetermined);
             patient = !nearer;
             before = to_goal(robot_.position());
-            walker_.begin_follow();
             const Stage end = follow(hand_ ? *hand_ : better_hand(), patient);
-            walker_.end_follow();
             if (end == Stage::arrived) return walker_.finish(Status::found);
             if (end == Stage::shut) return walker_.finish(Status::unreachable);
             if (seen_nearer_) go(*seen_nearer_);
@@ -124,31 +121,28 @@ class TangentBug {
         double nearest = to_goal(hit.at);
         seen_nearer_.reset();
         Round round(goal_, hit);
-        for (bool first = true;; first = false) {
-            const Wall piece = ahead(robot_.touch(), hand);
-            const Point from = robot_.position();
-            if (is_on(piece, goal_)) {
-                walker_.stop(hand, goal_);
-                return Stage::arrived;
-            }
-            const bool last = !first && !hit.is_corner() && piece.name == hit.in.name;
-            const Point end = last ? hit.at : far_end(piece, hand);
+        const auto leaves_piece = [&](const Wall& piece, Point from, Point end) -> std::optional<Point> {
             const Point foot = nearest_on(from, end, goal_);
-            if (!patient && leaves_from(piece, from, foot, nearest)) {
-                walker_.stop(hand, where_as_near(from, foot, nearest));
-                return Stage::left;
-            }
+            if (!patient && leaves_from(piece, from, foot, nearest))
+                return where_as_near(from, foot, nearest);
             nearest = std::min(nearest, to_goal(foot));
-            if (last)
-                walker_.stop(hand, hit.at);
-            else
-                walker_.walk(hand);
-            round.add(piece, from, robot_.position());
-            if (last) return all_around(round, hand);
-            round.add(robot_.touch());
-            if (robot_.touch().is_place_of(hit)) return all_around(round, hand);
-            if (!patient && leaves_corner(nearest)) return Stage::left;
+            return {};
+        };
+        const auto leaves = [&] { return !patient && leaves_corner(nearest); };
+        switch (walker_.follow(hand, goal_, &round, leaves_piece, leaves)) {
+            case FollowEnd::goal:
+                return Stage::arrived;
+            case FollowEnd::left:
+                return Stage::left;
+            case FollowEnd::whole:
+                break;
         }
+        if (round.shuts_off_goal()) {
+            walker_.trip.witness = round.blocked.touch;
+            return Stage::shut;
+        }
+        walker_.go_to(round.free.touch, 2 * round.free.along <= round.length() ? hand : other(hand));
+        return Stage::left;
     }
 
     // Whether the goal lies in front of the piece and the robot comes nearer to it there than before.
@@ -199,16 +193,6 @@ class TangentBug {
             if (distance(here, foot) <= robot_.range()) offer(foot);
         }
         return best;
-    }
-
-    Stage all_around(const Round& round, Hand hand) {
-        walker_.trip.follows.back().whole = true;
-        if (round.shuts_off_goal()) {
-            walker_.trip.witness = round.blocked.touch;
-            return Stage::shut;
-        }
-        walker_.go_to(round.free.touch, 2 * round.free.along <= round.length() ? hand : other(hand));
-        return Stage::left;
     }
 };
 

@@ -103,14 +103,15 @@ class VoronoiBug {
         const bool arrived =
             robot_.position() == goal_ || robot_.advance({robot_.position(), goal_}, trip_.route.path);
         note(robot_.position());
-        add_leg(Move::go, first, std::numeric_limits<double>::quiet_NaN());
+        add_leg(Move::go, first);
         return finish(arrived ? Status::found : Status::undetermined);
     }
-    void add_leg(Move move, std::size_t first, double clearance) {
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    void add_leg(Move move, std::size_t first, double clearance = unknown) {
         if (first + 1 < trip_.route.path.size())
             trip_.legs.push_back({move, first, trip_.route.path.size() - 1, clearance});
     }
-    void take(Move move, const std::vector<Point>& path, double clearance) {
+    void take(Move move, const std::vector<Point>& path, double clearance = unknown) {
         const std::size_t first = trip_.route.path.size() - 1;
         for (const Point p : path) note(p);
         add_leg(move, first, clearance);
@@ -120,7 +121,7 @@ class VoronoiBug {
         Log log;
         const Halt end = robot_.begin(log);
         for (const Touch& corner : log.corners) rings_.add(corner);
-        take(Move::away, log.path, std::numeric_limits<double>::quiet_NaN());
+        take(Move::away, log.path);
         return end;
     }
     Halt fly() {
@@ -166,7 +167,7 @@ class VoronoiBug {
         if (here == there) return;
         std::vector<Point> path;
         graph_.go_back(here, there, path);
-        take(Move::back, path, std::numeric_limits<double>::quiet_NaN());
+        take(Move::back, path);
         robot_.stand_at(graph_.meets[std::size_t(there)].at);
     }
 
@@ -199,7 +200,7 @@ class VoronoiBug {
         return end;
     }
     void come_back(const std::vector<Point>& path) {
-        take(Move::back, {path.rbegin(), path.rend()}, std::numeric_limits<double>::quiet_NaN());
+        take(Move::back, {path.rbegin(), path.rend()});
         robot_.stand_at(path.front());
     }
     bool is_at(const MeetPoint& meet, const std::vector<Point>& path) const {
@@ -268,10 +269,7 @@ class VoronoiBug {
             for (std::size_t i = 1; i < path.size(); ++i) {
                 const Point a = path[i - 1], b = path[i];
                 area += cross(a - goal_, b - goal_);
-                if ((a.y > goal_.y) == (b.y > goal_.y)) continue;
-                const int side = orientation(a, b, goal_);
-                if (b.y > goal_.y && side > 0) ++turns;
-                if (a.y > goal_.y && side < 0) --turns;
+                turns += turn_around(goal_, a, b);
             }
         }
         const bool is_thin = std::abs(area) <= voronoi_bug_limits::thin * robot_.keeps() * length;
@@ -280,7 +278,7 @@ class VoronoiBug {
     void leave(const MeetWay& way) {
         walk_back(here_, way.from);
         const std::vector<Point> path(way.path.begin(), way.path.begin() + std::ptrdiff_t(*way.low) + 1);
-        take(Move::back, path, std::numeric_limits<double>::quiet_NaN());
+        take(Move::back, path);
         robot_.stand_at(path.back());
     }
 };
@@ -292,11 +290,11 @@ Exploration voronoi_bug(Robot& robot, Point goal) {
 
 // In a polygon world. Where the robot loses its way by rounding, one that tells lengths apart otherwise
 // tries.
-inline Exploration voronoi_bug(const Walls& walls, const Surroundings& around, Point start, Point goal,
+inline Exploration voronoi_bug(const Walls& walls, const voronoi::Sites& sites, Point start, Point goal,
                                double range) {
     Exploration trip;
     for (const voronoi::Grain& grain : voronoi::grains) {
-        ClearanceRobot robot(walls, around, start, range, grain);
+        ClearanceRobot robot(walls, sites, start, range, grain);
         trip = voronoi_bug(robot, goal);
         if (trip.route.status != Status::undetermined) break;
     }

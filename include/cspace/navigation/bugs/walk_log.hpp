@@ -2,10 +2,12 @@
 // verdict.
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "cspace/math/interrupts.hpp"
+#include "cspace/navigation/bugs/boundary_tour.hpp"
 #include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/route.hpp"
 
@@ -13,11 +15,13 @@ namespace cspace::navigation {
 
 // One stretch along the boundary: path[first] is the hit point, path[last] the leave point.
 struct Follow {
-    Touch hit, leave;
-    double walked = 0;   // the length of the stretch [m]
-    bool whole = false;  // whether the hit point was met again
-    std::size_t first = 0, last = 0;
+    Touch hit;
+    double walked;  // the length of the stretch [m]
+    std::size_t first, last;
 };
+
+// How it ends: at the goal, where the robot leaves the wall, or where the hit point is met again.
+enum class FollowEnd { goal, left, whole };
 
 // The path of the route is what the robot walked, whether or not it found the goal. Of its price, nodes are
 // the pieces of wall that it followed and edges the lines.
@@ -48,14 +52,32 @@ class Walker {
         note();
         return arrived;
     }
-    void begin_follow() {
-        trip.follows.push_back({robot.touch(), {}, 0, false, trip.route.path.size() - 1, 0});
-    }
-    void walk(Hand hand) {
-        follow([&] { robot.walk(hand); });
-    }
-    void stop(Hand hand, Point at) {
-        follow([&] { robot.stop(hand, at); });
+    // Along the wall from a hit point, piece by piece. leaves_piece(piece, from, end) gives the point of a
+    // piece at which the robot leaves it, if it does; leaves_corner() says whether it leaves the corner where
+    // it stands. The boundary tour, if there is one, is told of all that is passed.
+    template <class LeavesPiece, class LeavesCorner>
+    FollowEnd follow(Hand hand, Point goal, Round* round, LeavesPiece leaves_piece,
+                     LeavesCorner leaves_corner) {
+        const Touch hit = robot.touch();
+        trip.follows.push_back({hit, 0, trip.route.path.size() - 1, 0});
+        for (bool first = true;; first = false) {
+            const Wall piece = ahead(robot.touch(), hand);
+            const Point from = robot.position();
+            if (is_on(piece, goal)) return stop(hand, goal), FollowEnd::goal;
+            const bool last = !first && !hit.is_corner() && piece.name == hit.in.name;
+            const std::optional<Point> leave =
+                leaves_piece(piece, from, last ? hit.at : far_end(piece, hand));
+            if (leave) return stop(hand, *leave), FollowEnd::left;
+            if (last)
+                stop(hand, hit.at);
+            else
+                walk(hand);
+            if (round) round->add(piece, from, robot.position());
+            if (last) return FollowEnd::whole;
+            if (round) round->add(robot.touch());
+            if (robot.touch().is_place_of(hit)) return FollowEnd::whole;
+            if (leaves_corner()) return FollowEnd::left;
+        }
     }
     // Along the wall to a place on its ring.
     void go_to(const Touch& target, Hand hand) {
@@ -64,10 +86,6 @@ class Walker {
                 return stop(hand, target.at);
             walk(hand);
         }
-    }
-    void end_follow() {
-        trip.follows.back().leave = robot.touch();
-        trip.follows.back().last = trip.route.path.size() - 1;
     }
     Trip finish(Status status) {
         trip.route.status = status;
@@ -78,13 +96,20 @@ class Walker {
   private:
     InterruptPoll poll_{64};
 
+    void walk(Hand hand) {
+        move([&] { robot.walk(hand); });
+    }
+    void stop(Hand hand, Point at) {
+        move([&] { robot.stop(hand, at); });
+    }
     template <class Move>
-    void follow(Move move) {
+    void move(Move along_wall) {
         const Point before = robot.position();
-        move();
+        along_wall();
         ++trip.route.stats.nodes;
-        trip.follows.back().walked += distance(before, robot.position());
         note();
+        trip.follows.back().walked += distance(before, robot.position());
+        trip.follows.back().last = trip.route.path.size() - 1;
     }
     void note() {
         poll_.step();

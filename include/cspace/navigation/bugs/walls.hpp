@@ -10,6 +10,7 @@
 
 #include "cspace/maps/boundary.hpp"
 #include "cspace/navigation/bugs/line.hpp"
+#include "cspace/search/adjacency.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::navigation {
@@ -63,7 +64,7 @@ class Walls {
     double largest_ = 0, extent_ = 0, size_ = 1, per_ = 1,
            margin_ = 0;  // a cell's side, its inverse, by how much cells overlap
     int cells_ = 1, columns_ = 1, rows_ = 1;
-    std::vector<std::int32_t> starts_, members_;
+    search::Adjacency<std::int32_t> in_cell_;  // the walls of each cell
 
     static constexpr int few = 24;  // walls that are looked through one by one
 
@@ -85,34 +86,22 @@ class Walls {
     }
 
     void fill_cells() {
-        starts_.assign(std::size_t(cells_) + 1, 0);
-        members_.resize(std::size_t(size()));
-        if (cells_ == 1) {
-            starts_[1] = size();
-            for (int e = 0; e < size(); ++e) members_[std::size_t(e)] = e;
-            return;
-        }
-        const auto each = [&](auto&& into) {
-            for (int e = 0; e < size(); ++e) {
-                const auto put = [&](int cell) { into(cell, e); };
-                const Point d = end(e) - begin(e);
-                if (std::abs(d.x) >= std::abs(d.y))
-                    cover<false>(begin(e), end(e), [](double) { return false; }, put);
-                else
-                    cover<true>(begin(e), end(e), [](double) { return false; }, put);
-            }
-        };
-        each([&](int cell, int) { ++starts_[std::size_t(cell) + 1]; });
-        for (std::size_t c = 0; c < std::size_t(cells_); ++c) starts_[c + 1] += starts_[c];
-        members_.resize(std::size_t(starts_.back()));
-        std::vector<std::int32_t> filled(starts_.begin(), starts_.end() - 1);
-        each([&](int cell, int e) { members_[std::size_t(filled[std::size_t(cell)]++)] = e; });
+        in_cell_ = {std::size_t(cells_), [&](const auto& add) {
+                        for (int e = 0; e < size(); ++e) {
+                            const auto put = [&](int cell) { add(std::size_t(cell), e); };
+                            const auto go_on = [](double) { return false; };
+                            const Point d = end(e) - begin(e);
+                            if (std::abs(d.x) >= std::abs(d.y))
+                                cover<false>(begin(e), end(e), go_on, put);
+                            else
+                                cover<true>(begin(e), end(e), go_on, put);
+                        }
+                    }};
     }
 
     template <class Visit>
     void visit_cell(int cell, Visit& visit) const {
-        for (int k = starts_[std::size_t(cell)]; k < starts_[std::size_t(cell) + 1]; ++k)
-            visit(int(members_[std::size_t(k)]));
+        for (const std::int32_t wall : in_cell_.of(std::size_t(cell))) visit(int(wall));
     }
 
     static int clamped(double cell, int count) {

@@ -191,17 +191,12 @@ class ApproximateCells {
     }
     Point middle_of(maps::Index c) const { return 0.5 * (tree().low(tree()[c]) + tree().high(tree()[c])); }
 
-    Space space(Point start, const Entry& goal) const {
-        Space made{*this, start, goal.at, trace_, search::Ways(doors().size() + 1), {}};
-        made.holds_goal.assign(tree().cells().size(), 0);
-        for (const maps::Index c : goal.leaves) made.holds_goal[std::size_t(c)] = 1;
-        return made;
-    }
-
     bool search(Point start, Point goal, Route& route) const {
         const Entry from = entry_of(start, at_start_), to = entry_of(goal, at_goal_);
         if (from.leaves.empty() || to.leaves.empty()) return false;
-        Space space = this->space(from.at, to);
+        Space space{*this, from.at, to.at, trace_, search::Ways(doors().size() + 1), {}};
+        space.holds_goal.assign(tree().cells().size(), 0);
+        for (const maps::Index c : to.leaves) space.holds_goal[std::size_t(c)] = 1;
         search::PriorityQueue queue;
         for (const maps::Index c : from.leaves) space.leave(c, from.at, 0, search::no_node, queue);
         search::Effort effort;

@@ -83,12 +83,6 @@ class Funnel {
     }
 };
 
-inline std::vector<Point> taut_string(Point start, Point goal, const std::vector<Gap>& gaps) {
-    Funnel funnel(start);
-    for (const Gap& gap : gaps) funnel.pass(gap);
-    return funnel.finish(goal);
-}
-
 class ExactCells {
   public:
     explicit ExactCells(const maps::PolygonWorld& world)
@@ -192,9 +186,10 @@ class ExactCells {
             gaps.push_back(gap(door, to_the_right));
             cell = std::uint32_t(to_the_right ? door.left : door.right);
         }
-        std::reverse(gaps.begin(), gaps.end());
+        Funnel funnel(start);
+        for (auto gap = gaps.rbegin(); gap != gaps.rend(); ++gap) funnel.pass(*gap);
         route.status = Status::found;
-        route.path = taut_string(start, goal, gaps);
+        route.path = funnel.finish(goal);
         route.length = length_of(route.path);
         return route;
     }

@@ -47,11 +47,10 @@ class Quadtree {
             std::max({std::abs(low_.x), std::abs(low_.y), std::abs(high_.x), std::abs(high_.y)});
         while (deepest_ > 0 && std::ldexp(side_, -deepest_) < far * std::ldexp(1.0, -44)) --deepest_;
         QuadCell root;
-        const Point corner[2] = {low(root), high(root)};
         bool entered = false;
         for (maps::Index e = 0; e < maps::Index(world.walls.size()); ++e) {
             touching_.push_back(e);
-            entered = entered || meets(world.walls.begin(e), world.walls.end(e), corner) > 1;
+            entered = entered || part_met(e, root) == BoxPart::inside;
         }
         root.count = maps::Index(touching_.size());
         classify(root, entered);
@@ -82,12 +81,11 @@ class Quadtree {
             child.kind = parent.kind;
             child.first = maps::Index(touching_.size());
             bool entered = false;
-            const Point corner[2] = {low(child), high(child)};
             for (maps::Index w = parent.first; w < parent.first + parent.count; ++w) {
                 const maps::Index wall = touching_[std::size_t(w)];
-                const int how = meets(world_.walls.begin(wall), world_.walls.end(wall), corner);
-                if (how > 0) touching_.push_back(wall);
-                entered = entered || how > 1;
+                const BoxPart part = part_met(wall, child);
+                if (part != BoxPart::none) touching_.push_back(wall);
+                entered = entered || part == BoxPart::inside;
             }
             child.count = maps::Index(touching_.size()) - child.first;
             if (parent.kind == QuadCell::mixed) classify(child, entered);
@@ -145,6 +143,10 @@ class Quadtree {
         return std::abs(at - high) <= std::ldexp(std::abs(low) + std::abs(high), -50) ? high : at;
     }
 
+    BoxPart part_met(maps::Index wall, const QuadCell& cell) const {
+        return meets(world_.walls.begin(wall), world_.walls.end(wall), {low(cell), high(cell)});
+    }
+
     void classify(QuadCell& cell, bool is_entered) {
         const Point a = low(cell), b = high(cell), middle = 0.5 * (a + b);
         if (is_entered) {
@@ -156,22 +158,6 @@ class Quadtree {
             world_.space.triangles_at(middle, world_.locator.near(middle), triangles);
         cell.kind = triangles.empty() ? QuadCell::full : QuadCell::free;
         if (trace_ && cell.kind == QuadCell::free) trace_->push_back({free_cell, a, b, double(cell.level)});
-    }
-
-    // How a segment meets a square: not (0), its border alone (1), its inside (2).
-    static int meets(Point a, Point b, const Point* corner) {
-        const Point low = corner[0], high = corner[1];
-        const auto [left, right] = std::minmax(a.x, b.x);
-        const auto [lower, upper] = std::minmax(a.y, b.y);
-        if (right < low.x || left > high.x || upper < low.y || lower > high.y) return 0;
-        int least = 1, most = -1;
-        for (const Point c : {low, Point{high.x, low.y}, high, Point{low.x, high.y}}) {
-            const int turn = orientation(a, b, c);
-            least = std::min(least, turn), most = std::max(most, turn);
-        }
-        if (least > 0 || most < 0) return 0;
-        const bool beside = right <= low.x || left >= high.x || upper <= low.y || lower >= high.y;
-        return beside || least == 0 || most == 0 ? 1 : 2;
     }
 
     // The node of the same size, or the larger leaf, beyond a side: right, above, left, below.

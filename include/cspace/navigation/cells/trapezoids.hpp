@@ -142,42 +142,40 @@ class Trapezoids {
         for (const Index w : ending) crossed.erase(w);
         const Index below = next == crossed.begin() ? -1 : *std::prev(next);
 
-        Index old_low = -1, old_high = -1;  // the cells that end below and above the corner
-        close(at, below, ending, above, old_low, old_high);
-        for (const Index w : starting) crossed.insert(next, w);
-        Index new_low = -1, new_high = -1;  // those that begin
-        open(at, below, starting, above, new_low, new_high);
-        if (old_low >= 0 && new_low >= 0) doors.push_back({old_low, new_low, at, false});
-        if (old_high >= 0 && new_high >= 0) doors.push_back({old_high, new_high, at, true});
-    }
-
-    void close(Point at, Index below, const std::vector<Index>& ending, Index above, Index& low,
-               Index& high) {
-        Index under = below;
-        for (std::size_t i = 0; i <= ending.size(); ++i) {
-            const Index over = i < ending.size() ? ending[i] : above;
+        const Spaces old = visit_spaces(below, ending, above, [&](Index under, Index over) {
             const Index cell = under >= 0 && over >= 0 ? above_[std::size_t(under)] : -1;
             if (cell >= 0) cells[std::size_t(cell)].right = at;
-            if (i == 0) low = cell;
-            if (i == ending.size()) high = cell;
-            under = over;
-        }
-    }
-    void open(Point at, Index below, const std::vector<Index>& starting, Index above, Index& low,
-              Index& high) {
-        Index under = below;
-        for (std::size_t i = 0; i <= starting.size(); ++i) {
-            const Index over = i < starting.size() ? starting[i] : above;
-            Index cell = -1;
-            if (under >= 0 && over >= 0 && wall(under).free_above) {
-                cell = Index(cells.size());
-                cells.push_back({under, over, at, at});
-            }
+            return cell;
+        });
+        for (const Index w : starting) crossed.insert(next, w);
+        const Spaces made = visit_spaces(below, starting, above, [&](Index under, Index over) {
+            const bool is_cell = under >= 0 && over >= 0 && wall(under).free_above;
+            const Index cell = is_cell ? Index(cells.size()) : -1;
+            if (is_cell) cells.push_back({under, over, at, at});
             if (under >= 0) above_[std::size_t(under)] = cell;
-            if (i == 0) low = cell;
-            if (i == starting.size()) high = cell;
+            return cell;
+        });
+        if (old.low >= 0 && made.low >= 0) doors.push_back({old.low, made.low, at, false});
+        if (old.high >= 0 && made.high >= 0) doors.push_back({old.high, made.high, at, true});
+    }
+
+    // The cells on one side of a corner, next to it: below and above.
+    struct Spaces {
+        Index low, high;
+    };
+    // Visits the spaces between a wall below a corner, those that meet in it, and one above: visit(under,
+    // over) returns the cell there, or −1.
+    template <class Visit>
+    static Spaces visit_spaces(Index below, const std::vector<Index>& meeting, Index above, Visit visit) {
+        Spaces found{-1, -1};
+        Index under = below;
+        for (std::size_t i = 0; i <= meeting.size(); ++i) {
+            const Index over = i < meeting.size() ? meeting[i] : above;
+            found.high = visit(under, over);
+            if (i == 0) found.low = found.high;
             under = over;
         }
+        return found;
     }
 };
 

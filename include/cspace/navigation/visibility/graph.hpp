@@ -16,7 +16,7 @@ namespace cspace::navigation {
 using maps::FreeSpace;
 using maps::Index;
 using maps::none;
-using maps::Sectors;
+using maps::Sector;
 
 // The line from one point to another; what lies beyond the second is seen along it.
 struct Ray {
@@ -87,14 +87,15 @@ class VisibilityGraph {
         double length;
     };
 
-    explicit VisibilityGraph(const FreeSpace& space) : space_(space), sectors_(maps::find_sectors(space)) {
-        node_of_.assign(sectors_.size(), none);
-        for (Index s = 0; s < Index(sectors_.size()); ++s)
-            if (sectors_.turns[std::size_t(s)]) {
-                node_of_[std::size_t(s)] = size();
-                sector_.push_back(s);
-            }
-        seen_by_.assign(sector_.size(), none);
+    explicit VisibilityGraph(const FreeSpace& space) : space_(space) {
+        const maps::Sectors sectors = maps::find_sectors(space);
+        std::vector<Index> node_of;
+        for (const Sector& s : sectors.all) {
+            node_of.push_back(s.turns ? size() : none);
+            if (s.turns) nodes_.push_back(s);
+        }
+        for (const Index s : sectors.of) node_at_.push_back(s == none ? none : node_of[std::size_t(s)]);
+        seen_by_.assign(nodes_.size(), none);
         first_.push_back(0);
         View view(space_);
         for (Index n = 0; n < size(); ++n) {
@@ -104,9 +105,9 @@ class VisibilityGraph {
         }
     }
 
-    Index size() const { return Index(sector_.size()); }
+    Index size() const { return Index(nodes_.size()); }
     std::size_t edges() const { return edges_.size(); }
-    Point point(Index n) const { return sectors_.points[std::size_t(sector_[std::size_t(n)])]; }
+    Point point(Index n) const { return nodes_[std::size_t(n)].at; }
     std::span<const Edge> edges_of(Index n) const {
         return {edges_.data() + first_[std::size_t(n)], edges_.data() + first_[std::size_t(n) + 1]};
     }
@@ -117,7 +118,7 @@ class VisibilityGraph {
     void see_from(View& view, Point p, const std::vector<Index>& triangles, std::vector<Edge>& out,
                   Enter enter) const {
         const auto note = [&](Index corner) {
-            const Index n = node_of_[std::size_t(sectors_.of[std::size_t(corner)])];
+            const Index n = node_at_[std::size_t(corner)];
             if (n == none || point(n) == p || !is_tangent(p, n)) return;
             for (const Edge& known : out)
                 if (known.to == n) return;
@@ -135,29 +136,28 @@ class VisibilityGraph {
 
   private:
     const FreeSpace& space_;
-    Sectors sectors_;
-    std::vector<Index> node_of_, sector_;  // of each sector its node, and back
+    std::vector<Sector> nodes_;
+    std::vector<Index> node_at_;  // at corner i of triangle t, as 3t + i; or none
     std::vector<Index> first_;
     std::vector<Edge> edges_;
     std::vector<Index> seen_by_;
 
     // Whether the walls that meet at a node lie on one side of the line to it.
     bool is_tangent(Point from, Index n) const {
-        const std::size_t s = std::size_t(sector_[std::size_t(n)]);
-        const Point w = sectors_.points[s];
-        return orientation(from, w, sectors_.begin[s]) * orientation(from, w, sectors_.end[s]) >= 0;
+        const Sector& s = nodes_[std::size_t(n)];
+        return orientation(from, s.at, s.begin) * orientation(from, s.at, s.end) >= 0;
     }
 
     // The edges of a node. Seen from it, a taut string comes in or leaves along its walls' sides alone:
     // counterclockwise from its first wall to the line of the last, or from the line of the first to the
     // last.
     void connect(View& view, Index n) {
-        const std::size_t s = std::size_t(sector_[std::size_t(n)]);
+        const Sector& s = nodes_[std::size_t(n)];
+        const Point v = s.at;
         const maps::Triangulation& mesh = space_.mesh;
-        const Point v = sectors_.points[s];
-        const Ray past_last{sectors_.end[s], v}, past_first{sectors_.begin[s], v};
+        const Ray past_last{s.end, v}, past_first{s.begin, v};
         const auto note = [&](Index corner) {
-            const Index m = node_of_[std::size_t(sectors_.of[std::size_t(corner)])];
+            const Index m = node_at_[std::size_t(corner)];
             if (m == none || m == n || seen_by_[std::size_t(m)] == n) return;
             const Point w = point(m);
             if ((past_last.side(w) > 0 && past_first.side(w) < 0) || !is_tangent(v, m)) return;
@@ -165,17 +165,17 @@ class VisibilityGraph {
             edges_.push_back({m, distance(v, w)});
         };
         const auto enter = [](Index, const Cone&) {};
-        const bool is_tip = sectors_.begin[s] == sectors_.end[s];  // of a wall without thickness
-        Index t = sectors_.first[s] / 3;
-        for (int i = int(sectors_.first[s] % 3);;) {
+        const bool is_tip = s.begin == s.end;  // of a wall without thickness
+        Index t = s.first / 3;
+        for (int i = int(s.first % 3);;) {
             const maps::Triangle& tri = mesh[t];
             const Point a = mesh.point(tri.begin(i)), b = mesh.point(tri.end(i));
             note(3 * t + maps::after(i));
             note(3 * t + maps::before(i));
             const Ray right{v, a}, left{v, b};
-            if (past_last.side(a) < 0 || (is_tip && a == sectors_.end[s]))
+            if (past_last.side(a) < 0 || (is_tip && a == s.end))
                 view.look(v, t, i, {right, past_last.side(b) <= 0 ? left : past_last}, enter, note);
-            if (past_first.side(b) > 0 || (is_tip && b == sectors_.begin[s]))
+            if (past_first.side(b) > 0 || (is_tip && b == s.begin))
                 view.look(v, t, i, {past_first.side(a) >= 0 ? right : past_first, left}, enter, note);
             if (space_.is_wall(t, maps::after(i))) return;
             const Index u = tri.across[std::size_t(maps::after(i))];

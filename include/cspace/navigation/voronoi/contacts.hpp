@@ -18,46 +18,38 @@ inline double turn_from(Point a, Point b) { return wrap_above(std::atan2(cross(a
 
 class Contacts {
   public:
-    Contacts(const Sites& sites, const EdgeTree& tree, Grain grain) : s_(sites), tree_(tree), grain_(grain) {}
+    Contacts(const Sites& sites, Grain grain) : s_(sites), grain_(grain) {}
 
     // The sites that the disc touches that has come along the arc of a and b to p, counterclockwise from a to
     // b; c is one between them. Between b and a there is only what the disc has left behind.
     std::vector<Contact> around(Point& p, Index a, Index b, Index c) const {
         polish(p, a, b, c);
-        std::vector<Contact> all{contact(a, p), contact(b, p), contact(c, p)};
-        add_within(p, turn_from(all[0].towards, all[1].towards), all);
-        sort(all, b);
-        std::vector<Contact> kept = without_twins(all, s_.distance_to(a, p));
+        const Contact right = contact(a, p), left = contact(b, p);
+        const double sector = turn_from(right.towards, left.towards);
+        const std::vector<Contact> kept = gather(p, {right, left, contact(c, p)}, sector, b);
         if (kept.size() > 3) polish_by_spread(p, kept);
         return kept;
     }
     // The same for a disc that has rolled along a alone, its foot moving forward, until it touched c in
     // front.
     std::vector<Contact> ahead(Point p, Index a, Index c) const {
-        std::vector<Contact> all{contact(a, p), contact(c, p)};
-        add_within(p, std::numbers::pi, all);
-        sort(all, none);
-        return without_twins(all, s_.distance_to(a, p));
+        return gather(p, {contact(a, p), contact(c, p)}, std::numbers::pi, none);
     }
     // All that a disc touches which touches a and b.
     std::vector<Contact> everywhere(Point p, Index a, Index b) const {
-        std::vector<Contact> all{contact(a, p), contact(b, p)};
-        add_within(p, 2 * std::numbers::pi, all);
-        sort(all, none);
-        const double radius = s_.distance_to(a, p);
-        std::vector<Contact> kept = without_twins(all, radius);
-        if (kept.size() > 2 && is_same(kept.back(), kept.front(), radius)) kept.pop_back();
+        std::vector<Contact> kept = gather(p, {contact(a, p), contact(b, p)}, 2 * std::numbers::pi, none);
+        if (kept.size() > 2 && is_same(kept.back(), kept.front(), s_.distance_to(a, p))) kept.pop_back();
         return kept;
     }
     Contact contact(Index site, Point p) const { return {site, s_.towards(site, p)}; }
 
   private:
     const Sites& s_;
-    const EdgeTree& tree_;
     Grain grain_;
 
-    // Adds what the disc touches in the sector of an angle from the first contact on.
-    void add_within(Point p, double sector, std::vector<Contact>& all) const {
+    // The given contacts and what else the disc touches in the sector of an angle from the first of them on,
+    // counterclockwise from there; the site that is last, if one is, goes to the end.
+    std::vector<Contact> gather(Point p, std::vector<Contact> all, double sector, Index last) const {
         const double radius = s_.distance_to(all[0].site, p), slack = grain_.at(radius);
         const Point start = all[0].towards;
         const std::size_t given = all.size();
@@ -67,25 +59,19 @@ class Contacts {
             const Contact touch = contact(site, p);
             if (turn_from(start, touch.towards) < sector) all.push_back(touch);
         };
-        tree_.visit_disc(p, radius + slack, EitherSide{}, [&](Index e) {
-            const double s = s_.advance(e, p), h = s_.height(e, p);
-            if (h > 0.5 * radius && h <= radius + slack && s >= 0 && s <= s_.length[std::size_t(e)]) add(e);
+        s_.tree.visit_disc(p, radius + slack, EitherSide{}, [&](Index e) {
+            const double h = s_.height(e, p);
+            if (h > 0.5 * radius && h <= radius + slack && s_.is_beside(e, p, 0)) add(e);
             if (s_.turn_at(e) == Turn::around && distance(p, s_.begin(e)) <= radius + slack &&
                 s_.is_in_cone(e, p, slack))
                 add(s_.size() + e);
             return true;
         });
-    }
-    // Counterclockwise from the first; the site that is last, if one is, goes to the end.
-    static void sort(std::vector<Contact>& all, Index last) {
-        const Point start = all[0].towards;
         std::sort(all.begin() + 1, all.end(), [&](const Contact& x, const Contact& y) {
             if (x.site == last || y.site == last) return y.site == last && x.site != last;
             return turn_from(start, x.towards) < turn_from(start, y.towards);
         });
-    }
-    std::vector<Contact> without_twins(const std::vector<Contact>& all, double radius) const {
-        std::vector<Contact> kept{all.front()};
+        std::vector<Contact> kept{all.front()};  // each once
         for (std::size_t i = 1; i + 1 < all.size(); ++i)
             if (!is_same(kept.back(), all[i], radius)) kept.push_back(all[i]);
         while (kept.size() > 1 && is_same(kept.back(), all.back(), radius)) kept.pop_back();

@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "cspace/navigation/voronoi/edge_tree.hpp"
 #include "cspace/navigation/voronoi/sites.hpp"
 
 namespace cspace::navigation::voronoi {
@@ -111,11 +110,11 @@ inline Bisector bisector_of(const Sites& sites, Index a, Index b, Point through)
     return curve;
 }
 
+// The end of one arc at a corner of free space, of two where an arc changes its kind, else of three or more.
 struct Vertex {
     Point at;
-    double radius;     // its distance from the walls [m]
-    Index component;   // of free space
-    Index degree = 0;  // one at a corner of free space, two where an arc changes its kind, else three or more
+    double radius;    // its distance from the walls [m]
+    Index component;  // of free space
 };
 
 struct Arc {
@@ -123,13 +122,10 @@ struct Arc {
     Index a, b;      // the sites that it is as far from, a to the right
     Bisector curve;
     double begin, end;  // parameters
-    double least;       // its smallest distance from the walls [m]
-    double length;      // [m]
 };
 
 struct Diagram {
     Sites sites;
-    EdgeTree tree;
     std::vector<Vertex> vertices;
     std::vector<Arc> arcs;
     std::vector<std::uint8_t> is_whole;  // of each component: false where rounding has lost arcs
@@ -144,15 +140,15 @@ struct Nearest {
     Point foot;
 };
 
-inline Nearest nearest_site(const Sites& sites, const EdgeTree& tree, Point p) {
+inline Nearest nearest_site(const Sites& sites, Point p) {
     Nearest best;
     best.distance = 4 * sites.extent;
     const double slack = sites.rounding();
-    tree.visit_shrinking(
+    sites.tree.visit_shrinking(
         p, EitherSide{}, [&] { return std::pair{p, best.distance + slack}; },
         [&](Index e) {
-            const double s = sites.advance(e, p), h = sites.height(e, p);
-            if (s >= -slack && s <= sites.length[std::size_t(e)] + slack && h >= -slack && h < best.distance)
+            const double h = sites.height(e, p);
+            if (h >= -slack && h < best.distance && sites.is_beside(e, p, slack))
                 best = {e, std::max(h, 0.0), p - h * sites.normal(e)};
             if (sites.turn_at(e) != Turn::around || !sites.is_in_cone(e, p, slack)) return;
             const double d = distance(p, sites.begin(e));
@@ -169,32 +165,23 @@ struct Retraction {
 };
 
 // The same on a ray from the foot of a site, from a distance on.
-inline Retraction retract_along(const Sites& sites, const EdgeTree& tree, Index site, Point foot, Point away,
-                                double least) {
+inline Retraction retract_along(const Sites& sites, Index site, Point foot, Point away, double least) {
     Retraction up;
     up.a = site;
     up.foot = foot;
     const double slack = sites.rounding();
     double radius = 4 * sites.extent;
     const auto at = [&] { return up.foot + radius * away; };
-    const Index own = sites.edge_of(site), own_before = sites.previous(own), own_after = sites.after(own);
-    const bool is_edge = sites.is_edge(site);
-    const auto is_own = [&](Index e) {
-        if (e == own) return true;
-        if (e == own_before) return !is_edge || sites.turn_at(own) != Turn::corner;
-        return is_edge && e == own_after && sites.turn_at(own_after) != Turn::corner;
-    };
     const auto consider = [&](double t, Index other) {
         if (t >= least && t < radius) radius = t, up.b = other;
     };
-    tree.visit_shrinking(
+    sites.tree.visit_shrinking(
         foot + least * away, EitherSide{}, [&] { return std::pair{at(), radius}; },
         [&](Index e) {
             const Point q = sites.begin(e);
-            if (!is_own(e) && q != up.foot && sites.end(e) != up.foot) {
+            if (!sites.belongs(e, site) && q != up.foot && sites.end(e) != up.foot) {
                 const double t = sites.height(e, up.foot) / (1 - dot(sites.normal(e), away));
-                const double s = sites.advance(e, up.foot + t * away);
-                if (s >= -slack && s <= sites.length[std::size_t(e)] + slack) consider(t, e);
+                if (sites.is_beside(e, up.foot + t * away, slack)) consider(t, e);
             }
             const Point to = q - up.foot;
             const double ahead = dot(to, away);
@@ -206,13 +193,12 @@ inline Retraction retract_along(const Sites& sites, const EdgeTree& tree, Index 
     return up;
 }
 
-inline Retraction retract(const Sites& sites, const EdgeTree& tree, Point p) {
-    const Nearest near = nearest_site(sites, tree, p);
+inline Retraction retract(const Sites& sites, Point p) {
+    const Nearest near = nearest_site(sites, p);
     if (near.site == none) return {};
     constexpr double finest = 1e-13;  // of the extent: the rounding of a single coordinate
     const double least = near.distance * (1 - tolerance::widening) - finest * sites.extent;
-    Retraction up =
-        retract_along(sites, tree, near.site, near.foot, -1.0 * sites.towards(near.site, p), least);
+    Retraction up = retract_along(sites, near.site, near.foot, -1.0 * sites.towards(near.site, p), least);
     up.clearance = near.distance;
     return up;
 }

@@ -65,8 +65,7 @@ struct ArcPiece {
 // The arc of a, whose foot moves forward, and b, whose foot moves backward, from a point on. bound(piece)
 // gives the parameter up to which it is asked for.
 template <class Bound>
-ArcPiece next_piece(const Sites& s, const EdgeTree& tree, Grain grain, Index a, Index b, Point from,
-                    const Bound& bound) {
+ArcPiece next_piece(const Sites& s, Grain grain, Index a, Index b, Point from, const Bound& bound) {
     ArcPiece arc;
     arc.curve = bisector_of(s, a, b, from);
     arc.begin = arc.end = arc.curve.parameter(from);
@@ -74,7 +73,7 @@ ArcPiece next_piece(const Sites& s, const EdgeTree& tree, Grain grain, Index a, 
     const double end_a = leaves(arc.curve, arc.begin, forward_gate(s, a), grain),
                  end_b = leaves(arc.curve, arc.begin, backward_gate(s, b), grain);
     const double own = std::min({end_a, end_b, arc.begin + 4 * s.extent}), end = std::min(own, bound(arc));
-    FirstTouch touch(s, tree, grain, arc.curve, a, b, arc.begin, end);
+    FirstTouch touch(s, grain, arc.curve, a, b, arc.begin, end);
     touch.find();
     arc.end = touch.at();
     arc.third = touch.site();

@@ -17,9 +17,9 @@ inline constexpr Grain grains[] = {{1e-13, 1e-9}, {1e-15, 1e-12}, {1e-11, 1e-7}}
 
 class FirstTouch {
   public:
-    FirstTouch(const Sites& sites, const EdgeTree& tree, Grain grain, const Bisector& curve, Index a, Index b,
-               double begin, double end)
-        : sites_(sites), tree_(tree), grain_(grain), curve_(curve), a_(a), b_(b), begin_(begin), end_(end) {
+    FirstTouch(const Sites& sites, Grain grain, const Bisector& curve, Index a, Index b, double begin,
+               double end)
+        : sites_(sites), grain_(grain), curve_(curve), a_(a), b_(b), begin_(begin), end_(end) {
         slack_ = grain.at(curve.radius(begin)) / norm(curve.velocity(begin));
         into_corner_ = sites.is_edge(a) && sites.is_edge(b) && sites.after(a) == b;
     }
@@ -43,7 +43,6 @@ class FirstTouch {
 
   private:
     const Sites& sites_;
-    const EdgeTree& tree_;
     Grain grain_;
     const Bisector& curve_;
     Index a_, b_;
@@ -58,7 +57,7 @@ class FirstTouch {
             double radius = curve_.radius(end_) * (1 - tolerance::widening);
             Index nearest = none;
             const EitherSide ahead{gained(begin_, end_), gained(begin_, end_)};
-            tree_.visit_shrinking(
+            sites_.tree.visit_shrinking(
                 p, ahead, [&] { return std::pair{p, radius}; },
                 [&](Index e) {
                     if (sites_.belongs(e, a_) || sites_.belongs(e, b_)) return;
@@ -104,7 +103,7 @@ class FirstTouch {
         const EitherSide ahead = gained_between(t0, t1);
         Index found[24];
         int count = 0;
-        const bool all = tree_.visit_disc(center, reach, ahead, [&](Index e) {
+        const bool all = sites_.tree.visit_disc(center, reach, ahead, [&](Index e) {
             if (count == 24) return false;
             found[count++] = e;
             return true;
@@ -114,7 +113,7 @@ class FirstTouch {
             return true;
         }
         if (may_refuse && half > 0.25 * largest) return false;
-        tree_.visit_disc(center, reach, ahead, [&](Index e) { return consider(e), true; });
+        sites_.tree.visit_disc(center, reach, ahead, [&](Index e) { return consider(e), true; });
         return true;
     }
 
@@ -125,9 +124,7 @@ class FirstTouch {
             for (const double t : curve_.against_line(sites_.normal(e), q).zeros()) {
                 if (!is_ahead(t)) continue;
                 const double margin = 1e3 * grain_.at(curve_.radius(t));
-                const double s = sites_.advance(e, curve_.at(t));
-                if (sites_.height(e, curve_.at(t)) >= 0 && s >= -margin &&
-                    s <= sites_.length[std::size_t(e)] + margin)
+                if (sites_.height(e, curve_.at(t)) >= 0 && sites_.is_beside(e, curve_.at(t), margin))
                     touch(t, e);
             }
         if (sites_.turn_at(e) != Turn::around || sites_.ends(q, a_) || sites_.ends(q, b_)) return;

@@ -121,13 +121,13 @@ class Roadmap {
         Landing landing;
         Point p = end.at - diagram_.sites.origin;
         landing.lead = {p};
-        Retraction up = retract(diagram_.sites, diagram_.tree, p);
+        Retraction up = retract(diagram_.sites, p);
         const double on_wall = tolerance::widening * diagram_.sites.extent;
         landing.clearance = up.clearance;
         for (const double share : {1.0 / 64, 1.0 / 4, 1.0}) {
             if (up.clearance > on_wall && up.b != none) break;
             p = landing.lead[0] + share * (middle_of(end, component) - landing.lead[0]);
-            up = retract(diagram_.sites, diagram_.tree, p);
+            up = retract(diagram_.sites, p);
         }
         if (p != landing.lead[0]) landing.lead.push_back(p), landing.clearance = 0;
         if (up.b == none) return landing;
@@ -138,12 +138,8 @@ class Roadmap {
     // The middle of the triangle of the component in whose closure a point lies.
     Point middle_of(const maps::Settled& end, Index component) const {
         for (const Index t : end.triangles)
-            if (world_.space.component[std::size_t(t)] == component) {
-                const auto& mesh = world_.space.mesh;
-                const auto& c = mesh[t].corner;
-                const Point a = mesh.point(c[0]), b = mesh.point(c[1]) - a, d = mesh.point(c[2]) - a;
-                return a + (1.0 / 3) * (b + d) - diagram_.sites.origin;
-            }
+            if (world_.space.component[std::size_t(t)] == component)
+                return world_.space.mesh.middle_of(t) - diagram_.sites.origin;
         return end.at - diagram_.sites.origin;
     }
 
@@ -213,14 +209,6 @@ struct Roadmap::Search {
     search::Ways ways;          // to each vertex: the length, or minus the least width
     std::vector<Stretch> came;  // by which stretch
 
-    Search(const Roadmap& roadmap, const Landing& goal, Wish wanted, Stats& cost, Trace* record)
-        : map(roadmap),
-          to(goal),
-          wish(wanted),
-          stats(cost),
-          trace(record),
-          ways(map.diagram_.vertices.size() + 1),
-          came(map.diagram_.vertices.size() + 1) {}
     std::uint32_t goal() const { return std::uint32_t(came.size()) - 1; }
     Point at(std::uint32_t node) const { return node == goal() ? to.lead.back() : map.vertex(Index(node)); }
 
@@ -270,7 +258,8 @@ struct Roadmap::Search {
 // The value of the goal as a width; the stretches of the way to it.
 inline double Roadmap::search(const Landing& from, const Landing& to, Wish wish,
                               std::vector<Stretch>* stretches, DiagramRoute& way, Trace* trace) const {
-    Search space(*this, to, wish, way.route.stats, trace);
+    const std::size_t nodes = diagram_.vertices.size() + 1;
+    Search space{*this, to, wish, way.route.stats, trace, search::Ways(nodes), std::vector<Stretch>(nodes)};
     search::PriorityQueue queue;
     search::Effort effort;
     space.leave(search::no_node, wish.widest ? -std::numeric_limits<double>::infinity() : 0, from.arc, from.t,

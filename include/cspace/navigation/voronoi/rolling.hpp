@@ -61,8 +61,8 @@ struct FirstMeeting {
 
 // along: the site that the disc rolls along, or none.
 template <class Way>
-FirstMeeting first_meeting(const Sites& sites, const EdgeTree& tree, Grain grain, const Way& way,
-                           double radius, Index along, double end) {
+FirstMeeting first_meeting(const Sites& sites, Grain grain, const Way& way, double radius, Index along,
+                           double end) {
     FirstMeeting first{end};
     const double slack = grain.at(radius) / std::max(way.length(1), tolerance::nonzero),
                  margin = 1e3 * grain.at(radius);
@@ -74,10 +74,8 @@ FirstMeeting first_meeting(const Sites& sites, const EdgeTree& tree, Grain grain
         const Point q = sites.begin(e);
         if (along == none || !sites.belongs(e, along)) {
             const double t = way.meets_line(radius, sites.normal(e), q);
-            if (std::isfinite(t) && sites.height(e, way.at(t)) > 0) {
-                const double s = sites.advance(e, way.at(t));
-                if (s >= -margin && s <= sites.length[std::size_t(e)] + margin) offer(t, e);
-            }
+            if (std::isfinite(t) && sites.height(e, way.at(t)) > 0 && sites.is_beside(e, way.at(t), margin))
+                offer(t, e);
         }
         if (sites.turn_at(e) != Turn::around || (along != none && sites.ends(q, along))) return;
         const double t = way.meets_point(radius, q);
@@ -85,7 +83,7 @@ FirstMeeting first_meeting(const Sites& sites, const EdgeTree& tree, Grain grain
     };
     const Point center = way.at(0.5 * end);
     const double reach = (radius + 0.5 * way.length(end)) * (1 + tolerance::widening) + margin;
-    tree.visit_disc(center, reach, EitherSide{}, [&](Index e) { return consider(e), true; });
+    sites.tree.visit_disc(center, reach, EitherSide{}, [&](Index e) { return consider(e), true; });
     return first;
 }
 

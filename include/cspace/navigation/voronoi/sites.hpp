@@ -9,14 +9,20 @@
 
 #include "cspace/maps/boundary.hpp"
 #include "cspace/math/predicates.hpp"
+#include "cspace/navigation/voronoi/edge_tree.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::navigation::voronoi {
 
-using Index = std::int32_t;
-inline constexpr Index none = -1;
-
 enum class Turn : std::int8_t { corner, straight, around };
+
+// Turns of less than this (sine) count as straight: what they do to the diagram is below rounding.
+inline constexpr double straight_turn = 1e-8;
+
+inline Turn turn_between(Point a, Point b, Point c, Point in, Point out) {
+    if (std::abs(cross(in, out)) < straight_turn && dot(in, out) > 0) return Turn::straight;
+    return orientation(a, b, c) > 0 ? Turn::corner : Turn::around;
+}
 
 struct Sites {
     Point origin;               // what has been taken from all coordinates, so that they are small
@@ -27,6 +33,32 @@ struct Sites {
     std::vector<Index> next, before;
     std::vector<Turn> turn;  // at the point where it begins
     std::vector<Index> component;
+    EdgeTree tree;
+
+    Sites() = default;
+    Sites(const maps::Boundary& walls, Point from) : origin(from), next(walls.next), before(walls.size()) {
+        const Index n = Index(walls.size());
+        std::vector<Box> boxes;
+        for (Index i = 0; i < n; ++i) {
+            const Point p = walls.begin(i) - origin;
+            points.push_back(p);
+            before[std::size_t(after(i))] = i;
+            component.push_back(walls.component[std::size_t(walls.ring[std::size_t(i)])]);
+            extent = std::max({extent, std::abs(p.x), std::abs(p.y)});
+        }
+        for (Index i = 0; i < n; ++i) {
+            const Point way = end(i) - begin(i);
+            length.push_back(norm(way));
+            along.push_back((1 / norm(way)) * way);
+            boxes.push_back(bounds_of(std::array{begin(i), end(i)}));
+        }
+        for (Index i = 0; i < n; ++i)
+            turn.push_back(turn_between(walls.begin(previous(i)), walls.begin(i), walls.end(i),
+                                        direction(previous(i)), direction(i)));
+        tree = EdgeTree(boxes);
+    }
+    explicit Sites(const maps::Boundary& walls)
+        : Sites(walls, walls.size() == 0 ? Point{} : bounds_of(walls.points).middle()) {}
 
     Index size() const { return Index(points.size()); }
     // What a distance may be off: coordinates lose some 1e-16 of the extent, a foot ten times that.
@@ -52,6 +84,11 @@ struct Sites {
         if (edge == previous(own)) return !is_edge(site) || turn_at(own) != Turn::corner;
         return is_edge(site) && edge == after(own) && turn_at(edge) != Turn::corner;
     }
+    // Whether the foot of a point on the line of an edge lies on the edge.
+    bool is_beside(Index edge, Point p, double slack) const {
+        const double s = advance(edge, p);
+        return s >= -slack && s <= length[std::size_t(edge)] + slack;
+    }
     // Whether a point is an end of a site.
     bool ends(Point q, Index site) const {
         const Index own = edge_of(site);
@@ -73,38 +110,5 @@ struct Sites {
         return is_edge(site) ? height(site, p) : distance(p, begin(edge_of(site)));
     }
 };
-
-// Turns of less than this (sine) count as straight: what they do to the diagram is below rounding.
-inline constexpr double straight_turn = 1e-8;
-
-inline Turn turn_between(Point a, Point b, Point c, Point in, Point out) {
-    if (std::abs(cross(in, out)) < straight_turn && dot(in, out) > 0) return Turn::straight;
-    return orientation(a, b, c) > 0 ? Turn::corner : Turn::around;
-}
-
-inline Sites sites_of(const maps::Boundary& walls, Point origin) {
-    Sites sites;
-    const std::size_t n = walls.size();
-    sites.origin = origin;
-    sites.next = walls.next;
-    sites.before.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        sites.points.push_back(walls.points[i] - origin);
-        sites.before[std::size_t(walls.next[i])] = Index(i);
-        sites.component.push_back(walls.component[std::size_t(walls.ring[i])]);
-        sites.extent = std::max({sites.extent, std::abs(sites.points[i].x), std::abs(sites.points[i].y)});
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        const Point way = sites.end(Index(i)) - sites.points[i];
-        sites.length.push_back(norm(way));
-        sites.along.push_back((1 / norm(way)) * way);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        const Index in = sites.before[i];
-        sites.turn.push_back(turn_between(walls.begin(in), walls.begin(Index(i)), walls.end(Index(i)),
-                                          sites.direction(in), sites.direction(Index(i))));
-    }
-    return sites;
-}
 
 }  // namespace cspace::navigation::voronoi

@@ -22,12 +22,12 @@ class Tracer {
         : d_(diagram),
           s_(diagram.sites),
           grain_(grain),
-          contacts_(diagram.sites, diagram.tree, grain),
+          contacts_(diagram.sites, grain),
           cell_(cell_share * diagram.sites.extent) {}
 
     // Adds the part of the component that a point lies in.
     void trace(Point seed) {
-        const Retraction up = retract(s_, d_.tree, seed);
+        const Retraction up = retract(s_, seed);
         if (up.b == none) return;
         component_ = s_.component[std::size_t(s_.edge_of(up.a))];
         if (!start(up)) return;
@@ -98,7 +98,7 @@ class Tracer {
         return cell(p.x, half_steps_x) * 0x9e3779b97f4a7c15u + cell(p.y, half_steps_y);
     }
     Index add_plain_vertex(Point p, double radius) {
-        d_.vertices.push_back({p, radius, component_, 0});
+        d_.vertices.push_back({p, radius, component_});
         return Index(d_.vertices.size() - 1);
     }
     Index add_vertex(Point p, const std::vector<Contact>& touches) {
@@ -111,14 +111,6 @@ class Tracer {
         for (Index k = 0; k < fan.count; ++k) open_.push_back({v, fan.first + k});
         return v;
     }
-    void add_arc(Index from, Index to, Index a, Index b, const Bisector& curve, double begin, double end) {
-        d_.arcs.push_back(
-            {from, to, a, b, curve, begin, end, curve.least_radius(begin, end), curve.length(begin, end)});
-        d_.arcs.back().least = std::min({d_.arcs.back().least, d_.vertices[std::size_t(to)].radius});
-        ++d_.vertices[std::size_t(from)].degree;
-        ++d_.vertices[std::size_t(to)].degree;
-    }
-
     // The vertex that an arc of a and b reaches at p, where it touches c.
     Index arrive(Point p, Index a, Index b, Index c) {
         const std::vector<Contact> touches = contacts_.around(p, a, b, c);
@@ -156,10 +148,12 @@ class Tracer {
         for (Index joints = 0; joints <= 2 * s_.size(); ++joints) {
             poll_.step();
             const Point from = d_.vertices[std::size_t(vertex)].at;
-            const ArcPiece arc = next_piece(s_, d_.tree, grain_, a, b, from, [](const ArcPiece&) {
+            const ArcPiece arc = next_piece(s_, grain_, a, b, from, [](const ArcPiece&) {
                 return std::numeric_limits<double>::infinity();
             });
-            const auto add = [&](Index to) { add_arc(vertex, to, a, b, arc.curve, arc.begin, arc.end); };
+            const auto add = [&](Index to) {
+                d_.arcs.push_back({vertex, to, a, b, arc.curve, arc.begin, arc.end});
+            };
             if (arc.cause == ArcEnd::lost) return;
             if (arc.cause == ArcEnd::vertex) return add(arrive(arc.curve.at(arc.end), a, b, arc.third));
             if (arc.cause == ArcEnd::corner) return add(add_plain_vertex(s_.begin(b), 0));
@@ -192,8 +186,7 @@ inline bool trace_component(Diagram& d, Point seed, std::int64_t rings) {
 // seeds: a point inside each component of free space.
 inline Diagram make_diagram(const maps::Boundary& walls, const std::vector<Point>& seeds, Point origin) {
     Diagram diagram;
-    diagram.sites = sites_of(walls, origin);
-    diagram.tree = EdgeTree(diagram.sites);
+    diagram.sites = Sites(walls, origin);
     std::vector<std::int64_t> rings(seeds.size(), 0);
     for (const Index c : walls.component) ++rings[std::size_t(c)];
     for (std::size_t c = 0; c < seeds.size(); ++c)
@@ -207,13 +200,11 @@ inline std::vector<Point> seeds_of(const maps::FreeSpace& space) {
     std::vector<Point> seeds(largest.size());
     for (Index t = 0; t < Index(space.mesh.triangles.size()); ++t) {
         if (!space.is_free(t)) continue;
-        const auto& corner = space.mesh[t].corner;
-        const Point a = space.mesh.point(corner[0]), b = space.mesh.point(corner[1]) - a,
-                    c = space.mesh.point(corner[2]) - a;
+        const auto [corner, b, c] = space.mesh.spanned(t);
         const std::size_t part = std::size_t(space.component[std::size_t(t)]);
         if (!(cross(b, c) > largest[part])) continue;
         largest[part] = cross(b, c);
-        seeds[part] = a + (1.0 / 3) * (b + c);
+        seeds[part] = space.mesh.middle_of(t);
     }
     return seeds;
 }
