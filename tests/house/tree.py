@@ -15,7 +15,7 @@ PACKAGE = ROOT / "src/cspace"
 # The rooms from the ground up. A room uses the tiers below its own, never a neighbour in the same tier.
 TIERS: list[set[str]] = [
     {"errors", "tolerances", "_core"},
-    {"arrays", "files"},
+    {"arrays", "files", "tables"},
     {"buffer_pool"},
     {"math"},
     {"spatial"},

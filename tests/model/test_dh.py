@@ -237,23 +237,22 @@ def test_the_printed_table_says_what_moves():
 def test_a_table_is_read_as_a_table():
     tool = pose((0, 0, -0.25))
     table = DHTable("standard", [np.pi / 2, 0], [0, 0.5], [0.1, 0], [0, -np.pi / 2], "RP", T_tool=tool)
-    assert str(table) == repr(table)
-    head, titles, first, second, name, *rows = repr(table).splitlines()
+    head, titles, first, second, name, *rows = str(table).splitlines()
     assert head == "Denavit–Hartenberg, standard"
     assert titles.split() == ["i", "joint", "α_i", "[°]", "a_i", "[m]", "d_i", "[m]", "θ_i", "[°]"]
     assert first.split() == ["1", "joint_1", "90", "0", "0.1", "0", "+", "q1"]
     assert second.split() == ["2", "joint_2", "0", "0.5", "0", "+", "q2", "-90"]
     assert name == "T_tool"
     np.testing.assert_allclose([[float(x) for x in row.split()] for row in rows], tool)
-    assert "T_base" not in repr(table)
+    assert "T_base" not in str(table)
 
 
 def test_limits_are_read_as_a_table():
     limits = Limits([-1.0, -np.inf], [2.5, np.inf], velocity=[np.inf, 0.25])
-    _, titles, *rows = repr(limits).splitlines()
+    _, titles, *rows = str(limits).splitlines()
     assert titles.split() == ["i", "lower", "upper", "velocity"]
     assert [row.split() for row in rows] == [["0", "-1", "2.5", "-"], ["1", "-", "-", "0.25"]]
-    assert repr(Limits([], [])).splitlines()[1].split() == ["i", "lower", "upper"]
+    assert str(Limits([], [])).splitlines()[1].split() == ["i", "lower", "upper"]
 
 
 @pytest.mark.parametrize(

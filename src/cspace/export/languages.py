@@ -16,6 +16,7 @@ from cspace.export.cpp import c_files, cpp_header, words_of
 from cspace.export.python_file import python_file, python_method
 from cspace.export.words import fill_template
 from cspace.files import path_of, write_text
+from cspace.tables import html_table, one_line
 
 LANGUAGES = MappingProxyType(
     {
@@ -41,6 +42,13 @@ class Export:
     files: Mapping[str, str]
     example: str
     locked: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return one_line("Export", f"{self.name} in {self.language}, {self.method}: {', '.join(self.files)}")
+
+    def _repr_html_(self) -> str:
+        rows = [[name, str(text.count("\n"))] for name, text in self.files.items()]
+        return html_table(f"{self.name}: {self.method}", ["file", "lines"], rows)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "files", MappingProxyType(dict(self.files)))

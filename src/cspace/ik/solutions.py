@@ -19,6 +19,7 @@ from cspace.ik.locked_joints import locked_in_words
 from cspace.ik.self_motion.self_motion import SelfMotion, self_motion_at
 from cspace.ik.wrapping import all_windings, into_limits, measure_violations, wrap_joints
 from cspace.kinematics.batch import check_choice, limits_of
+from cspace.tables import html_table, one_line, shown
 from cspace.tolerances import ORIENTATION_KEPT, SLIGHT_MISS
 
 if TYPE_CHECKING:
@@ -215,11 +216,17 @@ class Solutions(Answers, _core.SolutionsBase):
         return Solutions.of, (self.solver, self.goal, self._verdict, self.q, *numbers)
 
     def __repr__(self) -> str:
-        lines = [f"Solutions({self.status}: {self.reason})"]
-        if len(self):
-            for label, q in zip(self.branch, np.round(self.q, 4) + 0.0, strict=True):
-                lines.append("  [" + ", ".join(f"{angle: .4f}" for angle in q) + f"]  {label}")
+        return one_line("Solutions", f"{self.status}: {self.reason}")
+
+    def __str__(self) -> str:
+        lines = [f"{self.solver.name}: {self.reason}"]
+        for label, q in zip(self.branch, np.round(self.q, 4) + 0.0, strict=True):
+            lines.append("  [" + ", ".join(f"{angle: .4f}" for angle in q) + f"]  {label}")
         return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        rows = [[*map(shown, q), label] for label, q in zip(self.branch, self.q, strict=True)]
+        return html_table(f"{self.solver.name}: {self.reason}", [*self.solver.joint_names, "branch"], rows)
 
 
 def how_many(k: int) -> str:

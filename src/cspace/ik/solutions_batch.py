@@ -17,6 +17,7 @@ from cspace.ik.goals.given import rows_for_goals
 from cspace.ik.solutions import Solutions
 from cspace.ik.wrapping import into_limits, wrap_joints
 from cspace.kinematics.batch import limits_of
+from cspace.tables import one_line
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -173,7 +174,8 @@ class SolutionsBatch(Answers):
     def __repr__(self) -> str:
         reached = int(np.count_nonzero(self.count))
         unreachable = int(np.count_nonzero(self._status == UNREACHABLE))
-        return (
-            f"SolutionsBatch({self.solver.name}: {self.count.size} goals, {reached} with solutions, "
-            f"{unreachable} unreachable, {int(self.count.sum())} configurations)"
+        return one_line(
+            "SolutionsBatch",
+            f"{self.solver.name}: {self.count.size} goals, {reached} with solutions, "
+            f"{unreachable} unreachable, {int(self.count.sum())} configurations",
         )

@@ -15,6 +15,7 @@ from cspace.kinematics.forward import compute_chain
 from cspace.kinematics.jacobian import AXES, jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
+from cspace.tables import one_line, shown
 from cspace.tolerances import POSSIBLE_MOTION
 
 ROWS = ("vx", "vy", "vz", "wx", "wy", "wz")
@@ -35,6 +36,11 @@ class Ellipsoid(NamedTuple):
 
     directions: Array
     radii: Array
+
+    def __repr__(self) -> str:
+        if self.radii.ndim > 1:
+            return one_line("Ellipsoid", f"batch of shape {self.radii.shape[:-1]}")
+        return one_line("Ellipsoid", "with radii " + ", ".join(map(shown, self.radii)))
 
 
 def row_numbers(rows: str | Iterable[str]) -> list[int]:

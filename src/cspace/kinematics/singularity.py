@@ -16,6 +16,7 @@ from cspace.kinematics.jacobian import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.manipulability import ROWS, select_rows
 from cspace.spatial.checks import PoseLike
+from cspace.tables import one_line
 from cspace.tolerances import SINGULAR_ROUNDING, SINGULAR_VALUE
 
 MOST_COLUMNS = 12
@@ -41,6 +42,9 @@ class Singularity:
 
     def __bool__(self) -> bool:
         return self.distance <= SINGULAR_VALUE
+
+    def __repr__(self) -> str:
+        return one_line("Singularity", str(self))
 
     def __str__(self) -> str:
         near = "singular" if self else f"{self.distance:.3g} from singular"

@@ -15,6 +15,7 @@ from cspace.kinematics.planar_boundary import PlanarArm, trace_boundary
 from cspace.math.wrapping import TURN
 from cspace.model import Chain
 from cspace.spatial.vectors import frame_along
+from cspace.tables import one_line
 from cspace.tolerances import PLANAR_AXES
 
 
@@ -32,6 +33,10 @@ class Workspace:
     q: Array
     boundary: tuple[Array, ...] = ()
     area: float | None = None
+
+    def __repr__(self) -> str:
+        area = "" if self.area is None else f", {len(self.boundary)} boundary curves, area {self.area:.6g} m²"
+        return one_line("Workspace", f"of {len(self.points)} points{area}")
 
     @property
     def bounds(self) -> tuple[Array, Array]:

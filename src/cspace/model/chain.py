@@ -18,6 +18,7 @@ from cspace.model.screws import twists
 from cspace.model.values import freeze_array
 from cspace.spatial import exp_se3
 from cspace.spatial.poses import invert_pose
+from cspace.tables import one_line
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,9 @@ class Chain:
     T_zero: Array
     coordinates: Coordinates
     frames: Mapping[str, tuple[int, Array]]
+
+    def __repr__(self) -> str:
+        return one_line("Chain", f"{self.name}: {self.joint_types}, {self.base} → {self.tip}")
 
     @property
     def dof(self) -> int:

@@ -13,6 +13,7 @@ from cspace.model.joint import Joint, Loop
 from cspace.model.link import Link
 from cspace.model.structure import ElementError, check_mimics, check_tree, unique_names
 from cspace.model.values import finite_number, name_of
+from cspace.tables import one_line
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,9 @@ class Description:
     provenance: Provenance = field(default_factory=Provenance)
     ordered_links: tuple[str, ...] = field(init=False, repr=False)
     """Link names from the root outward, depth first, children in file order."""
+
+    def __repr__(self) -> str:
+        return one_line("Description", f"{self.name}: {len(self.links)} links, {len(self.joints)} joints")
 
     def __post_init__(self) -> None:
         name_of(self.name, "robot")

@@ -14,8 +14,8 @@ from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Link
 from cspace.model.screws import check_joint_types, joint_rows, link_names, one_freedom_type
-from cspace.model.text import align_cells, shown
 from cspace.model.values import IDENTITY, check_placement, check_size, freeze_array
+from cspace.tables import align_cells, markdown_table, one_line, shown
 
 CONVENTIONS: Final = ("standard", "modified")
 COLUMNS: Final = ("alpha", "a", "d", "theta")
@@ -123,16 +123,35 @@ class DHTable:
         return T @ self.T_tool
 
     def __repr__(self) -> str:
-        """The table as text: degrees and metres, q for the joint variable."""
+        return one_line("DHTable", f"of {len(self)} joints, {self.convention} convention")
+
+    def _cells(self) -> list[list[str]]:
+        """Titles and rows: degrees and metres, q for the joint variable."""
         indexed = ("α_i", "a_i") if self.convention == "standard" else ("α_i-1", "a_i-1")
-        cells = [("i", "joint", f"{indexed[0]} [°]", f"{indexed[1]} [m]", "d_i [m]", "θ_i [°]")]
+        cells = [["i", "joint", f"{indexed[0]} [°]", f"{indexed[1]} [m]", "d_i [m]", "θ_i [°]"]]
         for i, (alpha, a, d, theta) in enumerate(self.rows.tolist()):
             kind = self.joint_types[i]
             shift, turn = shown(d), shown(np.degrees(theta))
             shift += f" + q{i + 1}" if kind == "P" else ""
             turn += f" + q{i + 1}" if kind == "R" else ""
-            cells.append((str(i + 1), self.joint_names[i], shown(np.degrees(alpha)), shown(a), shift, turn))
-        text = f"Denavit–Hartenberg, {self.convention}\n{align_cells(cells)}"
+            cells.append([str(i + 1), self.joint_names[i], shown(np.degrees(alpha)), shown(a), shift, turn])
+        return cells
+
+    def to_markdown(self) -> str:
+        """The rows as a table in Markdown, then T_base and T_tool unless they are identities."""
+        titles, *cells = self._cells()
+        text = markdown_table(titles, cells) + "\n"
+        for name, T in (("T_base", self.T_base), ("T_tool", self.T_tool)):
+            if not np.array_equal(T, IDENTITY):
+                rows = [list(map(shown, row)) for row in T.tolist()]
+                text += f"\n{markdown_table([name, '', '', ''], rows)}\n"
+        return text
+
+    _repr_markdown_ = to_markdown
+
+    def __str__(self) -> str:
+        """The table as text: degrees and metres, q for the joint variable."""
+        text = f"Denavit–Hartenberg, {self.convention}\n{align_cells(self._cells())}"
         for name, T in (("T_base", self.T_base), ("T_tool", self.T_tool)):
             if not np.array_equal(T, IDENTITY):
                 text += f"\n{name}\n" + align_cells([["", *map(shown, row)] for row in T.tolist()])

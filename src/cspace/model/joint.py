@@ -11,7 +11,6 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
-from cspace.model.text import align_cells, shown
 from cspace.model.values import (
     IDENTITY,
     X_AXIS,
@@ -22,6 +21,7 @@ from cspace.model.values import (
     name_of,
     unit_axis,
 )
+from cspace.tables import align_cells, html_table, one_line, shown
 
 FREEDOMS: Final[dict[str, int]] = {
     "fixed": 0,
@@ -39,6 +39,8 @@ FREEDOMS: Final[dict[str, int]] = {
 
 JOINT_TYPES: Final = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 """The joint types of a tree; loops may be closed by any of FREEDOMS."""
+
+LIMIT_UNITS: Final = "limits [rad or m, s, N·m or N]"
 
 LIMIT_FIELDS: Final = ("lower", "upper", "velocity", "acceleration", "jerk", "effort")
 """The limits of a joint, in the order of Limits."""
@@ -200,12 +202,23 @@ class Limits:
         return freeze_array(np.array([self.lower, self.upper]))
 
     def __repr__(self) -> str:
+        pairs = (f"{shown(a)} … {shown(b)}" for a, b in zip(self.lower, self.upper, strict=True))
+        return one_line("Limits", f"of {len(self)} joints: " + ", ".join(pairs))
+
+    def _cells(self) -> tuple[list[str], list[list[str]]]:
         """A row per coordinate; a dash for an absent limit, and no column without limits."""
         fields = {name: getattr(self, name) for name in LIMIT_FIELDS}
         always = ("lower", "upper")
         columns = {name: row for name, row in fields.items() if name in always or np.isfinite(row).any()}
         rows = [[str(i), *(shown(row[i]) for row in columns.values())] for i in range(len(self))]
-        return f"limits [rad or m, s, N·m or N]\n{align_cells([['i', *columns], *rows])}"
+        return ["i", *columns], rows
+
+    def __str__(self) -> str:
+        titles, rows = self._cells()
+        return f"{LIMIT_UNITS}\n{align_cells([titles, *rows])}"
+
+    def _repr_html_(self) -> str:
+        return html_table(LIMIT_UNITS, *self._cells())
 
     @classmethod
     def of(cls, joints: tuple[Joint, ...] | list[Joint]) -> Limits:

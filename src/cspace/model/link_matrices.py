@@ -64,7 +64,7 @@ class LinkMatrices:
         """The table, every matrix and every product as plain text."""
         least, shift = self._least.values()
         left_out = f"factors below {least:g} ({shift:.2g} m) are left out"
-        parts = [repr(self.table), f"ci and si are the cosine and sine of t_i = θ_i; {left_out}"]
+        parts = [str(self.table), f"ci and si are the cosine and sine of t_i = θ_i; {left_out}"]
         parts += [f"A{i + 1}\n{A.text(**self._least)}" for i, A in enumerate(self.matrices)]
         return "\n\n".join([*parts, *self.product_texts()])
 
@@ -96,6 +96,7 @@ class LinkMatrices:
         return "\n\n".join(f"\\[\n{formula}\n\\]" for formula in self._formulas()) + "\n"
 
     __str__ = text
+    _repr_markdown_ = to_markdown
 
     def __repr__(self) -> str:
         return f"<LinkMatrices: {len(self.matrices)} links, {self.table.convention} convention>"

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
+from cspace.tables import one_line
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +27,9 @@ class Trace:
     start: Array
     end: Array
     value: Array
+
+    def __repr__(self) -> str:
+        return one_line("Trace", f"of {len(self)} events: {', '.join(self.words)}")
 
     def __len__(self) -> int:
         """The number of events."""

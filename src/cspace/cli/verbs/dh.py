@@ -13,6 +13,7 @@ from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table, tidy_number
 from cspace.cli.robot import load_chosen, need_chain
+from cspace.tables import markdown_table
 from cspace.tolerances import PRINTED_ZERO
 
 if TYPE_CHECKING:
@@ -195,7 +196,5 @@ def matrix_formulas(links: LinkMatrices) -> list[str]:
 
 def markdown_lines(table: DHTable, *, degrees: bool) -> list[str]:
     """The table in Markdown."""
-    titles = column_headings(table.convention)
-    rows = [titles, *(row_texts(table, i, degrees=degrees) for i in range(len(table)))]
-    head, *body = ["| " + " | ".join(row) + " |" for row in rows]
-    return [head, "|" + "---|" * len(titles), *body]
+    rows = [row_texts(table, i, degrees=degrees) for i in range(len(table))]
+    return markdown_table(column_headings(table.convention), rows).splitlines()

@@ -11,7 +11,7 @@ from cspace.ik.explain import page
 from cspace.ik.explain.findings import Findings, Step
 from cspace.ik.explain.screws import vector_text
 from cspace.math import Equation, MatrixEquation
-from cspace.model.text import align_cells, shown
+from cspace.tables import align_cells, shown
 from cspace.tolerances import PRINTED_FACTOR, PRINTED_MISS
 
 MOST_TERMS: Final = 16

@@ -13,7 +13,7 @@ from cspace.ik.explain.page import Block, lay_out_table
 from cspace.ik.explain.screws import goal_values
 from cspace.ik.geometry import as_arrays
 from cspace.math import Angle, Product, TrigMatrix, TrigPolynomial
-from cspace.model.text import shown
+from cspace.tables import shown
 
 symbol = TrigPolynomial.symbol
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from cspace.model.text import align_cells
+from cspace.tables import align_cells, markdown_table
 
 WIDTH: Final = 100
 """Columns of plain text."""
@@ -102,7 +102,7 @@ def lay_out_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Block:
     latex[0] += r" \hline"
     return Block(
         align_cells([[plain_sentence(cell) for cell in row] for row in lines]),
-        "\n".join("| " + " | ".join(row) + " |" for row in [head, ["---"] * len(head), *lines[1:]]),
+        markdown_table(head, lines[1:]),
         "\n".join([rf"\begin{{tabular}}{{{'r' * len(head)}}}", *latex, r"\end{tabular}"]),
     )
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from cspace.ik.explain.document import lay_out_plan, plan_document
 from cspace.ik.explain.findings import Findings
+from cspace.tables import one_line
 
 
 class IkPlan(Findings):
@@ -33,9 +34,10 @@ class IkPlan(Findings):
         return join_blocks(block.latex for block in lay_out_plan(self))
 
     __str__ = to_text
+    _repr_markdown_ = to_markdown
 
     def __repr__(self) -> str:
-        return f"<IkPlan of {self.robot}: {self.family}, up to {self.branches} solutions>"
+        return one_line("IkPlan", f"of {self.robot}: {self.family}, up to {self.branches} solutions")
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, angles in radians and lengths in metres."""

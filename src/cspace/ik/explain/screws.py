@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.explain.page import Block, lay_out_table
 from cspace.math import Angle, TrigPolynomial
-from cspace.model.text import shown
+from cspace.tables import shown
 from cspace.tolerances import SYMBOL_PARALLEL
 
 Vector = list[TrigPolynomial]

@@ -14,6 +14,7 @@ from cspace.ik.numeric.problem import bounds_of, further_starts, largest_speeds,
 from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.spatial.checks import one_pose
+from cspace.tables import one_line
 from cspace.tolerances import FARTHEST, SERVED, SETTLED
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class TaskSolution:
         return f"task {worst} ({kind}) misses its target by {left}; {how}, after {self.iterations} steps"
 
     def __repr__(self) -> str:
-        return f"<TaskSolution of {self.robot.name}: {self.reason}>"
+        return one_line("TaskSolution", f"of {self.robot.name}: {self.reason}")
 
 
 def task_velocity(

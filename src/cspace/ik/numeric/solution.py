@@ -12,6 +12,7 @@ import numpy.typing as npt
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.ik.wrapping import nearest_winding
+from cspace.tables import html_table, one_line, shown
 
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
@@ -108,7 +109,7 @@ class NumericSolution:
         return [name for name, at_limit in zip(self.robot.joint_names, at, strict=True) if at_limit]
 
     def __repr__(self) -> str:
-        return f"<NumericSolution of {self.robot.name}: {self.reason}>"
+        return one_line("NumericSolution", f"of {self.robot.name}: {self.reason}")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -171,4 +172,8 @@ class SampledSolutions:
         return np.asarray(turned[np.argmin(np.linalg.norm(turned - wanted, axis=1))])
 
     def __repr__(self) -> str:
-        return f"<SampledSolutions of {self.robot.name}: {self.reason}>"
+        return one_line("SampledSolutions", f"of {self.robot.name}: {self.reason}")
+
+    def _repr_html_(self) -> str:
+        rows = [[*map(shown, q), str(hits)] for q, hits in zip(self.q, self.hits, strict=True)]
+        return html_table(f"{self.robot.name}: {self.reason}", [*self.robot.joint_names, "hits"], rows)

@@ -13,6 +13,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.math.wrapping import TURN
+from cspace.tables import html_table, one_line, shown
 from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
@@ -40,6 +41,10 @@ class Interval:
     ends: tuple[str, str]
     q: Array
     _slides: bool = field(repr=False, default=False)
+
+    def __repr__(self) -> str:
+        ends = f"{self.lower:.6g} … {self.upper:.6g}, from {self.ends[0]} to {self.ends[1]}"
+        return one_line("Interval", f"branch {self.branch}: {ends}")
 
     def __contains__(self, value: object) -> bool:
         number = float(value)  # type: ignore[arg-type]
@@ -100,15 +105,24 @@ class Redundancy:
     def _ends(self) -> list[tuple[float, float]]:
         return [(float(i.lower), float(i.upper)) for i in self.intervals]
 
-    def __str__(self) -> str:
+    @property
+    def _title(self) -> str:
         unit = "m" if self._slides else "rad"
         if not self:
             return f"{self.solver.name} reaches the goal within its limits for no value of {self.parameter}"
-        title = f"{self.solver.name}: feasible intervals of {self.parameter} [{unit}]"
-        if not self.complete:
-            title += "; some may be missing"
+        more = "" if self.complete else "; some may be missing"
+        return f"{self.solver.name}: feasible intervals of {self.parameter} [{unit}]{more}"
+
+    def __repr__(self) -> str:
+        return one_line("Redundancy", f"of {self.solver.name} in {self.parameter}: {len(self)} intervals")
+
+    def _repr_html_(self) -> str:
+        rows = [[str(i.branch), shown(i.lower), shown(i.upper), *i.ends] for i in self.intervals]
+        return html_table(self._title, ["branch", "lower", "upper", "from", "to"], rows)
+
+    def __str__(self) -> str:
         rows = [
             f"  branch {i.branch:2d}  {i.lower: .6f} … {i.upper: .6f}  from {i.ends[0]} to {i.ends[1]}"
             for i in self.intervals
         ]
-        return "\n".join([title, *rows])
+        return "\n".join([self._title, *rows])

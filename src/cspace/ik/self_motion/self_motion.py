@@ -15,6 +15,7 @@ from cspace.errors import InputError
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
 from cspace.ik.wrapping import wrap_joints
+from cspace.tables import one_line
 from cspace.tolerances import MOVING_JOINT
 
 if TYPE_CHECKING:
@@ -36,6 +37,9 @@ class SelfMotion:
     joints: tuple[str, ...]
     _solver: Any = field(repr=False)
     _whole_pose: bool = field(repr=False)
+
+    def __repr__(self) -> str:
+        return one_line("SelfMotion", f"of row {self.row}: {', '.join(self.joints)} move")
 
     @cached_property
     def _arc(self) -> Arc | None:

@@ -14,6 +14,7 @@ from cspace.errors import Renamed
 from cspace.ik.branches import branch_labels
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel, singularity
+from cspace.tables import html_table, one_line
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +76,7 @@ class Branch(Renamed):
 
     def __repr__(self) -> str:
         label = f" ({self.name})" if self.name else ""
-        return f"<Branch of {self.robot.name}{label}: {self.reason}>"
+        return one_line("Branch", f"of {self.robot.name}{label}: {self.reason}")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -146,9 +147,15 @@ class Track(Renamed):
         return f"{of} follows {all_of(n)}; the best {self.best.reason}" + self._note
 
     def __repr__(self) -> str:
-        lines = [f"<Track of {self.robot.name}: {self.reason}"]
-        lines += [f"  {branch.name or 'branch'}: {branch.reason}" for branch in self.branches]
-        return "\n".join(lines) + ">"
+        return one_line("Track", f"of {self.robot.name}: {self.reason}")
+
+    def __str__(self) -> str:
+        lines = [f"{branch.name or 'branch'}: {branch.reason}" for branch in self.branches]
+        return "\n  ".join([f"{self.robot.name}: {self.reason}", *lines])
+
+    def _repr_html_(self) -> str:
+        rows = [[branch.name or "branch", branch.reason] for branch in self.branches]
+        return html_table(f"{self.robot.name}: {self.reason}", ["branch", "course"], rows)
 
 
 def all_of(n: int) -> str:

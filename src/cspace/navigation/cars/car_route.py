@@ -12,6 +12,7 @@ from cspace.arrays import Array
 from cspace.navigation.curves import Curve
 from cspace.navigation.route import Stats
 from cspace.navigation.text import count_things
+from cspace.tables import one_line
 from cspace.tolerances import CAR_POSES
 
 REASONS: Final = (
@@ -70,4 +71,4 @@ class CarRoute:
         return f"found, {self.length:.6g} m in {gears}"
 
     def __repr__(self) -> str:
-        return f"<CarRoute: {self.reason}>"
+        return one_line("CarRoute", self.reason)

@@ -27,6 +27,7 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
 from cspace.search import option
+from cspace.tables import line_of_fields
 from cspace.tolerances import FINEST_LEVEL, QUADTREE_CELLS, QUADTREE_DEPTH, UNIFORM_DEPTH
 
 METRICS: Final = ("euclidean", "manhattan")
@@ -51,6 +52,9 @@ class CellEvidence(NamedTuple):
     """The level of the smallest square."""
     side: float
     """Side of the smallest square [m]."""
+
+    def __repr__(self) -> str:
+        return line_of_fields(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.checks import need_grid
 from cspace.navigation.text import count_things
+from cspace.tables import one_line
 from cspace.tolerances import CELL_ROUNDING
 
 ALONG: Final = ("x", "y")
@@ -67,7 +68,7 @@ class Coverage:
         return f"{self.free - self.reached} of {self.free} free cells cannot be reached from the start: {how}"
 
     def __repr__(self) -> str:
-        return f"<Coverage: {self.reason}>"
+        return one_line("Coverage", self.reason)
 
 
 def coverage(grid: Any, start: Any, width: float | None = None, *, along: str | None = None) -> Coverage:

@@ -25,6 +25,7 @@ from cspace.navigation.checks import need_grid
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.search import option
+from cspace.tables import line_of_fields
 
 PREFER: Final = ("clearance", "length")
 
@@ -46,6 +47,9 @@ class BrushfireDiagram:
     ends: npt.NDArray[np.int32]
     lengths: Array
     widths: Array
+
+    def __repr__(self) -> str:
+        return line_of_fields(self)
 
 
 def brushfire_diagram(grid: Any) -> BrushfireDiagram:

@@ -23,6 +23,7 @@ from cspace.navigation.fields.clearance import clearance_field
 from cspace.navigation.planner import NO_EVENTS, PlanePlanner
 from cspace.navigation.route import Route, Stats, new_route
 from cspace.navigation.text import count_things
+from cspace.tables import line_of_fields
 from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_FIELDS, HARMONIC_RESIDUAL
 
 
@@ -36,6 +37,9 @@ class HarmonicEvidence(NamedTuple):
     rests: int
     """Cells other than the goal without a descending step; if there are none, descents arrive from
     everywhere."""
+
+    def __repr__(self) -> str:
+        return line_of_fields(self)
 
 
 UNSOLVED: Final = HarmonicEvidence(0.0, 0, 0)

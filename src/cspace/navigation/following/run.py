@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.tables import one_line
 
 OUTCOMES: Final = ("arrived", "stuck", "collision", "timeout", "missed")
 """How a run may end, in the order of the compiled core."""
@@ -66,4 +67,4 @@ class Run:
         return f"the time limit was reached {at}, {missing:.4g} m before the end of the path"
 
     def __repr__(self) -> str:
-        return f"<Run of a {type(self.vehicle).__name__} by {self.controller}: {self.reason}>"
+        return one_line("Run", f"of a {type(self.vehicle).__name__} by {self.controller}: {self.reason}")

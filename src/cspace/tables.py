@@ -1,0 +1,63 @@
+"""Tables and lines as people read them: plain text, Markdown, HTML."""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+__all__ = ["align_cells", "html_table", "line_of_fields", "markdown_table", "one_line", "shown"]
+
+LONGEST_LINE = 120
+"""Characters of a line that represents an object."""
+
+MOST_ROWS = 60
+"""Rows of a table that a notebook shows; of longer ones it shows the first, and how many follow."""
+
+
+def shown(value: float) -> str:
+    """Six digits, nothing of the rounding around zero, and a dash for what is absent (infinite)."""
+    return f"{round(float(value), 12) + 0.0:.6g}" if math.isfinite(value) else "-"
+
+
+def one_line(kind: str, text: str) -> str:
+    """`<kind text>` as one line of at most LONGEST_LINE characters; a longer text ends with an ellipsis."""
+    line = f"<{kind} {' '.join(text.split())}>"
+    return line if len(line) <= LONGEST_LINE else line[: LONGEST_LINE - 2].rstrip() + "…>"
+
+
+def line_of_fields(answer: Any) -> str:
+    """The fields of a record as one line, with the shapes of its arrays in place of their values."""
+    names = getattr(answer, "_fields", None) or answer.__dataclass_fields__
+    values = ((name, getattr(answer, name)) for name in names if not name.startswith("_"))
+    texts = (f"{k} {v.shape}" if isinstance(v, np.ndarray) else f"{k} {v!r}" for k, v in values)
+    return one_line(type(answer).__name__, ", ".join(texts))
+
+
+def align_cells(rows: Sequence[Sequence[str]]) -> str:
+    """Lines of cells, each column as wide as its widest cell, aligned to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows
+    )
+
+
+def markdown_table(titles: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table in Markdown, without a line break at its end."""
+    lines = ["| " + " | ".join(row) + " |" for row in (titles, *rows)]
+    return "\n".join([lines[0], "|" + "---|" * len(titles), *lines[1:]])
+
+
+def html_table(caption: str, titles: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table in HTML for notebooks, its caption above it; of many rows the first MOST_ROWS."""
+
+    def line(tag: str, cells: Sequence[str]) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+
+    left_out = len(rows) - MOST_ROWS
+    more = f"<p>and {left_out} more rows</p>" if left_out > 0 else ""
+    lines = [line("th", titles), *(line("td", row) for row in rows[:MOST_ROWS])]
+    return f"<p>{html.escape(caption)}</p><table>{''.join(lines)}</table>{more}"
