@@ -101,6 +101,10 @@ SLIGHT_MISS: Final = 1e-4
 """Miss of a goal (m, rad) up to which the rounded numbers of a robot's file may be all that is wrong: files
 print lengths and angles with four digits or more."""
 
+FAR_GOAL: Final = 100.0
+"""Factor by which a goal is farther away than the nearest pose of the tip from which on its unit is doubted:
+millimetres are a thousand times too far."""
+
 PLANAR_AXES: Final = 1e-9
 """Sine of the angle between axes, and length of a link relative to all, up to which an arm counts as planar
 with that link missing: its tip then leaves the plane by less than anybody measures."""

@@ -445,3 +445,29 @@ def test_a_closed_output_is_no_error():
         ["sh", "-c", 'exec "$@" >&-', "sh", *words], stderr=subprocess.PIPE, env=environment(), check=False
     )
     assert (done.returncode, done.stderr) == (0, b"")
+
+
+POSE = "--xyz 0.4 0.1 0.3 --rpy"
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("fk ur5e 0 -90 90 0 90 0", True),
+        ("fk ur5e 0 -90 90 0 90 0 --deg", False),
+        ("fk ur5e 0 -pi/2 pi/2 0 6.28 0", False),
+        ("jacobian ur5e 0 -90 90 0 90 0", True),
+        ("jacobian ur5e 0 -1 1 0 1 0", False),
+        (f"ik ur5e {POSE} 0 180 0", True),
+        (f"ik ur5e {POSE} 0 180 0 --deg", False),
+        (f"ik ur5e {POSE} 0 pi 0 --near 0 -90 90 0 0 0", True),
+        (f"ik ur5e {POSE} 0 pi 0", False),
+        ("ik planar_3r --xy 1.5 0.8 --angle 30", True),
+        ("ik planar_3r --xy 1.5 0.8 --angle 0.5", False),
+    ],
+)
+def test_angles_that_seem_to_be_degrees_are_noticed_at_a_terminal_alone(line, told, monkeypatch):
+    monkeypatch.setattr("sys.stdout", stream := Terminal())
+    app.main(line.split())
+    assert ("--deg" in stream.getvalue()) == told
+    assert "--deg" not in cspace(line).out

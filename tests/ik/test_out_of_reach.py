@@ -139,3 +139,16 @@ def test_a_miss_that_rounded_numbers_may_cause_says_what_to_ask():
         found = robot.ik(T @ pose([0, 0, 0], rpy=1e-6 * turn))
         assert found or "rounded robot data" in found.reason
     assert "rounded robot data" not in robot.ik(position=[0.6, 0.05, 0.1], direction=[0, 0, -1]).reason
+
+
+@pytest.mark.parametrize("name", [*ARMS, *(word for word in WORDS if "P" not in word)])
+def test_a_goal_in_millimetres_is_noticed_and_one_in_metres_is_not(name):
+    robot = named(name)
+    for q in random_configurations(robot, np.random.default_rng(5), 4):
+        T = robot.fk(q)
+        far = T.copy()
+        far[:3, 3] *= 1000.0
+        remark = "is the goal in millimetres?"
+        for goal, doubted in ((far, True), (T, False), (moved(T, 3.0 * size_of(robot)), False)):
+            assert (remark in robot.ik(goal).reason) == doubted
+            assert (remark in robot.ik(position=goal[:3, 3]).reason) == doubted

@@ -1,3 +1,5 @@
+import warnings
+
 import numpy as np
 import pytest
 
@@ -269,3 +271,19 @@ def test_limits_are_read_as_a_table():
 def test_a_matrix_of_what_is_no_number_is_refused(column, error, words):
     with pytest.raises(error, match=words):
         dh_matrix(np.zeros(3), column, 0.0, 0.0, convention="modified")
+
+
+@pytest.mark.parametrize("column", [0, 3])
+@pytest.mark.parametrize("convention", ["standard", "modified"])
+def test_a_table_in_degrees_is_noticed_and_one_in_radians_is_not(column, convention):
+    table = np.zeros((3, 4))
+    table[1, column] = -90.0
+    with pytest.warns(UserWarning, match="np.radians"):
+        from_dh(table, convention=convention)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for angle in (np.radians(-90.0), 2 * np.pi, -2 * np.pi):
+            table[1, column] = angle
+            from_dh(table, convention=convention)
+        table[1, 1:3] = 90.0  # a long link is no angle
+        from_dh(table, convention=convention)

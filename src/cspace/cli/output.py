@@ -70,8 +70,8 @@ class Output:
         self.line(text, style="bold")
 
     def hint(self, text: str) -> None:
-        """A remark for people at a terminal; pipes stay quiet."""
-        if self.at_terminal:
+        """A remark for people at a terminal, if there is one; pipes stay quiet."""
+        if self.at_terminal and text:
             self.line(text, style="dim")
 
     def facts(self, facts: Mapping[str, str]) -> None:

@@ -13,6 +13,7 @@ from cspace.arrays import Array
 from cspace.cli.arguments import read_radians
 from cspace.cli.exits import UsageError
 from cspace.errors import suggest
+from cspace.math.wrapping import TURN
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -63,6 +64,16 @@ def read_configuration(values: Sequence[float], robot: Robot, subject: str, *, d
         raise UsageError(f"{robot.name} has {n} joints, {subject} has {len(values)} values; joints: {names}")
     typed = zip(values, robot.joint_types, strict=True)
     return np.array([read_radians(value, degrees=degrees and kind == "R") for value, kind in typed])
+
+
+def degrees_note(args: argparse.Namespace, robot: Robot) -> str:
+    """A remark on typed angles beyond a full revolution, which were probably meant in degrees."""
+    joints = getattr(args, "near", None) or getattr(args, "q", None) or []
+    turning = (value for value, kind in zip(joints, robot.joint_types, strict=False) if kind == "R")
+    angles = [*turning, *(getattr(args, "rpy", None) or []), getattr(args, "angle", None) or 0.0]
+    if args.deg or max(map(abs, angles)) <= TURN:
+        return ""
+    return "an angle exceeds 2π rad; --deg reads and prints degrees"
 
 
 def gripper_note(args: argparse.Namespace, robot: Robot) -> str:

@@ -20,7 +20,7 @@ from cspace.ik.self_motion.self_motion import SelfMotion, self_motion_at
 from cspace.ik.wrapping import all_windings, into_limits, measure_violations, wrap_joints
 from cspace.kinematics.batch import check_choice, limits_of
 from cspace.tables import html_table, one_line, shown
-from cspace.tolerances import ORIENTATION_KEPT, SLIGHT_MISS
+from cspace.tolerances import FAR_GOAL, ORIENTATION_KEPT, SLIGHT_MISS
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -248,23 +248,28 @@ def unreachable_reason(found: Solutions) -> str:
         return f"nothing reaches the goal with {locked_in_words(found.solver, found._about.own_locked)}"
     if found._partial is not None:
         T = found.solver.fk(found._partial.own_joints(nearest_to_goal(found)[0]))
+        p = found._wanted.value.get("position")
         return (
             f"{name} cannot reach {found._partial.text}: the nearest configuration misses it by "
-            f"{found._partial.distance_in_words(T)}" + hint_for_slight_miss(float(found._partial.residual(T)))
+            f"{found._partial.distance_in_words(T)}"
+            + hint_for_slight_miss(float(found._partial.residual(T)))
+            + hint_for_far_goal(p, T)
         )
-    _, missing, turned = nearest_to_goal(found, ORIENTATION_FIRST)
+    q, missing, turned = nearest_to_goal(found, ORIENTATION_FIRST)
+    far = hint_for_far_goal(found.goal if found._is_point else found.goal[:3, 3], found.solver.fk(q))
     if found._is_point:
-        return f"out of reach: the goal would have to move {missing:.4g} m for {name} to reach it"
+        return f"out of reach: the goal would have to move {missing:.4g} m for {name} to reach it{far}"
     if turned > min(ORIENTATION_KEPT, missing):
         return (
             f"{name} ({found.solver.dof} joints) cannot reach this orientation: the nearest configuration "
             f"misses it by {np.degrees(turned):.4g}° and {missing:.4g} m"
             + hint_for_slight_miss(max(turned, missing))
+            + far
         )
     short = "" if found.solver.dof >= POSE_ASKS else f" ({found.solver.dof} joints; a pose needs 6)"
     return (
         f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, "
-        f"for {name}{short} to reach it" + (hint_for_slight_miss(missing) if short else "")
+        f"for {name}{short} to reach it" + (hint_for_slight_miss(missing) if short else "") + far
     )
 
 
@@ -273,6 +278,16 @@ def hint_for_slight_miss(miss: float) -> str:
     if miss > SLIGHT_MISS:
         return ""
     return ", which rounded robot data may cause; least_squares=True returns the nearest configuration"
+
+
+def hint_for_far_goal(p: Any, T: Array) -> str:
+    """The remedy if the distance of a goal p (its open coordinates None) is in another unit than the arm's
+    metres; T: the nearest pose of the tip.
+    """
+    given = [] if p is None else [x for x in p if x is not None]
+    if not np.linalg.norm(given) > FAR_GOAL * np.linalg.norm(T[:3, 3]) > 0.0:
+        return ""
+    return "; the arm is in metres, is the goal in millimetres?"
 
 
 def nearest_to_goal(found: Solutions, radian: float = 1.0) -> tuple[Array, float, float]:

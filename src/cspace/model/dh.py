@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -10,6 +11,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_arrays, as_floats
 from cspace.errors import InputError, suggest
+from cspace.math.wrapping import TURN
 from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Link
@@ -184,6 +186,7 @@ def from_dh(
     told apart by the numbers. joint_types: n letters "R", "P" or "F" (fixed row), default all "R". T_base,
     T_tool (4, 4): before the first and after the last row. lower, upper, velocity, acceleration,
     jerk, effort (n,): limits.
+    Warns (UserWarning) if an angle of the rows exceeds 2π, since it is probably in degrees.
     Raises InputError for a wrong shape or NaN, UnknownNameError for another convention or column.
     """
     if isinstance(table, DHTable):
@@ -198,6 +201,9 @@ def from_dh(
         before, after = (IDENTITY if T is None else T for T in (T_base, T_tool))
         names = () if joint_names is None else tuple(joint_names)
         alpha, a, d, theta = rows.T
+        if np.abs(rows[:, [0, 3]]).max(initial=0.0) > TURN:
+            text = "the table has angles beyond 2π: they are in radians; np.radians converts degrees"
+            warnings.warn(text, stacklevel=2)
         dh = DHTable(convention, alpha, a, d, theta, types, before, after, names)
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk, "effort": effort}
     limited = joint_rows(len(dh), lower=lower, upper=upper, **limits)

@@ -11,7 +11,7 @@ from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, tidy_number
-from cspace.cli.robot import load_posed
+from cspace.cli.robot import degrees_note, load_posed
 
 EXAMPLES: Final = """
 cspace fk ur5e 0 -pi/2 pi/2 0 pi/2 0
@@ -36,6 +36,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         out.document({"schema": "cspace.fk/1", **ends, "q": q.tolist(), **pose_document(T)})
     else:
         show_pose(out, T, f"{frame} in {robot.base}", degrees=args.deg)
+        out.hint(degrees_note(args, robot))
     return Exit.DONE
 
 

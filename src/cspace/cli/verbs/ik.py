@@ -14,7 +14,7 @@ from cspace.cli.files import check_format, check_writable
 from cspace.cli.freedom import FREEDOM_WORDS, add_freedom, locked_joints, options_of
 from cspace.cli.goals import GOAL_WORDS, Goal, add_goal, axis_of, goal_of
 from cspace.cli.output import Output
-from cspace.cli.robot import gripper_note, load_chosen, need_chain, read_configuration
+from cspace.cli.robot import degrees_note, gripper_note, load_chosen, need_chain, read_configuration
 from cspace.cli.solutions import print_solutions, solution_rows, solutions_document
 from cspace.errors import InputError, InputTypeError
 
@@ -83,8 +83,8 @@ def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:
         out.document(solutions_document(robot, found, rows, goal, options))
     else:
         print_solutions(out, robot, found, rows, degrees=args.deg)
-        if note := gripper_note(args, robot):
-            out.hint(note)
+        out.hint(gripper_note(args, robot))
+        out.hint(degrees_note(args, robot))
     if found and args.plot is not None:
         draw_solutions(args.plot, robot, rows, goal.mark)
         out.hint(f"picture written to {args.plot}")

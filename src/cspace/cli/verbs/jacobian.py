@@ -9,7 +9,7 @@ from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_option, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table, tidy_number
-from cspace.cli.robot import joint_headings, load_posed
+from cspace.cli.robot import degrees_note, joint_headings, load_posed
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -56,6 +56,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         out.document({"schema": "cspace.jacobian/1", **ends, **given, "jacobian": J.tolist(), **facts})
     else:
         print_jacobian(out, robot, J, facts, str(near))
+        out.hint(degrees_note(args, robot))
     return Exit.DONE
 
 
