@@ -90,6 +90,13 @@ SINGULAR_VALUE: Final = 1e-9
 """Smallest singular value of a Jacobian (m or rad, per rad or m) that is not zero: angles known to 1e-9 rad
 cannot be told from singular ones below it, and rounding is far below."""
 
+NEARLY_SINGULAR: Final = 1e-2
+"""Singular value of a Jacobian (as SINGULAR_VALUE) below which the command line shows it unasked: joints move
+a hundred times as fast as the tip."""
+
+LARGE_RESIDUAL: Final = 1e-9
+"""Residual [m, rad] from which the command line shows it unasked: closed forms leave a millionth of it."""
+
 SINGULAR_ROUNDING: Final = 1e-14
 """Singular value of a Jacobian (as SINGULAR_VALUE) below which all are rounding errors."""
 

@@ -10,8 +10,10 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import cspace as cs
 from cli.run import command, cspace, environment
 from cspace.cli import app
 from cspace.cli.exits import Exit
@@ -180,15 +182,52 @@ def test_a_terminal_gets_a_table_with_lines(monkeypatch):
         assert app.main(line.split()) == Exit.DONE
 
 
-def test_a_narrow_terminal_loses_no_digits(monkeypatch):
+GOALS = [
+    "ur5e --xyz 0.4 0.2 0.4 --rpy 180 0 90 --deg",
+    "ur5e --xyz 0.4 0.1 0.3 --rpy 0 pi 0",
+    "puma560 --xyz 0.5 0 0.3 --wxyz 0 1 0 0 --near 0 0 0 0 0 0",
+    "kr6_r900 --xyz 0.4 0.1 0.5 --rpy 0 90 0 --deg",
+    "stanford --xyz 0.3 0.2 0.4 --rpy 0 1 0",
+    "jaco2 --xyz 0.3 0.2 0.5 --rpy 0 1 0",
+    "scara --xyz 0.4 0.1 -0.1",
+    "planar_2r --xy 0.6 0.3",
+    "panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --samples 2",
+    "ur5e --xyz 4 0 0 --rpy 180 0 90 --deg",
+]
+
+
+@pytest.mark.parametrize("columns", [80, 100])
+@pytest.mark.parametrize("goal", GOALS)
+def test_no_line_of_a_terminal_wraps_and_joints_are_rounded_only(monkeypatch, goal, columns):
     pytest.importorskip("rich")
-    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setenv("COLUMNS", str(columns))
     monkeypatch.setattr("sys.stdout", stream := Terminal())
-    assert app.main(["ik", "ur5e", "--xyz", "0.4", "0.1", "0.3", "--rpy", "0", "pi", "0"]) == Exit.DONE
-    piped = cspace("ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 pi 0").out.splitlines()[2:]
-    plain = re.sub(r"\x1b\[[0-9;]*m", "", stream.getvalue())
-    shown = [line for line in plain.splitlines() if " ok " in line]
-    assert [line.split()[:7] for line in shown] == [row.split()[:7] for row in piped]
+    code = app.main(["ik", *goal.split()])
+    lines = re.sub(r"\x1b\[[0-9;]*m", "", stream.getvalue()).splitlines()
+    assert max(map(len, lines)) <= columns
+    document = cspace(f"ik {goal} --json").json
+    assert code == (Exit.DONE if document["solutions"] else Exit.NEGATIVE)
+    shown = [line.split() for line in lines if re.match(r"\d+ ", line)]
+    assert len(shown) == len(document["solutions"])
+    for row, words in zip(document["solutions"], shown, strict=True):
+        robot = cs.load_robot(document["robot"])
+        turned = [q * 180 / np.pi if "--deg" in goal else q for q in row["q"]]
+        values = [
+            t if kind == "R" else q for t, q, kind in zip(turned, row["q"], robot.joint_types, strict=True)
+        ]
+        for value, word in zip(values, words[1:], strict=False):
+            decimals = len(word.partition(".")[2])
+            assert decimals >= (1 if "--deg" in goal else 3)
+            assert abs(float(word) - value) <= 0.501 * 10.0**-decimals
+
+
+def test_details_show_every_column(monkeypatch):
+    goal = "kr6_r900 --xyz 0.4 0.1 0.5 --rpy 0 90 0 --deg"
+    short, full = cspace(f"ik {goal}").out, cspace(f"ik {goal} --details").out
+    for word in ("limits", "singularity", "branch", "residual", " out by ", "elbow up"):
+        assert word in full
+    assert "residual" not in short
+    assert "out of limits" in short
 
 
 def test_a_terminal_without_rich_gets_plain_tables_and_is_told_once_what_draws_them(monkeypatch):

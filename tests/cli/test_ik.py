@@ -81,7 +81,7 @@ def test_limits_are_marked_dropped_or_kept():
     for row in mark:
         assert row["within_limits"] == (row["out_of_limits"] == {})
     assert {row["within_limits"] for row in keep} == {None}
-    text = cspace(f"ik kr6_r900 {goal} --deg".replace("pi/2", "90")).out
+    text = cspace(f"ik kr6_r900 {goal} --deg --details".replace("pi/2", "90")).out
     assert " out by " in text
     assert " deg" in text
 
@@ -114,7 +114,7 @@ def test_a_picture_is_written_whole(tmp_path):
 
 def test_degrees_in_the_table_are_those_of_the_json():
     rows = cspace(f"ik ur5e {GOAL} --json").json["solutions"]
-    table = cspace("ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg").out.splitlines()[2:]
+    table = cspace("ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg --details").out.splitlines()[2:]
     for row, line in zip(rows, table, strict=True):
         shown = np.array(line.split()[1:7], dtype=float)
         np.testing.assert_allclose(shown, np.degrees(row["q"]), atol=6e-4)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import io
 import json
 import os
+import shutil
 import sys
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -37,6 +39,12 @@ class Table:
     rows: list[list[Cell]] = field(default_factory=list)
     left: frozenset[int] = frozenset({0})
 
+    @property
+    def width(self) -> int:
+        """The columns of a terminal that it needs."""
+        texts = [list(self.columns), *([cell.text for cell in row] for row in self.rows)]
+        return sum(max(map(len, column)) for column in zip(*texts, strict=True)) + 2 * (len(self.columns) - 1)
+
     def add(self, *cells: Cell | str) -> None:
         """Add a row; plain strings are cells without a colour."""
         self.rows.append([cell if isinstance(cell, Cell) else Cell(cell) for cell in cells])
@@ -65,6 +73,16 @@ class Output:
         """One line of text, at a terminal in a style of STYLES."""
         self.stream.write(self._styled(text, style) + "\n")
 
+    @property
+    def width(self) -> int | None:
+        """The columns of the terminal; None for a pipe."""
+        return shutil.get_terminal_size().columns if self.at_terminal else None
+
+    def sentence(self, text: str, style: str = "") -> None:
+        """A text that a terminal breaks between words."""
+        for line in textwrap.wrap(text, self.width) if self.width else [text]:
+            self.line(line, style)
+
     def heading(self, text: str) -> None:
         """A heading above a block."""
         self.line(text, style="bold")
@@ -72,7 +90,7 @@ class Output:
     def hint(self, text: str) -> None:
         """A remark for people at a terminal, if there is one; pipes stay quiet."""
         if self.at_terminal and text:
-            self.line(text, style="dim")
+            self.sentence(text, style="dim")
 
     def facts(self, facts: Mapping[str, str]) -> None:
         """Names and values, one pair a line."""
@@ -151,7 +169,7 @@ def _rich_table(table: Table) -> Any:
     from rich.table import Table as RichTable
     from rich.text import Text
 
-    drawn = RichTable(box=box.SIMPLE_HEAD, pad_edge=False)
+    drawn = RichTable(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, show_edge=False)
     for j, column in enumerate(table.columns):
         drawn.add_column(column, justify="left" if j in table.left else "right", no_wrap=j not in table.left)
     for row in table.rows:

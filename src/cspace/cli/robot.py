@@ -12,6 +12,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.arguments import read_radians
 from cspace.cli.exits import UsageError
+from cspace.cli.output import tidy_number
 from cspace.errors import suggest
 from cspace.math.wrapping import TURN
 
@@ -104,9 +105,14 @@ def joint_called(word: str, robot: Robot) -> str:
     raise suggest("joint", word, names, owner=robot.name)
 
 
-def joint_texts(q: Array, robot: Robot, *, degrees: bool) -> list[str]:
-    """A configuration (n,) as texts: angles in the selected unit, prismatic joints in metres."""
-    return [
-        f"{np.degrees(value):.3f}" if kind == "R" and degrees else f"{value:.5f}"
-        for value, kind in zip(q, robot.joint_types, strict=True)
-    ]
+def joint_texts(q: Array, robot: Robot, *, degrees: bool, fewer: int = 0) -> list[str]:
+    """A configuration (n,) as texts: angles in the selected unit, prismatic joints in metres.
+
+    fewer: how many decimals are left out.
+    """
+    texts = []
+    for value, kind in zip(q, robot.joint_types, strict=True):
+        in_degrees = kind == "R" and degrees
+        decimals = (3 if in_degrees else 5) - fewer
+        texts.append(f"{tidy_number(np.degrees(value) if in_degrees else value, decimals):.{decimals}f}")
+    return texts

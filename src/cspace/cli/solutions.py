@@ -12,6 +12,7 @@ from cspace.arrays import Array
 from cspace.cli.goals import Goal
 from cspace.cli.output import Cell, Output, Table
 from cspace.cli.robot import joint_headings, joint_texts
+from cspace.tolerances import LARGE_RESIDUAL, NEARLY_SINGULAR
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 RADIANS: Final = re.compile(r"(\d[\d.e+-]*) rad\b")
 """An angle in a sentence of the library."""
 
-FORMS: Final = {"singularity": "{:.4f}", "branch": "{}", "residual": "{:.1e}", "distance": "{:.4f}"}
-"""The columns behind joints and limits, and the form of their entries."""
+FEWER_DECIMALS: Final = 2
+"""How many decimals joints may lose where a terminal is narrow."""
 
 
 def solution_rows(
@@ -82,22 +83,24 @@ def solutions_document(
 
 
 def print_solutions(
-    out: Output, robot: Robot, answer: Any, rows: list[dict[str, Any]], *, degrees: bool
+    out: Output, robot: Robot, answer: Any, rows: list[dict[str, Any]], *, degrees: bool, details: bool
 ) -> None:
     """The solutions as a table, or the reason why there are none."""
     reason = answer.reason.replace("least_squares=True", "--least-squares")
     reason = in_degrees(reason) if degrees else reason
-    out.line(f"{robot.name}: {reason}", style="bold" if answer else "yellow")
+    out.sentence(f"{robot.name}: {reason}", style="bold" if answer else "yellow")
     if not rows:
         return
-    out.table(table_of(robot, rows, degrees=degrees))
+    out.table(table_of(robot, rows, degrees=degrees, details=details, width=out.width))
     names = ", ".join(
         f"{short} {name}" for short, name in zip(joint_headings(robot), robot.joint_names, strict=True)
     )
     units = f"angles in {'deg' if degrees else 'rad'}" + (", slides in m" if "P" in robot.joint_types else "")
-    if rows[0]["singularity"] is not None:
+    if details and rows[0]["singularity"] is not None:
         units += "; singularity: distance to the nearest singular configuration"
-    out.hint(f"{units}; residual: of the true pose")
+    out.hint(
+        units + ("; residual: of the true pose" if details else "; --details: limits, singularity, residual")
+    )
     if joint_headings(robot) != list(robot.joint_names):
         out.hint(names)
 
@@ -107,29 +110,67 @@ def in_degrees(sentence: str) -> str:
     return RADIANS.sub(lambda angle: f"{np.degrees(float(angle[1])):.4g} deg", sentence)
 
 
-def table_of(robot: Robot, rows: list[dict[str, Any]], *, degrees: bool) -> Table:
-    """One row per solution, without empty columns."""
-    texts = [joint_texts(row["q"], robot, degrees=degrees) for row in rows]
-    columns: list[tuple[str, Iterable[Cell | str]]] = [("", [f"{k + 1}" for k in range(len(rows))])]
-    columns += zip(joint_headings(robot), zip(*texts, strict=True), strict=True)
-    if rows[0]["within_limits"] is not None:
-        columns.append(
-            ("limits", [limits_cell(row["out_of_limits"], robot, degrees=degrees) for row in rows])
-        )
-    for name, form in FORMS.items():
-        if any(row[name] not in (None, "") for row in rows):
-            columns.append((name, [form.format(row[name]) for row in rows]))
-    left = frozenset(j for j, (name, _) in enumerate(columns) if name in ("limits", "branch"))
-    table = Table([name for name, _ in columns], left=left)
-    for cells in zip(*(column for _, column in columns), strict=True):
-        table.add(*cells)
+def table_of(
+    robot: Robot, rows: list[dict[str, Any]], *, degrees: bool, details: bool, width: int | None = None
+) -> Table:
+    """One row per solution. Joints lose decimals, and the branch is left out, until the table fits the width.
+
+    details: all columns in full. Otherwise limits are a column only if one is exceeded, singularity only if
+    a row is nearly singular, and residual only if one is large; the branch is short.
+    """
+    last = other_columns(robot, rows, degrees=degrees, details=details)
+    without_branch = [column for column in last if column[2] != "branch"]
+    for columns in (last, without_branch):
+        for fewer in range(FEWER_DECIMALS + 1):
+            texts = [joint_texts(row["q"], robot, degrees=degrees, fewer=fewer) for row in rows]
+            joints = zip(joint_headings(robot), zip(*texts, strict=True), strict=True)
+            table = Table(["", *joint_headings(robot), *(heading for heading, _, _ in columns)])
+            table.left |= {
+                j for j, (_, _, kind) in enumerate(columns, 1 + len(texts[0])) if kind in ("limits", "branch")
+            }
+            cells = [[f"{k + 1}" for k in range(len(rows))], *(column for _, column in joints)]
+            for row in zip(*cells, *(column for _, column, _ in columns), strict=True):
+                table.add(*row)
+            if width is None or table.width <= width:
+                return table
     return table
 
 
-def limits_cell(out_by: dict[str, float], robot: Robot, *, degrees: bool) -> Cell:
-    """Whether a row is within limits, and which joints are not, by how much."""
+def other_columns(
+    robot: Robot, rows: list[dict[str, Any]], *, degrees: bool, details: bool
+) -> list[tuple[str, list[Cell | str], str]]:
+    """The columns behind the joints: heading, entries, and what they are."""
+    columns: list[tuple[str, list[Cell | str], str]] = []
+    least = min((row["singularity"] for row in rows if row["singularity"] is not None), default=None)
+    if rows[0]["within_limits"] is not None and (details or any(row["out_of_limits"] for row in rows)):
+        cells = [limits_cell(row["out_of_limits"], robot, degrees=degrees, details=details) for row in rows]
+        columns.append(("limits" if details else "out of limits", list(cells), "limits"))
+    if least is not None and (details or least < NEARLY_SINGULAR):
+        columns.append(("singularity", [f"{row['singularity']:.4f}" for row in rows], "singularity"))
+    labels = [row["branch"] for row in rows]
+    if any(labels):
+        heading, texts = ("branch", labels) if details else short_branches(labels)
+        columns.append((heading, list(texts), "branch"))
+    if details or max(row["residual"] for row in rows) > LARGE_RESIDUAL:
+        columns.append(("residual", [f"{row['residual']:.1e}" for row in rows], "residual"))
+    if rows[0]["distance"] is not None:
+        columns.append(("distance", [f"{row['distance']:.4f}" for row in rows], "distance"))
+    return columns
+
+
+def short_branches(labels: list[str]) -> tuple[str, list[str]]:
+    """Heading and entries of labels such as "shoulder left, elbow up": common nouns stand in the heading."""
+    parts = [[part.partition(" ") for part in label.split(", ")] for label in labels]
+    nouns = [noun for noun, _, _ in parts[0]]
+    if any([noun for noun, _, _ in row] != nouns or not all(value for _, _, value in row) for row in parts):
+        return "branch", labels
+    return ", ".join(nouns), [", ".join(value for _, _, value in row) for row in parts]
+
+
+def limits_cell(out_by: dict[str, float], robot: Robot, *, degrees: bool, details: bool) -> Cell:
+    """The joints of a row that are out of limits; with details also by how much, or that none is."""
     if not out_by:
-        return Cell("ok", "green")
+        return Cell("ok" if details else "", "green")
     texts = []
     short = dict(zip(robot.joint_names, joint_headings(robot), strict=True))
     kinds = dict(zip(robot.joint_names, robot.joint_types, strict=True))
@@ -139,5 +180,5 @@ def limits_cell(out_by: dict[str, float], robot: Robot, *, degrees: bool) -> Cel
             size, unit, digits = float(np.degrees(excess)), "deg", 2
         least = 10.0**-digits
         amount = f"< {least:g}" if size < 0.5 * least else f"{size:.{digits}f}"
-        texts.append(f"{short[name]} out by {amount} {unit}")
+        texts.append(f"{short[name]} out by {amount} {unit}" if details else short[name])
     return Cell(", ".join(texts), "red")

@@ -48,6 +48,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_freedom(parser)
     text = "mark solutions out of limits (default), drop them, or keep all without a check"
     add_option(parser, "--limits", text, choices=("mark", "drop", "keep"), default="mark")
+    add_option(parser, "--details", "all columns: limits, singularity, the branch in full, residual")
     add_explanation(parser)
     add_option(parser, "--plot FILE", "write a picture (png, svg, pdf)", Path)
     add_degrees(parser)
@@ -82,7 +83,7 @@ def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     if out.as_json:
         out.document(solutions_document(robot, found, rows, goal, options))
     else:
-        print_solutions(out, robot, found, rows, degrees=args.deg)
+        print_solutions(out, robot, found, rows, degrees=args.deg, details=args.details)
         out.hint(gripper_note(args, robot))
         out.hint(degrees_note(args, robot))
     if found and args.plot is not None:
