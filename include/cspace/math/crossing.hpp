@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -51,20 +50,24 @@ inline Point crossing(const Line& a, const Line& b) {
 // The least and the greatest orientation of the corners of a box, seen from a towards b.
 inline std::pair<int, int> sides_of(Point a, Point b, const Box& box) {
     const auto& [low, high] = box;
-    return std::minmax({orientation(a, b, low), orientation(a, b, {high.x, low.y}), orientation(a, b, high),
-                        orientation(a, b, {low.x, high.y})});
+    int least = 1, greatest = -1;
+    for (const Point corner : {low, Point{high.x, low.y}, high, Point{low.x, high.y}}) {
+        const int side = orientation(a, b, corner);
+        least = std::min(least, side), greatest = std::max(greatest, side);
+    }
+    return {least, greatest};
 }
 
 // What a segment meets of a box.
 enum class BoxPart : std::int8_t { none, border, inside };
 inline BoxPart meets(Point a, Point b, const Box& box) {
-    const auto [low, high] = bounds_of(std::array{a, b});
-    if (high.x < box.low.x || low.x > box.high.x || high.y < box.low.y || low.y > box.high.y)
-        return BoxPart::none;
+    const auto& [low, high] = box;
+    const auto [left, right] = std::minmax(a.x, b.x);
+    const auto [lower, upper] = std::minmax(a.y, b.y);
+    if (right < low.x || left > high.x || upper < low.y || lower > high.y) return BoxPart::none;
     const auto [least, greatest] = sides_of(a, b, box);
     if (least > 0 || greatest < 0) return BoxPart::none;
-    const bool beside =
-        high.x <= box.low.x || low.x >= box.high.x || high.y <= box.low.y || low.y >= box.high.y;
+    const bool beside = right <= low.x || left >= high.x || upper <= low.y || lower >= high.y;
     return beside || least == 0 || greatest == 0 ? BoxPart::border : BoxPart::inside;
 }
 

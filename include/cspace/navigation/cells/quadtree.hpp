@@ -47,10 +47,11 @@ class Quadtree {
             std::max({std::abs(low_.x), std::abs(low_.y), std::abs(high_.x), std::abs(high_.y)});
         while (deepest_ > 0 && std::ldexp(side_, -deepest_) < far * std::ldexp(1.0, -44)) --deepest_;
         QuadCell root;
+        const Box square = square_of(root);
         bool entered = false;
         for (maps::Index e = 0; e < maps::Index(world.walls.size()); ++e) {
             touching_.push_back(e);
-            entered = entered || part_met(e, root) == BoxPart::inside;
+            entered = entered || part_met(e, square) == BoxPart::inside;
         }
         root.count = maps::Index(touching_.size());
         classify(root, entered);
@@ -80,10 +81,11 @@ class Quadtree {
             child.level = std::int8_t(parent.level + 1);
             child.kind = parent.kind;
             child.first = maps::Index(touching_.size());
+            const Box square = square_of(child);
             bool entered = false;
             for (maps::Index w = parent.first; w < parent.first + parent.count; ++w) {
                 const maps::Index wall = touching_[std::size_t(w)];
-                const BoxPart part = part_met(wall, child);
+                const BoxPart part = part_met(wall, square);
                 if (part != BoxPart::none) touching_.push_back(wall);
                 entered = entered || part == BoxPart::inside;
             }
@@ -143,8 +145,9 @@ class Quadtree {
         return std::abs(at - high) <= std::ldexp(std::abs(low) + std::abs(high), -50) ? high : at;
     }
 
-    BoxPart part_met(maps::Index wall, const QuadCell& cell) const {
-        return meets(world_.walls.begin(wall), world_.walls.end(wall), {low(cell), high(cell)});
+    Box square_of(const QuadCell& cell) const { return {low(cell), high(cell)}; }
+    BoxPart part_met(maps::Index wall, const Box& square) const {
+        return meets(world_.walls.begin(wall), world_.walls.end(wall), square);
     }
 
     void classify(QuadCell& cell, bool is_entered) {
