@@ -155,13 +155,15 @@ class IntervalSearch {
         }
     };
     // Whether a shorter way to the root of a node is known by now.
-    bool is_stale(const Node& n) { return n.root != at_start && n.g > best_[n.root].g * (1 + same_length); }
+    bool is_stale(const Node& n) {
+        return n.root != at_start && n.g > best_[std::uint32_t(n.root)].g * (1 + same_length);
+    }
     // Notes a way of length g to a corner, coming from another one to turn by `hand` there; false if a
     // shorter way is known, or one as long that has to turn less for all that this one reaches, or the same
     // through the same passage. (Grids have many ways of one length, and the intervals that they lead to
     // overlap: following each of them takes time without end.)
     bool reach(Index v, double g, Index from, Hand hand, Index through) {
-        Arrival& best = best_[v];
+        Arrival& best = best_[std::uint32_t(v)];
         const bool is_first = best.query != query_;
         if (!is_first && g > best.g * (1 + same_length)) return false;
         if (is_first || g < best.g * (1 - same_length)) best.from[0] = best.from[1] = none;
@@ -363,7 +365,7 @@ class IntervalSearch {
             route.path.push_back(left);
         else if (cross(right - r, goal_ - r) < 0)
             route.path.push_back(right);
-        for (Index v = end.root; v != at_start; v = best_[v].before)
+        for (Index v = end.root; v != at_start; v = best_[std::uint32_t(v)].before)
             if (!(route.path.back() == at(v))) route.path.push_back(at(v));
         if (!(route.path.back() == start_)) route.path.push_back(start_);
         finish_reversed(route);

@@ -36,8 +36,8 @@ class NearWalls {
     // At least the walls within the reach of a point inside the bounds.
     template <class Visit>
     void visit(Point p, const Visit& visit) const {
-        const std::size_t column = clamped((p.x - low_.x) / side_, columns_);
-        const std::size_t row = clamped((p.y - low_.y) / side_, rows_);
+        const std::size_t column = std::size_t(clamped((p.x - low_.x) / side_, columns_));
+        const std::size_t row = std::size_t(clamped((p.y - low_.y) / side_, rows_));
         for (const std::int32_t wall : members_.of(row * std::size_t(columns_) + column)) visit(wall);
     }
     // Whether the segment from p to q, no longer than the reach, meets a wall between its ends that has them
