@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -161,39 +161,75 @@ def singular_values(
     return sigma[..., :rank]
 
 
-def manipulability(robot: KinematicModel, q: ArrayLike, frame: str | None = None, **options: Any) -> Array:
+def manipulability(
+    robot: KinematicModel,
+    q: ArrayLike,
+    frame: str | None = None,
+    *,
+    rows: str | Iterable[str] = "auto",
+    point: ArrayLike | None = None,
+    expressed_in: str = "base",
+    T_world_base: PoseLike | None = None,
+    threads: int | None = None,
+) -> Array:
     """The manipulability: the volume of the ellipsoid of reachable twists, up to a constant.
 
     w = √det(J Jᵀ) = σ₁ σ₂ … σₖ: with fewer joints than rows it is the volume within what the joints span,
     √det(Jᵀ J). It is 0 exactly at singular configurations.
 
-    q (..., n) [rad or m]. options: rows, point, expressed_in, T_world_base, threads, as in singular_values,
+    q (..., n) [rad or m]. frame, rows, point, expressed_in, T_world_base, threads: as in singular_values,
     which also names the errors.
 
     Returns w (...).
 
     Yoshikawa 1985.
     """
-    sigma = singular_values(robot, q, frame, **options)
+    sigma = singular_values(
+        robot,
+        q,
+        frame,
+        rows=rows,
+        point=point,
+        expressed_in=expressed_in,
+        T_world_base=T_world_base,
+        threads=threads,
+    )
     return np.asarray(np.prod(sigma, axis=-1))[()]
 
 
 def distance_to_singularity(
-    robot: KinematicModel, q: ArrayLike, frame: str | None = None, **options: Any
+    robot: KinematicModel,
+    q: ArrayLike,
+    frame: str | None = None,
+    *,
+    rows: str | Iterable[str] = "auto",
+    point: ArrayLike | None = None,
+    expressed_in: str = "base",
+    T_world_base: PoseLike | None = None,
+    threads: int | None = None,
 ) -> Array:
     """The distance to singularity: the smallest singular value of the Jacobian.
 
     σ_min = min ‖J − S‖₂ over all S of lower rank, so it is the distance of the matrix to the nearest
     singular one, and the speed left in the worst direction per unit of joint velocity.
 
-    q (..., n) [rad or m]. options: rows, point, expressed_in, T_world_base, threads, as in singular_values,
+    q (..., n) [rad or m]. frame, rows, point, expressed_in, T_world_base, threads: as in singular_values,
     which also names the errors.
 
     Returns σ_min (...), inf where no joint moves the frame.
 
     Eckart and Young 1936; Klein and Blaho 1987.
     """
-    sigma = singular_values(robot, q, frame, **options)
+    sigma = singular_values(
+        robot,
+        q,
+        frame,
+        rows=rows,
+        point=point,
+        expressed_in=expressed_in,
+        T_world_base=T_world_base,
+        threads=threads,
+    )
     return np.asarray(sigma[..., -1] if sigma.shape[-1] else np.full(sigma.shape[:-1], np.inf))[()]
 
 
