@@ -41,12 +41,10 @@ class TrigMatrix:
         return cls([[1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, z], [0, 0, 0, 1]])
 
     @classmethod
-    def symbols(cls) -> TrigMatrix:
-        """The goal: entries r_11 … r_33 and p_x, p_y, p_z."""
-        rows = [
-            [TrigPolynomial.symbol(f"r_{i}{j}") for j in (1, 2, 3)] + [TrigPolynomial.symbol(f"p_{axis}")]
-            for i, axis in ((1, "x"), (2, "y"), (3, "z"))
-        ]
+    def symbols(cls, before: str = "") -> TrigMatrix:
+        """The goal: entries r_11 … r_33 and p_x, p_y, p_z; before: what their names begin with."""
+        names = [(f"r_{i}1", f"r_{i}2", f"r_{i}3", f"p_{axis}") for i, axis in enumerate("xyz", 1)]
+        rows = [[TrigPolynomial.symbol(before + name) for name in row] for row in names]
         return cls([*rows, [0, 0, 0, 1]])
 
     def __getitem__(self, place: tuple[int, int]) -> TrigPolynomial:

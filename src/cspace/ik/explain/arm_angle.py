@@ -10,8 +10,8 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.conditions import common_point
-from cspace.ik.explain.findings import Step
 from cspace.ik.explain.placed_wrist import goal_turns, rotation_steps
+from cspace.ik.explain.plan import Step
 from cspace.ik.explain.screws import (
     dot_product,
     goal_values,
@@ -55,8 +55,6 @@ def swivel_steps(chain: Any) -> tuple[Step, ...]:
     return (
         Step(
             "$l$",
-            1,
-            "",
             f"The shoulder S = ({vector_text(S)}) m, where axes 1, 2 and 3 meet, stays where it is; the "
             "wrist W, where axes 5, 6 and 7 meet, stands still in the tip, so the goal fixes it. $l$ leads "
             "from S to W.",
@@ -64,20 +62,19 @@ def swivel_steps(chain: Any) -> tuple[Step, ...]:
         ),
         Step(
             "$t_4$",
-            2,
-            "subproblem 3",
             "Joints 1 to 3 and 5 to 7 do not change the distance from S to W. With the elbow E, the point of "
             f"axis 4 nearest to S, ({vector_text(E)}) m at zero, it depends on $t_4$ alone. The $t_i$ are "
             "the joints' own angles here.",
             (Equation(square, reach, unit="m²"),),
+            method="subproblem 3",
+            ways=2,
         ),
         Step(
             "$K$",
-            1,
-            "given",
             "The triangle S, E, W is rigid now and may turn about $l$: that is the freedom. `swivel=` gives "
             "it: the angle about $l$ from the half-plane through the direction of axis 1 to the one through "
             "E. $K$, the rotation of joints 1 to 3, takes the triangle to its place.",
+            method="given",
         ),
         *ball_steps(chain, SHOULDER, "K", "$K$ is made by joints 1 to 3."),
         *ball_steps(

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from cspace.ik.explain import page
-from cspace.ik.explain.findings import Findings, Step
 from cspace.ik.explain.screws import vector_text
 from cspace.math import Equation, MatrixEquation
 from cspace.tables import align_cells, shown
 from cspace.tolerances import PRINTED_FACTOR, PRINTED_MISS
 
+if TYPE_CHECKING:
+    from cspace.ik.explain.plan import IkPlan, Step
+
 MOST_TERMS: Final = 16
 """An equation of more terms is printed with symbols alone."""
 
 
-def lay_out_plan(plan: Findings) -> list[page.Block]:
+def lay_out_plan(plan: IkPlan) -> list[page.Block]:
     """The page of an explanation."""
     out: list[page.Block] = [page.lay_out_paragraph(f"**{plan.robot}**: {plan.summary}")]
     if plan.reason:
@@ -40,7 +42,7 @@ def lay_out_plan(plan: Findings) -> list[page.Block]:
     return out
 
 
-def step_blocks(plan: Findings, steps: Sequence[Step]) -> list[page.Block]:
+def step_blocks(plan: IkPlan, steps: Sequence[Step]) -> list[page.Block]:
     """Steps with their equations."""
     out: list[page.Block] = []
     for number, step in enumerate(steps, 1):
@@ -60,7 +62,7 @@ def count_solutions(steps: Sequence[Step]) -> str:
     return f"up to ${product} = {most}$" if len(factors) > 1 else f"up to {most}"
 
 
-def geometry_blocks(plan: Findings) -> list[page.Block]:
+def geometry_blocks(plan: IkPlan) -> list[page.Block]:
     """The tables of what the axes share."""
     out: list[page.Block] = []
     if plan.relations:
@@ -97,7 +99,7 @@ def list_joints(joints: tuple[int, ...]) -> str:
     return ", ".join(map(str, joints[:-1])) + f" and {joints[-1]}"
 
 
-def equation_blocks(plan: Findings, step: Step) -> list[page.Block]:
+def equation_blocks(plan: IkPlan, step: Step) -> list[page.Block]:
     """The equations of a step as symbols and, where they fit, with the arm's numbers."""
     symbols = step.equations
     out: list[page.Block] = []
@@ -116,21 +118,21 @@ def equation_blocks(plan: Findings, step: Step) -> list[page.Block]:
     return out
 
 
-def refers_to_the_arm(plan: Findings, equation: Equation | MatrixEquation) -> bool:
+def refers_to_the_arm(plan: IkPlan, equation: Equation | MatrixEquation) -> bool:
     """Whether an equation holds symbols of the arm, which have numbers."""
     return isinstance(equation, Equation) and bool(
         equation.symbols() & (set(plan.constants) - {equation.defines})
     )
 
 
-def fits_line(plan: Findings, equation: Equation | MatrixEquation) -> bool:
+def fits_line(plan: IkPlan, equation: Equation | MatrixEquation) -> bool:
     """Whether an equation is short enough to be printed with numbers."""
     if not isinstance(equation, Equation):
         return True
     return len(equation.with_numbers(plan.constants)) <= MOST_TERMS
 
 
-def equation_line(plan: Findings, equation: Equation | MatrixEquation, *, numbers: bool) -> tuple[str, str]:
+def equation_line(plan: IkPlan, equation: Equation | MatrixEquation, *, numbers: bool) -> tuple[str, str]:
     """An equation as text and LaTeX."""
     if isinstance(equation, MatrixEquation) or not numbers:
         return equation.text(), equation.latex()
@@ -159,7 +161,7 @@ def matrix_latex(name: str, T: Any) -> str:
     return rf"{symbol} &= \begin{{bmatrix}} {rows} \end{{bmatrix}}"
 
 
-def plan_document(plan: Findings) -> dict[str, Any]:
+def plan_document(plan: IkPlan) -> dict[str, Any]:
     """An explanation as data."""
     return {
         "robot": plan.robot,
@@ -198,7 +200,7 @@ def plan_document(plan: Findings) -> dict[str, Any]:
     }
 
 
-def step_document(plan: Findings, step: Step) -> dict[str, Any]:
+def step_document(plan: IkPlan, step: Step) -> dict[str, Any]:
     """A step as data; numbers: the equation with this arm's numbers, all of its terms."""
     equations = []
     for each in step.equations:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.ik.explain.findings import Step
+from cspace.ik.explain.plan import Step
 from cspace.ik.explain.screws import (
     Vector,
     dot_product,
@@ -16,9 +16,6 @@ from cspace.ik.explain.screws import (
 )
 from cspace.math import Equation, TrigPolynomial
 from cspace.spatial.vectors import perpendicular
-
-WAYS = {1: 1, 2: 2, 3: 4}
-"""How many configurations bring the tip of an arm of so many joints to a point."""
 
 
 def invariants_of(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
@@ -56,10 +53,10 @@ def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
     )
     first = Step(
         " and ".join(names),
-        WAYS[n],
-        "subproblem 5" if kinds == "RRR" else "",
         f"Joint {middle + 1} maps one point to another exactly if its invariants agree: {what}.",
         equate_invariants(invariants_of(chain, middle, before), invariants_of(chain, middle, behind)),
+        method="subproblem 5" if kinds == "RRR" else "",
+        ways=2 if n == 2 else 4,
     )
     return [first, last_step(chain, middle, behind, before)]
 
@@ -71,8 +68,7 @@ def last_step(chain: Any, i: int, x: Vector, y: Vector) -> Step:
     equations = (Equation(carried[k], y[k], unit="m") for k in range(3))
     return Step(
         f"$t_{i + 1}$" if turning else f"$q_{i + 1}$",
-        1,
-        "subproblem 1" if turning else "",
         f"Joint {i + 1} {'rotates' if turning else 'translates'} one point into the other.",
         tuple(each for each in equations if (each.left - each.right).terms),
+        method="subproblem 1" if turning else "",
     )

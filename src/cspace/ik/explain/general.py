@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Block, lay_out_table
+from cspace.ik.explain.plan import Step
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.ik.geometry import as_arrays
 from cspace.math import Angle, MatrixEquation, Product, TrigMatrix, TrigPolynomial
@@ -93,8 +93,6 @@ class Loop:
         t = [self.symbol(joint) for joint in joints]
         loop = Step(
             "The loop",
-            1,
-            "",
             "A frame on each axis, its z along the axis, makes the arm a product of joints and links. "
             "Any joint may come first, and the loop may be read backwards; asked first is the one that "
             f"begins with {t[0]}.",
@@ -108,8 +106,6 @@ class Loop:
         return [
             Step(
                 t[0],
-                16,
-                "elimination",
                 "Both sides map the z axis to the same direction $l$ and the origin to the same point $p$, "
                 f"and {t[3]} changes neither. Both sides agree in $p$, $l$, $p \\cdot p$, $p \\cdot l$, "
                 "$p \\times l$ and $(p \\cdot p) l - 2 (p \\cdot l) p$: fourteen equations (Raghavan and "
@@ -117,17 +113,16 @@ class Loop:
                 f"sine and cosine of half of {t[1]}, they are twelve linear equations in twelve products of "
                 f"{t[1]} and {t[2]}{slides}. Their determinant, a trigonometric polynomial of degree 8 in "
                 f"{t[0]}, the hidden angle, vanishes at the solutions: up to 16.",
+                method="elimination",
+                ways=16,
             ),
             Step(
                 f"{t[1]}, {t[2]}",
-                1,
-                "null vector",
                 "At a root the null vector contains the products of both.",
+                method="null vector",
             ),
             Step(
                 f"{t[4]}, {t[5]}, {t[3]}",
-                1,
-                "",
                 "The loop closes with the joints that were eliminated and the one that was left alone; a "
                 "Newton step on the arm itself takes out what rounding left.",
             ),
@@ -140,18 +135,16 @@ class Loop:
         return [
             Step(
                 t[0],
-                8,
-                "two sheets",
                 f"Four turns make the orientation, so {t[0]} is free; given it, a corner of the rotation "
                 "fixes one more angle in two ways, and the others follow. What the position still lacks "
                 "must lie in the plane of both slides. The product of that condition over both ways is a "
                 f"trigonometric polynomial of degree 4 in {t[0]}, the hidden angle: up to 8 roots.",
+                method="two sheets",
+                ways=8,
             ),
-            Step(", ".join(turns), 1, "", "The way on which the condition vanishes makes the orientation."),
+            Step(", ".join(turns), "The way on which the condition vanishes makes the orientation."),
             Step(
                 ", ".join(slides),
-                1,
-                "",
                 "Two linear equations: the slides make up for what the position lacks.",
             ),
         ]

@@ -14,9 +14,9 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.ik.explain.arm_angle import swivel_steps, swivel_values
 from cspace.ik.explain.describe import ONE_CALL, settled_plan
-from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Block, lay_out_table
-from cspace.ik.explain.plan import IkPlan
+from cspace.ik.explain.plan import IkPlan, Step
+from cspace.ik.explain.screws import goal_values
 from cspace.ik.locked_joints import between_others, value_in_words
 from cspace.ik.solver import MAX_SETTLED, Solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
@@ -29,6 +29,8 @@ AHEAD = 100
 """Locked joints are angles of their own: those of the six that move are numbered from 1."""
 GOLDEN = 0.6180339887498949
 FIRST_MEET = 1
+WHOLE, INNER = "whole_", "inner_"
+"""What the symbols of the whole arm's goal and of that of the moving joints begin with."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,16 +291,16 @@ def locked_step(split: Split, ends: list[int]) -> Step:
     if split.between:
         words += "A joint held between others stands at the value that the numbers below belong to."
     words = words.strip()
-    goal = ("Tgoal", r"T_{\text{goal}}", whole_goal("whole"))
+    goal = ("Tgoal", r"T_{\text{goal}}", TrigMatrix.symbols(WHOLE))
     left = [part for k in ends if k < split.moving[0] for part in undo_joint(split, k, chain)]
     right = [part for k in reversed(ends) if k > split.moving[-1] for part in undo_joint(split, k, chain)]
     parts = (*reversed_pairs(left), goal, *right)
     equations: list[Equation | MatrixEquation] = []
     if ends:
-        equations.append(MatrixEquation(Product((("T", "T", whole_goal("inner")),)), Product(parts)))
+        equations.append(MatrixEquation(Product((("T", "T", TrigMatrix.symbols(INNER)),)), Product(parts)))
     for k in split.between:
         equations.append(Equation(TrigPolynomial.symbol(f"held_{k + 1}"), TrigPolynomial.number(split.at[k])))
-    return Step(", ".join(number), 1, "given", words, tuple(equations))
+    return Step(", ".join(number), words, tuple(equations), method="given")
 
 
 def reversed_pairs(parts: list[Any]) -> list[Any]:
@@ -319,17 +321,6 @@ def undo_joint(split: Split, k: int, chain: Any) -> list[tuple[str, str, TrigMat
     return [(f"M{i}", f"M_{i}", frame), turn, (f"M{i}⁻¹", f"M_{i}^{{-1}}", back)]
 
 
-def whole_goal(name: str) -> TrigMatrix:
-    """A goal whose entries are symbols of their own."""
-    rows = [[TrigPolynomial.symbol(f"{name}_{i}{j}") for j in range(4)] for i in range(3)]
-    return TrigMatrix([*rows, [0, 0, 0, 1]])
-
-
-def goal_entries(name: str, T: Array) -> dict[str, Any]:
-    """The numeric values of those symbols."""
-    return {f"{name}_{i}{j}": T[..., i, j] for i in range(3) for j in range(4)}
-
-
 def values_of(split: Split, inner: IkPlan) -> Any:
     """From configurations of the whole arm to the numbers of the symbols."""
     if inner._values is None:
@@ -338,7 +329,7 @@ def values_of(split: Split, inner: IkPlan) -> Any:
     def values(q: Array, T: Array) -> dict[str, Any]:
         goal = split.goal(q, T)
         out = dict(inner._values(q[..., list(split.moving)], goal)) if inner._values else {}
-        out |= goal_entries("whole", T) | goal_entries("inner", goal)
+        out |= goal_values(T, WHOLE) | goal_values(goal, INNER)
         out |= {f"held_{k + 1}": q[..., k] for k in split.between}
         kinds = split.solver.chain.joint_types
         out |= {f"{'t' if kinds[k] == 'R' else 'q'}_{AHEAD + k + 1}": q[..., k] for k in split.locked}

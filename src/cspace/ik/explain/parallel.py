@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form, symbol
+from cspace.ik.explain.plan import Step
 from cspace.ik.explain.wrist import (
     a1,
     a2,
@@ -31,7 +31,6 @@ def three_parallel_steps(form: Form) -> list[Step]:
     """Axes 2, 3, 4 parallel, 5 and 6 meet."""
     shoulder = Step.of_angles(
         "1",
-        2,
         "subproblem 4",
         "Joints 2, 3 and 4 do not change heights along their axes, and joints 5 and 6 do not move the "
         "wrist, so its height depends only on $t_1$.",
@@ -46,7 +45,6 @@ def middle_parallel_steps(form: Form) -> list[Step]:
     r = {i: symbol(f"r_{i}3") for i in (1, 2, 3)}
     both = Step.of_angles(
         "1 5",
-        4,
         "subproblem 6",
         "Joints 2, 3 and 4 change neither heights along their axes nor angles with them: the height of "
         "axis 6 and its slope are two equations in $t_1$ and $t_5$.",
@@ -76,7 +74,6 @@ def planar_steps(form: Form, a5: TrigPolynomial) -> list[Step]:
     return [
         Step.of_angles(
             "3",
-            2,
             "subproblem 3",
             "Axis 4, seen from axis 2 in the plane, is at $(u, v)$; links $a_2$ and $a_3$ span that "
             "distance: the law of cosines.",
@@ -87,7 +84,6 @@ def planar_steps(form: Form, a5: TrigPolynomial) -> list[Step]:
         ),
         Step.of_angles(
             "2",
-            1,
             "subproblem 1",
             "$t_2$ rotates the bent arm to $(u, v)$; $t_4$ is the rest of the sum $t_{234}$.",
             Equation(u, a2 * form.cos(2) + a3 * form.cos(2, 3), unit="m"),
@@ -115,7 +111,6 @@ def first_parallel_steps(form: Form) -> list[Step]:
     return [
         Step.of_angles(
             "4 6",
-            4,
             "subproblem 6",
             "Joints 1, 2 and 3 change neither heights along their axes nor angles with them: the height "
             "of the goal and the slope of axis 5 against them are two equations in $t_4$ and $t_6$.",
@@ -124,7 +119,6 @@ def first_parallel_steps(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "5",
-            1,
             "subproblem 1",
             "The direction of the parallel axes, seen from both sides of joint 5.",
             define("k_x", k[2, 0]),
@@ -134,7 +128,6 @@ def first_parallel_steps(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "2",
-            2,
             "subproblem 3",
             "With joints 4, 5, 6 known, axis 3 seen from axis 1 in the plane is at $(u, v)$; links $a_1$ "
             "and $a_2$ span that distance: the law of cosines.",
@@ -144,7 +137,6 @@ def first_parallel_steps(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "1",
-            1,
             "subproblem 1",
             "$t_1$ rotates the bent arm to $(u, v)$.",
             Equation(u, a1 * form.cos(1) + a2 * form.cos(1, 2), unit="m"),
@@ -152,7 +144,6 @@ def first_parallel_steps(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "123",
-            1,
             "",
             "The sum is the angle of the plane; $t_3$ is its rest.",
             define("n_x", Q[0, 0]),

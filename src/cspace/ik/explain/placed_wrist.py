@@ -9,7 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.explain.few_joints import few_joint_steps
-from cspace.ik.explain.findings import Step
+from cspace.ik.explain.plan import Step
 from cspace.ik.explain.screws import Screws, Vector, dot_product, number_vector, symbol_vector, turn_direction
 from cspace.math import Equation, MatrixEquation, TrigPolynomial
 
@@ -33,7 +33,7 @@ def placed_wrist_steps(arm: Screws, centre: Array) -> list[Step]:
     T_zero[:3, 3] = centre
     first = Screws(arm.joint_types[:3], arm.axes[:3], arm.points[:3], T_zero)
     place = few_joint_steps(first, symbol_vector("w"))
-    where = Step("$w$", 1, "", "The goal fixes where the centre of the wrist has to be.", wanted)
+    where = Step("$w$", "The goal fixes where the centre of the wrist has to be.", wanted)
     return [where, *place, *three_turns(arm, (3, 4, 5), before=(0, 1, 2))]
 
 
@@ -74,9 +74,9 @@ def rotation_steps(
     onto = equate_vectors(ahead, turn_direction(arm, i, middle), but=first)
     last = turn_direction(arm, k, turn_direction(arm, j, number_vector(h[i]), back=True), back=True)
     return [
-        Step(f"$t_{j + 1}$", 2, "subproblem 4", words[0], (*given, first)),
-        Step(f"$t_{i + 1}$", 1, "subproblem 1", words[1], onto),
-        Step(f"$t_{k + 1}$", 1, "subproblem 1", words[2], equate_vectors(behind, last, but=first)),
+        Step(f"$t_{j + 1}$", words[0], (*given, first), method="subproblem 4", ways=2),
+        Step(f"$t_{i + 1}$", words[1], onto, method="subproblem 1"),
+        Step(f"$t_{k + 1}$", words[2], equate_vectors(behind, last, but=first), method="subproblem 1"),
     ]
 
 
@@ -104,8 +104,6 @@ def orientation_steps(six: Screws, chain: MatrixEquation) -> list[Step]:
         *three_turns(six, (turns[0], turns[1], turns[2]), before=()),
         Step(
             ", ".join(slides),
-            1,
-            "",
             "With the angles known, the position is linear in the prismatic joints: three equations.",
             (chain,),
         ),

@@ -64,13 +64,13 @@ def joint_values(kinds: str, q: Array, *, length: float = 1.0) -> dict[str, Any]
     return out
 
 
-def goal_values(T: Array, *, length: float = 1.0) -> dict[str, Any]:
-    """The numeric values of p (over `length`) and r_ij."""
+def goal_values(T: Array, before: str = "", *, length: float = 1.0) -> dict[str, Any]:
+    """The numeric values of p (over `length`) and r_ij; before: as of TrigMatrix.symbols."""
     out: dict[str, Any] = {}
     for i, axis in enumerate("xyz"):
-        out[f"p_{axis}"] = T[..., i, 3] / length
+        out[f"{before}p_{axis}"] = T[..., i, 3] / length
         for j in range(3):
-            out[f"r_{i + 1}{j + 1}"] = T[..., i, j]
+            out[f"{before}r_{i + 1}{j + 1}"] = T[..., i, j]
     return out
 
 

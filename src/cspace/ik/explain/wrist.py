@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form, symbol
+from cspace.ik.explain.plan import Step
 from cspace.math import Equation, Product, TrigPolynomial
 
 define = Equation.definition
@@ -27,8 +27,6 @@ def wrist_steps(form: Form, kind: int) -> list[Step]:
     ca3, sa3 = form.twist(3)
     where = Step(
         "$w$",
-        1,
-        "",
         "The wrist centre is at $w$ behind joint 3 and rotates with $t_3$; $p$ is its goal.",
         (
             define("w_x", symbol("a_3"), "m"),
@@ -76,7 +74,6 @@ def pan_step(form: Form, *, a1: TrigPolynomial = a1) -> Step:
     ahead, aside = x2 + a1, ca1 * y2 - sa1 * vz
     return Step.of_angles(
         "1",
-        1,
         "subproblem 1",
         "Both sides of the first joint are known now: the bearing of $p$ about axis 1 gives its angle.",
         Equation(px, c1 * ahead - s1 * aside, unit="m"),
@@ -110,7 +107,6 @@ def last_parallel(form: Form) -> list[Step]:
     return [
         Step.of_angles(
             "1",
-            2,
             "subproblem 4",
             "Joints 2 and 3 do not change the height of the wrist along their axes, so it depends on "
             "$t_1$ alone.",
@@ -118,7 +114,6 @@ def last_parallel(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "3",
-            2,
             "subproblem 3",
             "In the plane across axes 2 and 3 an upper arm $a_2$ and a forearm to the wrist span the "
             "distance of the wrist from axis 2: the law of cosines.",
@@ -129,7 +124,6 @@ def last_parallel(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "2",
-            1,
             "subproblem 1",
             "The bent arm is rotated until the wrist is at its goal.",
             Equation(x, a2 * form.cos(2) + wx * c23 - wy * s23, unit="m"),
@@ -146,7 +140,6 @@ def first_meet(form: Form) -> list[Step]:
     return [
         Step.of_angles(
             "3",
-            2,
             "subproblem 3",
             "Joints 1 and 2 do not move the point where their axes meet, so the distance of the wrist "
             "from it depends only on $t_3$.",
@@ -154,7 +147,6 @@ def first_meet(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "2",
-            2,
             "subproblem 4",
             "Joint 1 does not change heights along its axis: that of the wrist, now known behind joint 2, "
             "fixes $t_2$.",
@@ -173,7 +165,6 @@ def last_meet(form: Form) -> list[Step]:
     return [
         Step.of_angles(
             "1",
-            2,
             "subproblem 3",
             "Joints 2 and 3 do not move the point where their axes meet, so the distance of the wrist "
             "from it is constant. This gives an equation in $t_1$ alone.",
@@ -181,7 +172,6 @@ def last_meet(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "3",
-            2,
             "subproblem 4",
             "Joint 2 does not change heights along its axis: that of the wrist, known in front of it, "
             "fixes $t_3$.",
@@ -191,7 +181,6 @@ def last_meet(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "2",
-            1,
             "subproblem 1",
             "The bearing of the wrist about axis 2 gives the remaining angle.",
             *behind_joint_two(form, a2=TrigPolynomial()),
@@ -207,7 +196,6 @@ def first_parallel(form: Form) -> list[Step]:
     return [
         Step.of_angles(
             "3",
-            2,
             "subproblem 4",
             "Joints 1 and 2 do not change heights along their axes: that of the wrist depends on $t_3$ "
             "alone.",
@@ -215,7 +203,6 @@ def first_parallel(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "2",
-            2,
             "subproblem 3",
             "The distance of the wrist from axis 1 gives the elbow angle between the two parallel axes.",
             *behind_joint_two(form),
@@ -234,7 +221,6 @@ def any_three(form: Form) -> list[Step]:
     return [
         Step.of_angles(
             "3",
-            4,
             "subproblem 5",
             "The distance from the foot of axis 1 and the height along it are two equations, linear in "
             "cosine and sine of $t_2$. Their squares add up to one without $t_2$: a quartic in "
@@ -246,7 +232,6 @@ def any_three(form: Form) -> list[Step]:
         ),
         Step.of_angles(
             "2",
-            1,
             "subproblem 1",
             "The same two equations, with $t_3$ known.",
             Equation(p2, a1 * a1 + v2 + 2.0 * a1 * x2, unit="m²"),
@@ -281,7 +266,6 @@ def turn_steps(form: Form, before: int, first: str) -> list[Step]:
     return [
         Step.of_angles(
             "5",
-            2,
             "subproblem 4",
             f"The remaining orientation, $M = ({front})^T R$, is the rotation of the wrist. Its third "
             "diagonal entry, the cosine between axes 4 and 6, depends only on $t_5$.",
@@ -290,7 +274,6 @@ def turn_steps(form: Form, before: int, first: str) -> list[Step]:
         ),
         Step.of_angles(
             first,
-            1,
             "subproblem 1",
             "The third column of $M$ is the direction of axis 6.",
             *entries((1, 3), (2, 3)),
@@ -299,7 +282,6 @@ def turn_steps(form: Form, before: int, first: str) -> list[Step]:
         ),
         Step.of_angles(
             "6",
-            1,
             "subproblem 1",
             "The first column of $M$, seen behind the first joint of the wrist, is $n$; behind the second "
             "one it has only the cosine and sine of $t_6$ left.",
