@@ -24,7 +24,7 @@ import run
 import turns
 import worlds
 from chains import Array
-from cspace.navigation.visibility import visibility_graph
+from cspace.navigation import visibility_graph
 from turns import Question
 
 BOUNDS = (0.0, 0.0, worlds.SIDE, worlds.SIDE)

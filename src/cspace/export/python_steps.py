@@ -10,8 +10,9 @@ import numpy as np
 from cspace.export.arm import ExportedArm
 from cspace.export.plain import in_ascii
 from cspace.ik.explain.describe import settled_plan
+from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import plain_sentence
-from cspace.ik.explain.plan import IkPlan, Step
+from cspace.ik.explain.plan import IkPlan
 from cspace.math import Equation, TrigPolynomial
 
 UNITS = {"": "", "m": " / LENGTH", "m²": " / LENGTH**2", "m⁴": " / LENGTH**4"}

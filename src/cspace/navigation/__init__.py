@@ -1,48 +1,35 @@
 """Navigation in the plane: planners that find a path from start to goal in polygonal worlds and grids."""
 
-from cspace.navigation.any_angle import AnyAngle
-from cspace.navigation.bugs import Bug1, Bug2, BugEvidence, TangentBug, VoronoiBug
-from cspace.navigation.cars import CarRoute, hybrid_a_star
-from cspace.navigation.cells import (
+from cspace.navigation.any_angle.any_angle import AnyAngle
+from cspace.navigation.bugs.voronoi_bug import VoronoiBug
+from cspace.navigation.bugs.wall_followers import Bug1, Bug2, BugEvidence, TangentBug
+from cspace.navigation.cars.car_route import CarRoute
+from cspace.navigation.cars.hybrid_a_star import hybrid_a_star
+from cspace.navigation.cells.approximate_cells import (
     ApproximateCells,
     ApproximateCellsSearch,
     CellEvidence,
-    ExactCells,
     approximate_cells,
 )
-from cspace.navigation.coverage import Coverage, coverage
-from cspace.navigation.curves import (
-    Curve,
-    Segment,
-    dubins,
-    dubins_distance,
-    reeds_shepp,
-    reeds_shepp_distance,
-)
-from cspace.navigation.fields import (
-    Brushfire,
-    BrushfireDiagram,
-    FastMarching,
-    Harmonic,
-    HarmonicEvidence,
+from cspace.navigation.cells.exact_cells import ExactCells
+from cspace.navigation.coverage.boustrophedon import Coverage, coverage
+from cspace.navigation.curves.curve import Curve, Segment
+from cspace.navigation.curves.shortest import dubins, dubins_distance, reeds_shepp, reeds_shepp_distance
+from cspace.navigation.fields.brushfire import Brushfire, BrushfireDiagram, brushfire_diagram
+from cspace.navigation.fields.fast_marching import FastMarching, arrival_times
+from cspace.navigation.fields.harmonic import Harmonic, HarmonicEvidence, harmonic
+from cspace.navigation.fields.potential_a_star import PotentialAStar
+from cspace.navigation.fields.potential_field import PotentialField, PotentialRest, potential
+from cspace.navigation.fields.rimon_koditschek import (
     NavigationEvidence,
     NavigationFunction,
-    PotentialAStar,
-    PotentialField,
-    PotentialRest,
     RimonKoditschek,
-    arrival_times,
-    brushfire_diagram,
-    harmonic,
     navigation_function,
-    potential,
 )
 from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycle, cast_rays, follow
-from cspace.navigation.grid import (
+from cspace.navigation.grid.best_first import (
     AStar,
     Dijkstra,
-    DStarLite,
-    DStarLiteSearch,
     FocalSearch,
     GreedyBestFirst,
     JumpPointSearch,
@@ -50,13 +37,18 @@ from cspace.navigation.grid import (
     Wavefront,
     WeightedAStar,
 )
+from cspace.navigation.grid.d_star_lite import DStarLite, DStarLiteSearch
 from cspace.navigation.navigate import World, navigate
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.planners import PLANNERS
 from cspace.navigation.route import STATUSES, Route, Stats
-from cspace.navigation.sampling import PRM, RRT, RRTStar
-from cspace.navigation.visibility import VisibilityGraph, VisibilityGraphSearch, visibility_graph
-from cspace.navigation.voronoi import Voronoi, VoronoiDiagram, voronoi_diagram
+from cspace.navigation.sampling.planners import PRM, RRT, RRTStar
+from cspace.navigation.visibility.visibility_graph import (
+    VisibilityGraph,
+    VisibilityGraphSearch,
+    visibility_graph,
+)
+from cspace.navigation.voronoi.voronoi import Voronoi, VoronoiDiagram, voronoi_diagram
 from cspace.search import Option, Planner, Trace, option
 
 __all__ = ["PLANNERS", "STATUSES", "Option", "PlanePlanner", "Planner", "Route", "Stats", "Trace", "World"]

@@ -17,7 +17,7 @@ from cspace.maps.outlines import longer_side
 from cspace.navigation.checks import check_ends
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route, new_route
-from cspace.navigation.voronoi import Voronoi
+from cspace.navigation.voronoi.voronoi import Voronoi
 from cspace.tolerances import DISC_FITS, FINE_SIDES, ON_WALL
 
 

@@ -9,18 +9,37 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from cspace.errors import InputTypeError, suggest
-from cspace.navigation import any_angle, bugs, cells, fields, grid, sampling, visibility, voronoi
+from cspace.navigation.any_angle import any_angle
+from cspace.navigation.bugs import voronoi_bug, wall_followers
+from cspace.navigation.cells import approximate_cells, exact_cells
+from cspace.navigation.fields import (
+    brushfire,
+    fast_marching,
+    harmonic,
+    potential_a_star,
+    potential_field,
+    rimon_koditschek,
+)
+from cspace.navigation.grid import best_first, d_star_lite
 from cspace.navigation.planner import PlanePlanner
+from cspace.navigation.sampling import planners
+from cspace.navigation.visibility import visibility_graph
+from cspace.navigation.voronoi import voronoi
 
-_EXPORTS = (
-    getattr(room, name)
-    for room in (bugs, visibility, voronoi, any_angle, cells, fields, grid, sampling)
-    for name in room.__all__
+MODULES = (
+    *(wall_followers, voronoi_bug, visibility_graph, voronoi, any_angle, approximate_cells, exact_cells),
+    *(brushfire, fast_marching, harmonic, potential_a_star, potential_field, rimon_koditschek),
+    *(best_first, d_star_lite, planners),
 )
 PLANNERS: Final[Mapping[str, PlanePlanner]] = MappingProxyType(
-    {each.name: each() for each in _EXPORTS if isinstance(each, type) and issubclass(each, PlanePlanner)}
+    {
+        each.name: each()
+        for module in MODULES
+        for each in vars(module).values()
+        if isinstance(each, type) and issubclass(each, PlanePlanner) and each.summary
+    }
 )
-"""Every planner that a room exports, with its default options, by name."""
+"""Every planner of the library, with its default options, by name."""
 
 
 @lru_cache(maxsize=64, typed=True)

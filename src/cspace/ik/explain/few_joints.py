@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.ik.explain.plan import Step
+from cspace.ik.explain.findings import Step
 from cspace.ik.explain.screws import (
     Vector,
     dot_product,

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Block, lay_out_table
-from cspace.ik.explain.plan import Step
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.ik.geometry import as_arrays
 from cspace.math import Angle, MatrixEquation, Product, TrigMatrix, TrigPolynomial

@@ -14,8 +14,9 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.ik.explain.arm_angle import swivel_steps, swivel_values
 from cspace.ik.explain.describe import ONE_CALL, settled_plan
+from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Block, lay_out_table
-from cspace.ik.explain.plan import IkPlan, Step
+from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.screws import goal_values
 from cspace.ik.locked_joints import between_others, value_in_words
 from cspace.ik.solver import MAX_SETTLED, Solver

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form, symbol
-from cspace.ik.explain.plan import Step
 from cspace.ik.explain.wrist import (
     a1,
     a2,

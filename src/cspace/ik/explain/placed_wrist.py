@@ -9,7 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.explain.few_joints import few_joint_steps
-from cspace.ik.explain.plan import Step
+from cspace.ik.explain.findings import Step
 from cspace.ik.explain.screws import Screws, Vector, dot_product, number_vector, symbol_vector, turn_direction
 from cspace.math import Equation, MatrixEquation, TrigPolynomial
 

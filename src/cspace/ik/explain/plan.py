@@ -1,56 +1,24 @@
-"""The explanation of an arm's solver: the geometry, the steps, the equations; it prints."""
+"""The explanation of an arm's solver as an object that prints: as blocks of a page, and as plain data."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, leading_axes
-from cspace.ik.explain.document import lay_out_plan, plan_document
-from cspace.ik.explain.page import Block
-from cspace.ik.explain.survey import InvariantDirection, InvariantPoint, Relation
+from cspace.ik.explain import page
+from cspace.ik.explain.findings import Findings, Step
+from cspace.ik.explain.screws import vector_text
 from cspace.math import Equation, MatrixEquation
-from cspace.spatial import as_pose
-from cspace.tables import one_line
-from cspace.tolerances import FARTHEST
+from cspace.tables import align_cells, one_line, shown
+from cspace.tolerances import PRINTED_FACTOR, PRINTED_MISS
 
-Values = Callable[[Array, Array], dict[str, Any]]
-"""From configurations and the poses that they reach to the numbers of the symbols."""
-
-
-WAYS: Final = {"subproblem 3": 2, "subproblem 4": 2, "subproblem 5": 4, "subproblem 6": 4}
-"""How many answers a subproblem has at most; one if it is not listed."""
+MOST_TERMS: Final = 16
+"""An equation of more terms is printed with symbols alone."""
 
 
-@dataclass(frozen=True, eq=False)
-class Step:
-    """One step of a solver. finds: the unknowns, as $t_1$. words: what happens, a sentence.
-
-    equations: what holds, definitions first. method: what solves it. ways: how many answers it has at most.
-    angles: what the equations of a closed form fix, by joints: "3", "1 5" for two, "234" for a sum.
-    """
-
-    finds: str
-    words: str
-    equations: tuple[Equation | MatrixEquation, ...] = ()
-    method: str = ""
-    ways: int = 1
-    angles: str = ""
-
-    @classmethod
-    def of_angles(cls, angles: str, method: str, words: str, *equations: Equation) -> Step:
-        """A step that fixes angles."""
-        finds = "t_" + ", t_".join(word if len(word) == 1 else f"{{{word}}}" for word in angles.split())
-        if len(angles) > 1 and " " not in angles:
-            finds += " = " + " + ".join(f"t_{i}" for i in angles)
-        return cls(f"${finds}$", words, equations, method, WAYS.get(method, 1), angles)
-
-
-@dataclass(frozen=True, eq=False)
-class IkPlan:
+class IkPlan(Findings):
     """How `robot.ik` solves an arm; prints, has to_markdown() and to_latex(), and is false if it does not.
 
     robot: its name; joints: their names. family: the geometry that is used, "general", "fewer than six
@@ -63,32 +31,6 @@ class IkPlan:
     steps. other_ways: further ways to a solution, by name, each with its steps. residuals(q, T): how far
     each equation is off at configurations q (..., n).
     """
-
-    robot: str
-    joints: tuple[str, ...]
-    family: str = "none"
-    summary: str = ""
-    branches: int = 0
-    reason: str = ""
-    relations: tuple[Relation, ...] = ()
-    invariant_points: tuple[InvariantPoint, ...] = ()
-    invariant_directions: tuple[InvariantDirection, ...] = ()
-    notes: tuple[str, ...] = ()
-    tables: Mapping[str, Block] = field(default_factory=dict)
-    matrices: Mapping[str, Array] = field(default_factory=dict)
-    constants: Mapping[str, float] = field(default_factory=dict)
-    steps: tuple[Step, ...] = ()
-    locked: tuple[str, ...] = ()
-    counted: str = ""
-    calls: tuple[str, ...] = ()
-    other_ways: Mapping[str, tuple[Step, ...]] = field(default_factory=dict)
-    length: float = 1.0
-    _values: Values | None = field(default=None, repr=False)
-    _other_values: Values | None = field(default=None, repr=False)
-    _dof: int | None = field(default=None, repr=False)
-
-    def __bool__(self) -> bool:
-        return not self.reason
 
     def to_text(self) -> str:
         """As plain text."""
@@ -116,35 +58,197 @@ class IkPlan:
         """As plain data, angles in radians and lengths in metres."""
         return plan_document(self)
 
-    @property
-    def equations(self) -> tuple[Equation | MatrixEquation, ...]:
-        """Every equation of every step, in order, those of other ways behind."""
-        ways = (self.steps, *self.other_ways.values())
-        return tuple(equation for steps in ways for step in steps for equation in step.equations)
 
-    def residuals(self, q: Any, T: Any) -> Array:
-        """How far each equation is off, (..., k), at configurations q (..., n) that reach T (..., 4, 4).
+def lay_out_plan(plan: IkPlan) -> list[page.Block]:
+    """The page of an explanation."""
+    out: list[page.Block] = [page.lay_out_paragraph(f"**{plan.robot}**: {plan.summary}")]
+    if plan.reason:
+        out.append(page.lay_out_paragraph(plan.reason))
+    out += geometry_blocks(plan)
+    out += [page.lay_out_paragraph(note) for note in plan.notes]
+    for name, table in plan.tables.items():
+        out += [page.lay_out_heading(name), table]
+    for name, T in plan.matrices.items():
+        out.append(page.lay_out_formulas([(matrix_text(name, T), matrix_latex(name, T))]))
+    if plan.steps:
+        out += [page.lay_out_heading("Steps"), *step_blocks(plan, plan.steps)]
+        out.append(page.lay_out_paragraph(f"Together {count_solutions(plan.steps)} solutions{plan.counted}."))
+    for name, steps in plan.other_ways.items():
+        out += [page.lay_out_heading(name), *step_blocks(plan, steps)]
+        out.append(page.lay_out_paragraph(f"Together {count_solutions(steps)} solutions."))
+    if plan.calls:
+        out += [page.lay_out_heading("What calls do"), *map(page.lay_out_paragraph, plan.calls)]
+    return out
 
-        Lengths count in units of the arm's length. Definitions introduce symbols for those behind them and
-        are never off. Raises InputError for a wrong shape, NaN, and a value that is not a pose.
-        """
-        n = len(self.joints) if self._dof is None else self._dof
-        q, T = as_floats(q, "q", last=(n,), largest=FARTHEST), as_pose(T, "T")
-        shape = leading_axes(q=q.shape[:-1], T=T.shape[:-2])
-        q = np.broadcast_to(q, (*shape, n))
-        if self._values is None:
-            return np.zeros((*shape, 0))
-        out = self._off(self.steps, {**self.constants, **self._values(q, T)}, shape)
-        for steps in self.other_ways.values():
-            out += self._off(steps, dict(self._other_values(q, T)) if self._other_values else {}, shape)
-        return np.stack(out, axis=-1) if out else np.zeros((*shape, 0))
 
-    def _off(self, steps: Sequence[Step], values: dict[str, Any], shape: tuple[int, ...]) -> list[Array]:
-        """How far the equations of some steps are off, (...) each."""
-        out = []
-        for equation in (each for step in steps for each in step.equations):
-            if isinstance(equation, Equation) and equation.defines:
-                values[equation.defines] = equation.right.evaluate(values)
-            scale = self.length ** {"m": 1, "m²": 2, "m⁴": 4}.get(equation.unit, 0)
-            out.append(np.broadcast_to(np.abs(equation.residual(values)) / scale, shape))
-        return out
+def step_blocks(plan: IkPlan, steps: Sequence[Step]) -> list[page.Block]:
+    """Steps with their equations."""
+    out: list[page.Block] = []
+    for number, step in enumerate(steps, 1):
+        ways = "" if step.ways == 1 else f"up to {step.ways} ways"
+        how = ", ".join(word for word in (ways, step.method) if word)
+        how = f" ({how})" if how else ""
+        out.append(page.lay_out_paragraph(f"{number}. {step.finds}{how}. {step.words}"))
+        out += equation_blocks(plan, step)
+    return out
+
+
+def count_solutions(steps: Sequence[Step]) -> str:
+    """How many solutions the steps have together, with the product."""
+    factors = [str(step.ways) for step in steps if step.ways > 1]
+    most = int(np.prod([step.ways for step in steps]))
+    product = r" \times ".join(factors)
+    return f"up to ${product} = {most}$" if len(factors) > 1 else f"up to {most}"
+
+
+def geometry_blocks(plan: IkPlan) -> list[page.Block]:
+    """The tables of what the axes share."""
+    out: list[page.Block] = []
+    if plan.relations:
+        rows = [
+            (
+                f"{each.joints[0]}, {each.joints[1]}",
+                f"`{plan.joints[each.joints[0] - 1]}`, `{plan.joints[each.joints[1] - 1]}`",
+                shown(np.degrees(each.angle)),
+                shown(each.distance) if np.isfinite(each.distance) else "–",
+                each.words,
+            )
+            for each in plan.relations
+        ]
+        head = ("axes", "joints", "angle [°]", "distance [m]", "relation")
+        out += [page.lay_out_heading("Neighbouring axes"), page.lay_out_table(head, rows)]
+    for point in plan.invariant_points:
+        meet = f"meet in a point, ({vector_text(point.place)}) m at zero{miss_text(point.miss, 'm')}"
+        words = f"Axes {list_joints(point.joints)} {meet}: their joints do not move it."
+        out.append(page.lay_out_paragraph(words))
+    for each in plan.invariant_directions:
+        parallel = f"are parallel to ({vector_text(each.direction)}) at zero{miss_text(each.miss, 'rad')}"
+        still = "their joints change neither heights along it nor angles with it."
+        out.append(page.lay_out_paragraph(f"Axes {list_joints(each.joints)} {parallel}: {still}"))
+    return out
+
+
+def miss_text(miss: float, unit: str) -> str:
+    """By how much axes fail to meet or to be parallel, if it is more than rounding."""
+    return f" (missed by {miss:.1g} {unit})" if miss > PRINTED_MISS else ""
+
+
+def list_joints(joints: tuple[int, ...]) -> str:
+    """4, 5 and 6."""
+    return ", ".join(map(str, joints[:-1])) + f" and {joints[-1]}"
+
+
+def equation_blocks(plan: IkPlan, step: Step) -> list[page.Block]:
+    """The equations of a step as symbols and, where they fit, with the arm's numbers."""
+    symbols = step.equations
+    out: list[page.Block] = []
+    general = [equation_line(plan, each, numbers=False) for each in symbols if refers_to_the_arm(plan, each)]
+    if general:
+        out.append(page.lay_out_formulas(general))
+    special = [
+        equation_line(plan, each, numbers=True)
+        for each in symbols
+        if not refers_to_the_arm(plan, each) or fits_line(plan, each)
+    ]
+    if special:
+        if general:
+            out.append(page.lay_out_paragraph("With this arm's numbers:"))
+        out.append(page.lay_out_formulas(special))
+    return out
+
+
+def refers_to_the_arm(plan: IkPlan, equation: Equation | MatrixEquation) -> bool:
+    """Whether an equation holds symbols of the arm, which have numbers."""
+    return isinstance(equation, Equation) and bool(
+        equation.symbols() & (set(plan.constants) - {equation.defines})
+    )
+
+
+def fits_line(plan: IkPlan, equation: Equation | MatrixEquation) -> bool:
+    """Whether an equation is short enough to be printed with numbers."""
+    if not isinstance(equation, Equation):
+        return True
+    return len(equation.with_numbers(plan.constants)) <= MOST_TERMS
+
+
+def equation_line(plan: IkPlan, equation: Equation | MatrixEquation, *, numbers: bool) -> tuple[str, str]:
+    """An equation as text and LaTeX."""
+    if isinstance(equation, MatrixEquation) or not numbers:
+        return equation.text(), equation.latex()
+    special = equation.with_numbers(plan.constants)
+    if len(special) > MOST_TERMS:
+        terms = len(special.right)
+        return (
+            f"{special.left.text()} = … ({terms} terms)",
+            rf"{special.left.latex()} &= \text{{{terms} terms}}",
+        )
+    least = PRINTED_FACTOR * plan.length ** {"m": 1, "m²": 2, "m⁴": 4}.get(equation.unit, 0)
+    return special.text(least=least), special.latex(least=least)
+
+
+def matrix_text(name: str, T: Any) -> str:
+    """A matrix of numbers behind its name."""
+    lines = align_cells([[shown(x) for x in row] for row in T]).splitlines()
+    before = f"{name} = "
+    return ("\n    ").join((before if k == 0 else " " * len(before)) + row for k, row in enumerate(lines))
+
+
+def matrix_latex(name: str, T: Any) -> str:
+    """The same in LaTeX."""
+    rows = r" \\ ".join(" & ".join(shown(x) for x in row) for row in T)
+    symbol = f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
+    return rf"{symbol} &= \begin{{bmatrix}} {rows} \end{{bmatrix}}"
+
+
+def plan_document(plan: IkPlan) -> dict[str, Any]:
+    """An explanation as data."""
+    return {
+        "robot": plan.robot,
+        "joints": list(plan.joints),
+        "family": plan.family,
+        "summary": page.plain_sentence(plan.summary.replace("**", "")),
+        "reason": plan.reason,
+        "branches": plan.branches,
+        "relations": [
+            {
+                "axes": list(each.joints),
+                "angle": each.angle,
+                "distance": each.distance if np.isfinite(each.distance) else None,
+                "words": each.words,
+            }
+            for each in plan.relations
+        ],
+        "points": [
+            {"place": list(map(float, each.place)), "joints": list(each.joints), "miss": each.miss}
+            for each in plan.invariant_points
+        ],
+        "directions": [
+            {"direction": list(map(float, each.direction)), "joints": list(each.joints), "miss": each.miss}
+            for each in plan.invariant_directions
+        ],
+        "notes": [page.plain_sentence(note) for note in plan.notes],
+        "constants": dict(plan.constants),
+        "matrices": {name: np.asarray(T).tolist() for name, T in plan.matrices.items()},
+        "steps": [step_document(plan, step) for step in plan.steps],
+        "calls": [page.plain_sentence(call) for call in plan.calls],
+        "locked": list(plan.locked),
+        "counted": plan.counted.strip(),
+        "other_ways": {
+            name: [step_document(plan, step) for step in steps] for name, steps in plan.other_ways.items()
+        },
+    }
+
+
+def step_document(plan: IkPlan, step: Step) -> dict[str, Any]:
+    """A step as data; numbers: the equation with this arm's numbers, all of its terms."""
+    equations = []
+    for each in step.equations:
+        special = each.with_numbers(plan.constants) if isinstance(each, Equation) else each
+        equations.append({"text": each.text(), "latex": each.latex(), "numbers": special.text()})
+    return {
+        "finds": page.plain_sentence(step.finds),
+        "ways": step.ways,
+        "method": step.method,
+        "words": page.plain_sentence(step.words),
+        "equations": equations,
+    }

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form, symbol
-from cspace.ik.explain.plan import Step
 from cspace.math import Equation, Product, TrigPolynomial
 
 define = Equation.definition

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.navigation.curves import Curve
+from cspace.navigation.curves.curve import Curve
 from cspace.navigation.route import Stats
 from cspace.navigation.text import count_things
 from cspace.tables import one_line
