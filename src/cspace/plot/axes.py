@@ -7,9 +7,12 @@ from typing import Any, Final
 
 from cspace.arrays import Array
 from cspace.errors import InputError, MissingExtraError
+from cspace.plot.colors import INK
 
 SQUARE: Final = 6.4
 """Width of a picture in space [inch], without labels at its side."""
+PLACE: Final = {"mfc": "white", "mec": INK, "mew": 1.4, "zorder": 7}
+"""The style of a marked place: a start, a goal, a minimum."""
 
 
 def need_matplotlib() -> None:
@@ -45,6 +48,11 @@ def flat_axes(ax: Any | None) -> Any:
     if hasattr(ax, "get_proj"):
         raise InputError("this picture needs 2-D axes; make them with plt.subplots()")
     return ax
+
+
+def write_title(axes: Any, title: str, size: float = 9.0) -> list[Any]:
+    """The title above 2-D axes, if there is one."""
+    return [axes.set_title(title, fontsize=size, color=INK, loc="left")] if title else []
 
 
 def draw_lines(axes: Any, pieces: Iterable[Array], **style: Any) -> list[Any]:

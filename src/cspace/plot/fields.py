@@ -12,7 +12,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.maps.outlines import longer_side
 from cspace.plot import colors
-from cspace.plot.axes import space_axes
+from cspace.plot.axes import PLACE, space_axes, write_title
 from cspace.tolerances import SAME_MINIMUM
 
 PLACES: Final = 160
@@ -52,7 +52,7 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
         )
     for points, marker, size in ((find_minima(route), "o", 6), (route.goal[None], "*", 13)):
         z = np.clip(height(points), low, top) + lift
-        artists += axes.plot(*points.T, z, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
+        artists += axes.plot(*points.T, z, marker, ms=size, **PLACE)
     xmin, ymin, xmax, ymax = route.world.bounds
     wide = longer_side(route.world.bounds)
     axes.set_box_aspect(((xmax - xmin) / wide, (ymax - ymin) / wide, 0.45))
@@ -60,7 +60,7 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
     axes.tick_params(labelsize=7, colors=colors.INK)
     axes.set_zticks([])
     said = route.planner if route else f"{route.planner}: {route.status}"
-    axes.set_title(said, fontsize=9, color=colors.INK, loc="left")
+    write_title(axes, said)
     return artists
 
 
@@ -77,7 +77,7 @@ def draw_bands(axes: Any, route: Any) -> list[Any]:
         artists.append(axes.contourf(*where, level, levels=BANDS, cmap="Blues", zorder=1, alpha=0.85))
     low = find_minima(route)
     if len(low):
-        artists += axes.plot(*low.T, "o", ms=5, mfc="white", mec=colors.INK, mew=1.2, zorder=5)
+        artists += axes.plot(*low.T, "o", ms=5, **PLACE | {"mew": 1.2, "zorder": 5})
     return artists
 
 

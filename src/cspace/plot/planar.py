@@ -10,7 +10,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.plot import colors
-from cspace.plot.axes import flat_axes
+from cspace.plot.axes import flat_axes, write_title
 from cspace.plot.skeleton import Skeleton, make_skeleton, planar_basis, size_of
 from cspace.tolerances import DRAWN_LENGTH, LEAST_DIVISOR
 
@@ -38,7 +38,8 @@ def draw_configurations(
     axes = flat_axes(ax)
     drawn = [make_skeleton(arm, each) for each in q]
     size = size_of(arm.chain.points, arm.chain.T_zero)
-    artists = prepare_axes(axes, basis)
+    prepare_axes(axes, basis)
+    artists: list[Any] = []
     order = [k for k in range(len(q)) if k != solid] + [solid]
     for place, k in enumerate(order):
         artists += draw_arm(axes, drawn[k], basis, np.asarray(tints[k]), ghost=k != solid, zorder=3 + place)
@@ -53,15 +54,14 @@ def draw_configurations(
         artists += draw_frame(axes, T, basis, 0.16 * size, zorder=4 + len(q))
     if names:
         artists += draw_legend(axes, names, tints, solid)
-    if title:
-        artists.append(axes.set_title(title, fontsize=11, color=colors.INK, loc="left"))
+    artists += write_title(axes, title, 11)
     corners = np.concatenate([each.points for each in drawn]) @ basis.T
     arrows = basis @ (T[:3, 3:] + 0.20 * size * T[:3, :3])
     frame_view(axes, np.concatenate([corners, arrows.T, np.zeros((1, 2))]))
     return artists
 
 
-def prepare_axes(ax: Any, basis: Array) -> list[Any]:
+def prepare_axes(ax: Any, basis: Array) -> None:
     """Equal aspect, a quiet grid, axes named after the base frame's."""
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(True, color=(0.90, 0.915, 0.935), linewidth=0.8)
@@ -72,7 +72,6 @@ def prepare_axes(ax: Any, basis: Array) -> list[Any]:
     for setter, row in ((ax.set_xlabel, basis[0]), (ax.set_ylabel, basis[1])):
         name = "xyz"[int(np.argmax(np.abs(row)))] if np.abs(row).max() > 0.999 else "in the plane"
         setter(f"{name} [m]", fontsize=9, color=(0.42, 0.46, 0.52))
-    return []
 
 
 def frame_view(ax: Any, points: Array) -> None:
@@ -204,18 +203,14 @@ def workspace(arm: Any, *, ax: Any | None = None, title: str = "") -> list[Any]:
     q = grid_of(arm)
     points = tip_points(arm, q, basis)
     J = basis @ arm.jacobian(q)[..., :3, :]
-    measure = np.sqrt(np.clip(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0, None)) if arm.dof > 1 else None
-    artists = prepare_axes(axes, basis)
+    prepare_axes(axes, basis)
     size = size_of(arm.chain.points, arm.chain.T_zero)
-    if measure is None:
-        order = np.argsort(q[:, 0])
-        artists += axes.plot(*points[order].T, color=colors.JOINT, linewidth=2.5, zorder=2)
+    if arm.dof == 1:
+        artists = axes.plot(*points[np.argsort(q[:, 0])].T, color=colors.JOINT, linewidth=2.5, zorder=2)
     else:
-        artists.append(best_in_cells(axes, points, measure))
-    artists += draw_base(axes, size, zorder=4)
-    if title:
-        artists.append(axes.set_title(title, fontsize=11, color=colors.INK, loc="left"))
-    return artists
+        measure = np.sqrt(np.clip(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0, None))
+        artists = [best_in_cells(axes, points, measure)]
+    return artists + draw_base(axes, size, zorder=4) + write_title(axes, title, 11)
 
 
 def grid_of(arm: Any) -> Array:

@@ -24,10 +24,8 @@ FAINT: Final = (0.78, 0.81, 0.86)
 
 def draw_idea(axes: Any, route: Any) -> list[Any]:
     """Draw what a route's planner prepared and what it looked at; returns the artists."""
-    prepared = PREPARED.get(route.planner)
-    artists = prepared(axes, route) if prepared else []
-    drawn = SEARCHED.get(route.planner, draw_events)
-    return artists + drawn(axes, route)
+    drawn = PREPARED.get(route.planner), SEARCHED.get(route.planner, draw_events)
+    return [artist for draw in drawn if draw for artist in draw(axes, route)]
 
 
 def shown_events(route: Any) -> Any:
@@ -209,10 +207,6 @@ def draw_navigation_function(axes: Any, route: Any) -> list[Any]:
     return artists
 
 
-def draw_nothing(axes: Any, route: Any) -> list[Any]:
-    return []
-
-
 PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     "visibility_graph": draw_visibility_graph,
     "exact_cells": draw_exact_cells,
@@ -231,14 +225,11 @@ CELL_PLANNERS: Final = (
     *("theta_star", "wavefront", "weighted_a_star"),
 )
 
-SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
+SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]] | None]] = {
     **{name: draw_cells for name in CELL_PLANNERS},
     **{name: draw_walk for name in ("bug_1", "bug_2", "tangent_bug")},
     "voronoi_bug": draw_traced_diagram,
     "approximate_cells": draw_expanded,
-    "brushfire": draw_nothing,
-    "harmonic": draw_nothing,
-    "rimon_koditschek": draw_nothing,
-    "voronoi": draw_nothing,
+    **dict.fromkeys(("brushfire", "harmonic", "rimon_koditschek", "voronoi")),
 }
-"""How a planner's search is drawn, where not as its events."""
+"""How a planner's search is drawn, where not as its events; None where it is not."""

@@ -8,8 +8,8 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.model import twists
-from cspace.spatial import exp_se3
+from cspace.ik.joint_axes import place_axes
+from cspace.ik.wrapping import turning_joints
 from cspace.tolerances import DRAWN_LENGTH, DRAWN_PLANE
 
 PARALLEL: Final = 0.08
@@ -54,10 +54,12 @@ class Skeleton:
 
 
 def make_skeleton(robot: Any, q: Array) -> Skeleton:
-    """The skeleton of `robot` (anything with a `chain`) at the configuration `q` (dof,)."""
+    """The skeleton of a robot at the configuration `q` (dof,)."""
     chain = robot.chain
     types = str(chain.joint_types)
-    before, after, axes, T_tip = move_joints(chain.axes, chain.points, types, chain.T_zero, q)
+    at = place_axes(chain, q)
+    before, axes, T_tip = at.points, at.axes, np.asarray(robot.fk(q))
+    after = before + np.where(turning_joints(types), 0.0, q)[:, None] * axes  # behind their own motion
     length = size_of(chain.points, chain.T_zero)
     n = len(types)
     paths = [route_link(np.zeros(3), np.array([0.0, 0.0, 1.0]), before[0], axes[0], length)]
@@ -72,20 +74,6 @@ def make_skeleton(robot: Any, q: Array) -> Skeleton:
         joints[0][2] = half  # the first joint stands on the ground and does not hang below it
     rails = [np.array([before[i], after[i]]) for i in range(n) if types[i] == "P"]
     return Skeleton(paths, radii, joints, axes, types, T_tip, rails)
-
-
-def move_joints(
-    axes: Array, points: Array, types: str, T_zero: Array, q: Array
-) -> tuple[Array, Array, Array, Array]:
-    """The joints carried along: points before and after their own motion, axes, the tip (exponentials)."""
-    T = np.eye(4)
-    before, after, turned = (np.empty((len(types), 3)) for _ in range(3))
-    for i, twist in enumerate(twists(axes, points, types)):
-        before[i] = T[:3, :3] @ points[i] + T[:3, 3]
-        turned[i] = T[:3, :3] @ axes[i]
-        T = T @ exp_se3(q[i] * twist)
-        after[i] = T[:3, :3] @ points[i] + T[:3, 3]
-    return before, after, turned, T @ T_zero
 
 
 def size_of(points: Array, T_zero: Array) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
-from cspace.plot.axes import draw_image, draw_lines, draw_polygons, flat_axes
+from cspace.plot.axes import PLACE, draw_image, draw_lines, draw_polygons, flat_axes, write_title
 from cspace.plot.worlds import world
 
 BODIES: Final = 24
@@ -39,14 +39,12 @@ def drive(drive: Any, *, ax: Any | None = None, bodies: int = BODIES) -> list[An
     artists += draw_directions(axes, poses)
     for (x, y, theta), size in zip(ends, (8, 12), strict=True):
         pointing = (3, 0, np.degrees(theta) - 90.0)
-        style = dict(ms=size, mfc="white", mec=colors.INK, mew=1.2, zorder=7)
-        artists += axes.plot(x, y, marker=pointing, **style)
+        artists += axes.plot(x, y, marker=pointing, ms=size, **PLACE | {"mew": 1.2})
     if grid is None:
         axes.set_aspect("equal")
         axes.margins(0.08)
         axes.autoscale_view()
-    artists.append(axes.set_title(title_of(drive), fontsize=9, color=colors.INK, loc="left"))
-    return artists
+    return artists + write_title(axes, title_of(drive))
 
 
 def coverage(coverage: Any, *, ax: Any | None = None) -> list[Any]:
@@ -68,11 +66,10 @@ def coverage(coverage: Any, *, ax: Any | None = None) -> list[Any]:
     pieces = np.stack([coverage.path[:-1], coverage.path[1:]], axis=1)
     when = np.linspace(0.0, 0.85, len(pieces))
     artists += draw_lines(axes, pieces, array=when, cmap="viridis", clim=(0.0, 1.0), linewidths=1.4, zorder=4)
-    artists += axes.plot(*coverage.path[0], "o", ms=7, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
+    artists += axes.plot(*coverage.path[0], "o", ms=7, **PLACE)
     axes.set(xlim=(xmin, xmax), ylim=(ymin, ymax))
     said = f"coverage: {coverage.length:.5g} m, overlap {coverage.overlap:.2g}"
-    artists.append(axes.set_title(said, fontsize=9, color=colors.INK, loc="left"))
-    return artists
+    return artists + write_title(axes, said)
 
 
 def poses_of(drive: Any) -> Array:

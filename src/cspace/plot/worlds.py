@@ -11,7 +11,15 @@ import numpy as np
 
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
-from cspace.plot.axes import draw_image, draw_polygons, flat_axes, need_matplotlib
+from cspace.plot.axes import (
+    PLACE,
+    draw_image,
+    draw_lines,
+    draw_polygons,
+    flat_axes,
+    need_matplotlib,
+    write_title,
+)
 from cspace.plot.files import Steps
 from cspace.plot.planner_overlays import draw_idea, replaced_at, shown_events
 
@@ -83,14 +91,12 @@ def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
         )
     artists += draw_ends(axes, route)
     said = f"{route.length:.5g} m" if route else route.status
-    artists.append(axes.set_title(f"{route.planner}: {said}", fontsize=9, color=colors.INK, loc="left"))
-    return artists
+    return artists + write_title(axes, f"{route.planner}: {said}")
 
 
 def draw_ends(axes: Any, route: Any) -> list[Any]:
     """Start (circle) and goal (star)."""
-    style = dict(mfc="white", mec=colors.INK, mew=1.4, zorder=7)
-    return [*axes.plot(*route.start, "o", ms=7, **style), *axes.plot(*route.goal, "*", ms=12, **style)]
+    return [*axes.plot(*route.start, "o", ms=7, **PLACE), *axes.plot(*route.goal, "*", ms=12, **PLACE)]
 
 
 def routes(routes: Sequence[Any], *, columns: int | None = None) -> Any:
@@ -133,7 +139,6 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
     axes = flat_axes(ax)
     import matplotlib
     from matplotlib.animation import FuncAnimation
-    from matplotlib.collections import LineCollection
 
     _ground(axes, route.world, route._given_world)
     events = shown_events(route)
@@ -142,7 +147,7 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
     order = np.linspace(0, 1, max(len(events), 1))
     tints = matplotlib.colormaps["viridis"](order)  # as the picture of the whole search
     pieces = np.stack([events.start, events.end], axis=1) if len(events) else np.empty((0, 2, 2))
-    searched = axes.add_collection(LineCollection([], linewidths=1.2, zorder=4))
+    (searched,) = draw_lines(axes, [], linewidths=1.2, zorder=4)
     reached = axes.scatter([], [], s=6, zorder=5)
     (path,) = axes.plot([], [], color=colors.PATH, linewidth=2.2, zorder=6)
     ends = draw_ends(axes, route)
