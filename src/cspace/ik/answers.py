@@ -8,16 +8,14 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import Renamed
+from cspace.ik.context import About
 from cspace.ik.derivative import solve_derivative
 from cspace.ik.goals.partial import PartialGoal, plain_goal
 from cspace.ik.on_limits import settle_on_limits
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import nearest_winding
 from cspace.kinematics.batch import check_choice
-
-if TYPE_CHECKING:
-    from cspace.ik.context import About
-    from cspace.ik.solver import Solver
-    from cspace.model import Limits
+from cspace.model import Limits
 
 UNREACHABLE: Final = 0
 EXACT: Final = 1
@@ -95,7 +93,7 @@ class Answers(Renamed):
         """
         if self._about is None or self._about.goal is None:
             return self.solver, self.q
-        return cast("Solver", self._about.extended), cast(Array, self._about.q)
+        return cast(Solver, self._about.extended), cast(Array, self._about.q)
 
     def _settled(self, limits: Limits) -> Array:
         """The solutions, those that rounding takes past a limit set to it."""

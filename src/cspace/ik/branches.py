@@ -18,18 +18,15 @@ slide. link: the tip lies ahead of or behind the last axis, along the slide.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.joint_axes import Placed, are_parallel, are_square, meeting_point, place_axes
+from cspace.ik.solver import Solver
 from cspace.tolerances import BRANCH_LENGTH, BRANCH_OFFSET
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
 
 SPHERICAL_WRIST, THREE_PARALLEL = 1, 2
 LAST_PARALLEL = 0

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import CspaceError
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
+from cspace.kinematics import KinematicModel
 
 
 class NoClosedFormError(CspaceError, NotImplementedError):

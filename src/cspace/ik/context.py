@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Array
-
-if TYPE_CHECKING:
-    from cspace.ik.goals.partial import PartialGoal
-    from cspace.ik.solver import Solver
+from cspace.ik.goals.partial import PartialGoal
+from cspace.ik.solver import Solver
 
 
 @dataclass(frozen=True)

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.conditions import arm_length
+from cspace.ik.solver import Solver
 from cspace.tolerances import NO_DERIVATIVE
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
 
 
 def solve_derivative(solver: Solver, q: Array, position_only: bool = False) -> Array:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from cspace.arrays import as_floats
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.kinematics import KinematicModel
 from cspace.tolerances import FARTHEST
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
 
 
 def joint_number(solver: KinematicModel, key: Any, subject: str) -> int:

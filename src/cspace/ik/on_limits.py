@@ -7,18 +7,13 @@ since the error lies along a direction in which the tip does not move to first o
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import into_limits, measure_violations
 from cspace.model import Limits
 from cspace.tolerances import DOUBLE_DIRECTION, DOUBLE_SOLUTION, SAME_TIP
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
 
 STEPS = 4
 """Corrections of a configuration: each squares an error of 1e-7 or less, and any may add a joint."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
@@ -17,15 +17,12 @@ from cspace.ik.goals.given import one_configuration
 from cspace.ik.goals.partial import position_goal
 from cspace.ik.locked_joints import locked_in_words
 from cspace.ik.self_motion.self_motion import SelfMotion, self_motion_at
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import all_windings, into_limits, measure_violations, wrap_joints
 from cspace.kinematics.batch import check_choice, limits_of
+from cspace.model import Limits
 from cspace.tables import html_table, one_line, shown
 from cspace.tolerances import FAR_GOAL, ORIENTATION_KEPT, SLIGHT_MISS
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-    from cspace.model import Limits
-
 
 ORIENTATION_FIRST: Final = 1e4
 """Weight of a radian, in lengths of the arm, in the search for the distance: the orientation is kept."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -15,13 +15,11 @@ from cspace.ik.answers import INCOMPLETE, METRICS, NEAREST, UNREACHABLE, VERDICT
 from cspace.ik.context import About
 from cspace.ik.goals.given import rows_for_goals
 from cspace.ik.solutions import Solutions
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import into_limits, wrap_joints
 from cspace.kinematics.batch import limits_of
+from cspace.model import Limits
 from cspace.tables import one_line
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-    from cspace.model import Limits
 
 
 @dataclass(eq=False, repr=False)

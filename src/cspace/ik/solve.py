@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -32,14 +32,11 @@ from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.redundancy.solve import choose_nearest, solve_freedom
 from cspace.ik.solutions import Solutions, nearest_to_goal
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import wrap_joints
 from cspace.kinematics.batch import thread_count
 from cspace.spatial import as_pose
 from cspace.tolerances import SAME_MEMBER
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
 
 MAX_POSITION_JOINTS = 3
 """A point determines up to so many joints."""

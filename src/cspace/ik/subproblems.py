@@ -24,21 +24,18 @@ include/cspace/ik/subproblems.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.kinematics.batch import broadcast_rows
 from cspace.tolerances import FARTHEST
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import numpy.typing as npt
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cached_property
 from math import nan
-from typing import TYPE_CHECKING, Any, ClassVar
+from os import PathLike
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,9 +31,6 @@ from cspace.maps.rasterize import rasterize_world
 from cspace.maps.repair import GeometryError, check_area, describe_crossings
 from cspace.maps.text import read_polygons, write_polygons
 from cspace.tolerances import ON_WALL
-
-if TYPE_CHECKING:
-    from os import PathLike
 
 
 class PolygonWorld:

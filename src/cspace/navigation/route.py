@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import Renamed
 from cspace.navigation.text import count_things
-
-if TYPE_CHECKING:
-    from cspace.search.trace import Trace
-
+from cspace.search.trace import Trace
 
 STATUSES: Final = ("found", "unreachable", "undetermined", "local_minimum")
 """The verdicts, in the order of the compiled core."""

@@ -206,7 +206,9 @@ def workspace(arm: Any, *, ax: Any | None = None, title: str = "") -> list[Any]:
     prepare_axes(axes, basis)
     size = size_of(arm.chain.points, arm.chain.T_zero)
     if arm.dof == 1:
-        artists = axes.plot(*points[np.argsort(q[:, 0])].T, color=colors.JOINT, linewidth=2.5, zorder=2)
+        artists: list[Any] = axes.plot(
+            *points[np.argsort(q[:, 0])].T, color=colors.JOINT, linewidth=2.5, zorder=2
+        )
     else:
         measure = np.sqrt(np.clip(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0, None))
         artists = [best_in_cells(axes, points, measure)]

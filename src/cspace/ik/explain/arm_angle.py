@@ -4,7 +4,7 @@ include/cspace/ik/redundancy/arm_angle.hpp.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,12 +22,9 @@ from cspace.ik.explain.screws import (
     vector_text,
 )
 from cspace.ik.redundancy.arm_angle import swivel
+from cspace.ik.solver import Solver
 from cspace.math import Equation, TrigPolynomial
 from cspace.spatial import exp_so3
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
 
 SHOULDER, ELBOW, WRIST = (0, 1, 2), 3, (4, 5, 6)
 

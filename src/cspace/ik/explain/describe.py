@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -21,12 +21,9 @@ from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.ik.explain.survey import invariant_directions, invariant_points, measure_relations
 from cspace.ik.explain.wrist import wrist_constants, wrist_steps
 from cspace.ik.geometry import FIRST_THREE
+from cspace.ik.solver import Solver
+from cspace.kinematics import KinematicModel
 from cspace.tolerances import FORM_DEVIATION
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-    from cspace.kinematics import KinematicModel
-
 
 SPHERICAL_WRIST, THREE_PARALLEL, MIDDLE_PARALLEL, FIRST_PARALLEL = 1, 2, 3, 4
 """The families of the core."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,10 +17,7 @@ from cspace.ik.explain.screws import vector_text
 from cspace.ik.goals.given import is_open
 from cspace.ik.goals.partial import KEYWORDS, PartialGoal
 from cspace.ik.goals.parts import partial_goal
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
+from cspace.ik.solver import Solver
 
 TYPICAL = MappingProxyType(
     {

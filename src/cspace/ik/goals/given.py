@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Array, as_floats, leading_axes, one_array
 from cspace.errors import InputError, InputTypeError
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import turning_joints
 from cspace.spatial import as_pose, exp_so3
 from cspace.spatial.poses import assemble
 from cspace.tolerances import FARTHEST, LEVEL_SLIDE, UPRIGHT_TURN
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
 
 
 def goal_array(goal: Any) -> Array:

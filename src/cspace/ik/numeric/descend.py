@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,12 +13,9 @@ from cspace.errors import InputError
 from cspace.ik.goals.given import rows_for_goals
 from cspace.ik.numeric.problem import further_starts, middle_configuration, pose_problem
 from cspace.ik.numeric.solution import REACHED, NumericSolution, SampledSolutions
+from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_choice, thread_count
 from cspace.tolerances import FARTHEST, NUMERIC_TOLERANCE
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
-
 
 METHODS = ("levenberg_marquardt", "newton")
 """The methods of descent."""

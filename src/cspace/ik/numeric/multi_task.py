@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,14 +12,11 @@ from cspace.arrays import Array, as_generator, one_array, positive_number, whole
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.numeric.problem import bounds_of, further_starts, largest_speeds, middle_configuration
 from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
+from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.spatial.checks import one_pose
 from cspace.tables import one_line
 from cspace.tolerances import FARTHEST, SERVED, SETTLED
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
-
 
 MOST_STARTS = 1_000_000
 

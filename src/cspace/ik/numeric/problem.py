@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, as_generator, positive_number
 from cspace.errors import InputError, InputTypeError
+from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_robot, frame_number, limits_of
 from cspace.spatial import as_pose
 from cspace.spatial.poses import assemble
 from cspace.tolerances import FARTHEST, LEAST_SLIDE
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
-
 
 MOST_PATH = 16
 EVERYTHING = np.ones(6)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,13 +11,10 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, bounded_number
 from cspace.errors import InputError
 from cspace.ik.numeric.problem import largest_speeds
+from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import broadcast_rows, thread_count
 from cspace.kinematics.jacobian import jacobian
 from cspace.tolerances import FARTHEST, WEAK_DIRECTION
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
-
 
 MOST_JOINTS = 128
 

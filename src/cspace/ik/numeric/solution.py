@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -12,11 +12,8 @@ import numpy.typing as npt
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.ik.wrapping import nearest_winding
+from cspace.kinematics import KinematicModel
 from cspace.tables import html_table, one_line, shown
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
-
 
 REACHED: Final = 0
 STALLED: Final = 1

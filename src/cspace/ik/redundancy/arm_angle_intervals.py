@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -13,14 +12,11 @@ from cspace.arrays import Array
 from cspace.ik.conditions import common_point
 from cspace.ik.redundancy.arm_angle import BRANCHES, JOINTS
 from cspace.ik.redundancy.result import Interval, Redundancy
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import measure_violations
 from cspace.math.wrapping import TURN, wrap_angle
 from cspace.spatial import exp_so3
 from cspace.tolerances import INSIDE_END, SAME_SWIVEL
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
 
 Flags = npt.NDArray[np.bool_]
 LOOKS = 48

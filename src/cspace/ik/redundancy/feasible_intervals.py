@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,11 +12,8 @@ from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.locked_joints import joint_number, locked_values, value_in_words
 from cspace.ik.redundancy.result import Interval, Redundancy
+from cspace.ik.solver import Solver
 from cspace.tolerances import MOVING_JOINT
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
 
 END_NOTHING, END_FOLD = -1, -2
 

@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
+from cspace.ik.solver import Solver
 from cspace.math.wrapping import TURN
 from cspace.tables import html_table, one_line, shown
 from cspace.tolerances import FARTHEST
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
 
 MOST_SAMPLES = 100_000
 """Values of a free joint that one call answers for."""

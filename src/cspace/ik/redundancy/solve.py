@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -19,10 +19,7 @@ from cspace.ik.locked_joints import locked_values
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
+from cspace.ik.solver import Solver
 
 SAMPLES = 16
 

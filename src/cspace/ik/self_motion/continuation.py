@@ -10,20 +10,17 @@ Source: E. L. Allgower and K. Georg, Numerical Continuation Methods, 1990, for t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import into_limits, short_way, turning_joints
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.tolerances import RESTING_JOINT
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
-
 
 CLOSED, FAR = 0, 1
 HALVINGS = 50

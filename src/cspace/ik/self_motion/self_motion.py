@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,12 +14,10 @@ from cspace.arrays import Array, whole_number
 from cspace.errors import InputError
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
+from cspace.ik.solver import Solver
 from cspace.ik.wrapping import wrap_joints
 from cspace.tables import one_line
 from cspace.tolerances import MOVING_JOINT
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
 
 
 @dataclass(frozen=True, eq=False)

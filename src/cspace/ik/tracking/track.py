@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,13 +17,10 @@ from cspace.ik.numeric.problem import Question, middle_configuration, pose_probl
 from cspace.ik.solver import as_solver
 from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.wrapping import turning_joints
+from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_choice, limits_of
 from cspace.spatial import interpolate_decoupled
 from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
-
 
 COSTS: Final = ("length", "step", "time")
 """What a branch may cost: Σ ‖Δq‖; the largest Δq of a joint; Σ of the times that the velocity limits ask."""
