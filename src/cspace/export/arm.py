@@ -11,7 +11,7 @@ from typing import Any
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, shown
-from cspace.export.plain import in_ascii
+from cspace.export.texts import in_ascii
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.ik.locked_joints import between_others, joint_number
 from cspace.ik.solver import MAX_SETTLED, HasSolver, Solver, as_solver

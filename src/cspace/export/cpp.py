@@ -13,8 +13,7 @@ from typing import Any
 from cspace.errors import InputError
 from cspace.export.amalgam import amalgamate_headers
 from cspace.export.arm import ExportedArm, vector_field
-from cspace.export.plain import in_ascii
-from cspace.export.words import fill_template, read_template
+from cspace.export.texts import fill_template, in_ascii, read_template
 from cspace.tolerances import ON_LIMIT
 
 TABLES_AT_START = "#define CSPACE_TABLES_AT_START\n\n"

@@ -13,8 +13,8 @@ from typing import Any
 from cspace.errors import InputError, InputTypeError, name_new_keywords, suggest
 from cspace.export.arm import ExportedArm, exported_arm
 from cspace.export.cpp import c_files, cpp_header, words_of
+from cspace.export.texts import fill_template
 from cspace.export.python_file import python_file, python_method
-from cspace.export.words import fill_template
 from cspace.files import path_of, write_text
 from cspace.tables import html_table, one_line
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from cspace.export.arm import ExportedArm
+from cspace.export.texts import fill_template
 from cspace.export.python_steps import python_steps
-from cspace.export.words import fill_template
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.geometry import as_arrays
 from cspace.tolerances import ON_LIMIT

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from cspace.export.arm import ExportedArm
-from cspace.export.plain import in_ascii
+from cspace.export.texts import in_ascii
 from cspace.ik.explain.describe import settled_plan
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import plain_sentence

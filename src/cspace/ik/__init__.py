@@ -10,7 +10,7 @@ from cspace.ik.numeric.resolved_rate import resolved_rate
 from cspace.ik.numeric.solution import NumericSolution, SampledSolutions
 from cspace.ik.numeric.tasks import CenterOfMassTask, DirectionTask, PoseTask, PositionTask, PostureTask
 from cspace.ik.redundancy.arm_angle import swivel
-from cspace.ik.redundancy.parameters import redundancy
+from cspace.ik.redundancy.feasible_intervals import redundancy
 from cspace.ik.redundancy.result import Interval, Redundancy
 from cspace.ik.self_motion.self_motion import SelfMotion
 from cspace.ik.solutions import Solutions

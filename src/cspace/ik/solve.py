@@ -28,7 +28,6 @@ from cspace.ik.goals.given import (
 )
 from cspace.ik.goals.partial import KEYWORDS
 from cspace.ik.goals.parts import check_one_goal, partial_goal
-from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.redundancy.solve import choose_nearest, solve_freedom
 from cspace.ik.solutions import Solutions, nearest_to_goal
 from cspace.ik.solutions_batch import SolutionsBatch
@@ -188,3 +187,11 @@ def least_squares_batch(found: SolutionsBatch, threads: int) -> SolutionsBatch:
         whole[(*bad, 0)] = nearest
         about = replace(about, q=whole)
     return replace(found, q=q, count=count, _verdict=verdict, _about=about)
+
+
+def least_squares_answer(found: Solutions) -> Solutions:
+    """The configuration of least error for one goal that nothing reaches."""
+    q = wrap_joints(nearest_to_goal(found)[0], found._whole[0].joint_types)[None]
+    about = replace(found._about, q=q) if found._about and found._partial else None
+    own = found._wanted.own_joints(q)
+    return Solutions.of(found.solver, found.goal, NEAREST, own, (-1,), (False,), None, about)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import Any, TypeVar
 
+from cspace import _core
+
 T = TypeVar("T")
 
 
@@ -17,3 +19,8 @@ def keep_with(world: Any, slot: str, key: Hashable, make: Callable[[], T], most:
             kept.pop(next(iter(kept)))
         kept[key] = make()
     return kept[key]
+
+
+def clearance_field(grid: Any) -> Any:
+    """The ClearanceField of a grid: the distances of its cells from walls."""
+    return keep_with(grid, "_clearance", None, lambda: _core.ClearanceField(grid))

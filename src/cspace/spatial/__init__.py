@@ -31,6 +31,7 @@ from cspace.spatial.planar import (
     transform_points_2d,
 )
 from cspace.spatial.planar_twists import (
+    Pole,
     adjoint_2d,
     exp_se2,
     exp_so2,
@@ -38,10 +39,10 @@ from cspace.spatial.planar_twists import (
     hat_so2,
     log_se2,
     log_so2,
+    pole_of,
     vee_se2,
     vee_so2,
 )
-from cspace.spatial.pole import Pole, pole_of
 from cspace.spatial.poses import (
     inverse_pose,
     pose,

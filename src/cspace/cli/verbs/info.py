@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -11,7 +13,6 @@ from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Output, Table
 from cspace.cli.robot import gripper_note, load_chosen
-from cspace.cli.tasks import TASKS, default_task
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -22,6 +23,10 @@ cspace info ur5e
 cspace info planar_2r --task position
 cspace info arm.urdf --tip tool0 --json
 """
+TASKS: Final[Mapping[str, int]] = MappingProxyType(
+    {"pose": 6, "position": 3, "direction": 2, "planar": 3, "planar-position": 2}
+)
+"""A task and its numbers: planar is x, y and a heading; planar-position x and y."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,6 +47,17 @@ def run(args: argparse.Namespace, out: Output) -> int:
     else:
         print_facts(out, robot, facts, gripper_note(args, robot), degrees=args.deg)
     return Exit.DONE
+
+
+def default_task(robot: Robot) -> str:
+    """The task that an arm's shape suggests: a planar arm's is planar, three joints place a point."""
+    if robot.tip is None:
+        return "pose"
+    from cspace.plot.skeleton import planar_basis
+
+    if planar_basis(robot.chain) is not None:
+        return "planar" if robot.dof >= 3 else "planar-position"
+    return "position" if robot.dof <= 3 else "pose"
 
 
 def task_of(word: str | None, robot: Robot) -> tuple[str, int]:

@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.navigation.cache import clearance_field
 from cspace.navigation.checks import need_grid
-from cspace.navigation.fields.clearance import clearance_field
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things

@@ -17,9 +17,8 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.navigation.cache import keep_with
+from cspace.navigation.cache import clearance_field, keep_with
 from cspace.navigation.checks import check_ends, need_grid
-from cspace.navigation.fields.clearance import clearance_field
 from cspace.navigation.planner import NO_EVENTS, PlanePlanner
 from cspace.navigation.route import Route, Stats, new_route
 from cspace.navigation.text import count_things

@@ -21,7 +21,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace import _core
-from cspace.navigation.fields.clearance import clearance_field
+from cspace.navigation.cache import clearance_field
 from cspace.navigation.grid.search import CORNERS, SearchPlanner, corners_option
 from cspace.search import option
 from cspace.tolerances import LEAST_INFLUENCE

@@ -1,10 +1,15 @@
-"""Text in ASCII: compilers differ in which other characters they accept in comments."""
+"""Texts of exports: templates with placeholders $word; ASCII, as compilers differ in which other characters
+they accept in comments."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Mapping
+from pathlib import Path
+from string import Template
 from types import MappingProxyType
+from typing import Any
 
 WORDS = MappingProxyType(
     {
@@ -53,3 +58,13 @@ def write_letter(sign: str) -> str:
     if unicodedata.combining(sign):
         return ""
     return unicodedata.normalize("NFKD", sign).encode("ascii", "ignore").decode() or "?"
+
+
+def read_template(name: str) -> str:
+    """The text of a template."""
+    return (Path(__file__).parent / "templates" / name).read_text(encoding="utf-8")
+
+
+def fill_template(name: str, words: Mapping[str, Any]) -> str:
+    """The text of a template with its placeholders replaced."""
+    return Template(read_template(name)).substitute(words)
