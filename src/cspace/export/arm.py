@@ -15,6 +15,8 @@ from cspace.export.texts import in_ascii
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.ik.locked_joints import between_others, joint_number
 from cspace.ik.solver import MAX_SETTLED, HasSolver, Solver, as_solver
+from cspace.model import Chain
+from cspace.tolerances import ON_LIMIT
 
 # Words that cannot name a namespace in C++ or a prefix in C.
 TAKEN = frozenset(
@@ -39,28 +41,38 @@ METHODS = {
 
 @dataclass(frozen=True)
 class ExportedArm:
-    """kind: a key of METHODS; plan: the numbers of that solver, named as in the headers; room: the largest
-    number of solutions; identifier: its name in C++. locked: the joints whose values are arguments, by number
-    from 0; moving: the arm of the other joints, with the locked ones at zero, if these are at the ends.
+    """kind: a key of METHODS; plan: the numbers of that solver, named as in the headers; identifier: its name
+    in C++. locked: the joints whose values are arguments, by number from 0; moving: the arm of the other
+    joints, with the locked ones at zero, if these are at the ends.
     """
 
     solver: Solver
     identifier: str
-    title: str
     kind: str
     plan: dict[str, Any]
-    dof: int
-    room: int
-    joint_names: tuple[str, ...]
-    joint_types: str
-    lower: list[float]
-    upper: list[float]
-    axes: Array
-    points: Array
-    T_zero: Array
     locked: tuple[int, ...] = ()
     moving: ExportedArm | None = None
-    version: str = _core.__version__
+
+    @property
+    def chain(self) -> Chain:
+        """Its joints as screws."""
+        return self.solver.chain
+
+    @property
+    def room(self) -> int:
+        """The largest number of solutions."""
+        return 8 if self.kind == "few_joints" else 16
+
+    @property
+    def title(self) -> str:
+        """Its name, for comments of any language."""
+        return in_ascii(" ".join(str(self.solver.name).split()).replace("*/", "")) or "arm"
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """The $words of every language."""
+        about = {"name": self.identifier, "title": self.title, "version": _core.__version__}
+        return about | {"dof": self.solver.dof, "on_limit": ON_LIMIT}
 
     @property
     def solved(self) -> ExportedArm:
@@ -77,7 +89,9 @@ class ExportedArm:
     @property
     def locked_names(self) -> str:
         """The locked joints, for comments of any language."""
-        return ", ".join(re.sub(r"[^\w .:/-]|/(?=/)", "", in_ascii(self.joint_names[k])) for k in self.locked)
+        return ", ".join(
+            re.sub(r"[^\w .:/-]|/(?=/)", "", in_ascii(self.solver.joint_names[k])) for k in self.locked
+        )
 
 
 def exported_arm(robot: HasSolver, name: str | None, locked: Any = None) -> ExportedArm:
@@ -87,16 +101,14 @@ def exported_arm(robot: HasSolver, name: str | None, locked: Any = None) -> Expo
     """
     solver = as_solver(robot)
     chosen = checked_locked_joints(solver, locked)
+    identifier = check_name(name) if name is not None else identifier_from(solver.name)
     if not chosen:
-        kind, plan = numbers_of(solver)
-        return describe_arm(solver, name, kind, plan)
-    if between_others(len(solver.joint_names), chosen):
-        return describe_arm(solver, name, "locked", {}, locked=chosen)
+        return ExportedArm(solver, identifier, *numbers_of(solver))
+    if between_others(solver.dof, chosen):
+        return ExportedArm(solver, identifier, "locked", {}, chosen)
     others = solver.lock(dict.fromkeys(chosen, 0.0))
     kind, plan = numbers_of(others)
-    return describe_arm(
-        solver, name, kind, plan, locked=chosen, moving=describe_arm(others, "moving", kind, plan)
-    )
+    return ExportedArm(solver, identifier, kind, plan, chosen, ExportedArm(others, "moving", kind, plan))
 
 
 def numbers_of(solver: Solver) -> tuple[str, dict[str, Any]]:
@@ -133,36 +145,6 @@ def checked_locked_joints(solver: Solver, locked: Any) -> tuple[int, ...]:
             f"locked names {len(chosen)} of {joints} joints; 1 to {MAX_SETTLED} must remain unlocked"
         )
     return tuple(sorted(chosen))
-
-
-def describe_arm(
-    solver: Solver,
-    name: str | None,
-    kind: str,
-    plan: dict[str, Any],
-    locked: tuple[int, ...] = (),
-    moving: ExportedArm | None = None,
-) -> ExportedArm:
-    """The names and numbers of an arm."""
-    chain = solver.chain
-    return ExportedArm(
-        solver=solver,
-        identifier=check_name(name) if name is not None else identifier_from(solver.name),
-        title=in_ascii(" ".join(str(solver.name).split()).replace("*/", "")) or "arm",
-        kind=kind,
-        plan=plan,
-        dof=len(chain.joint_types),
-        room=8 if kind == "few_joints" else 16,
-        joint_names=tuple(solver.joint_names),
-        joint_types=str(chain.joint_types),
-        lower=[float(x) for x in solver.limits.lower],
-        upper=[float(x) for x in solver.limits.upper],
-        axes=chain.axes,
-        points=chain.points,
-        T_zero=chain.T_zero,
-        locked=locked,
-        moving=moving,
-    )
 
 
 def check_name(name: str) -> str:

@@ -14,7 +14,6 @@ from cspace.errors import InputError
 from cspace.export.amalgam import amalgamate_headers
 from cspace.export.arm import ExportedArm, vector_field
 from cspace.export.texts import fill_template, in_ascii, read_template
-from cspace.tolerances import ON_LIMIT
 
 TABLES_AT_START = "#define CSPACE_TABLES_AT_START\n\n"
 """Tables are computed when the program starts; on first use they would need the C++ run-time library."""
@@ -60,18 +59,14 @@ def c_files(arm: ExportedArm, header: str) -> dict[str, str]:
 def words_of(arm: ExportedArm) -> dict[str, Any]:
     """The values of the $words in the templates."""
     return {
-        "name": arm.identifier,
-        "title": arm.title,
-        "version": arm.version,
+        **arm.words,
         "method": arm.method,
         "MACRO": f"{arm.identifier.upper()}_IK_",
-        "dof": arm.dof,
         "room": arm.room,
-        "joint_names": ", ".join(quote_text(name) for name in arm.joint_names),
-        "prismatic": write_literal([kind == "P" for kind in arm.joint_types])[1:-1],
-        "lower": write_bounds(arm.lower),
-        "upper": write_bounds(arm.upper),
-        "on_limit": ON_LIMIT,
+        "joint_names": ", ".join(quote_text(name) for name in arm.solver.joint_names),
+        "prismatic": write_literal([kind == "P" for kind in arm.chain.joint_types])[1:-1],
+        "lower": write_bounds(arm.solver.limits.lower.tolist()),
+        "upper": write_bounds(arm.solver.limits.upper.tolist()),
         **words_of_locked(arm),
     }
 
@@ -80,7 +75,7 @@ def words_of_locked(arm: ExportedArm) -> dict[str, Any]:
     """The values of the $words about locked joints; empty texts without locked joints."""
     count, numbers = len(arm.locked), ", ".join(map(str, arm.locked))
     names = arm.locked_names
-    moving = [k for k in range(arm.dof) if k not in arm.locked]
+    moving = [k for k in range(arm.solver.dof) if k not in arm.locked]
     words = {
         "locked_count": count,
         "locked_joints": numbers,
@@ -111,12 +106,13 @@ def words_of_locked(arm: ExportedArm) -> dict[str, Any]:
 
 def chain_of(arm: ExportedArm) -> dict[str, Any]:
     """The whole arm as a chain of the headers."""
+    chain = arm.chain
     return {
-        "n": arm.dof,
-        "axis": [vector_field(axis) for axis in arm.axes],
-        "point": [vector_field(point) for point in arm.points],
-        "prismatic": [kind == "P" for kind in arm.joint_types],
-        "tip": {"R": {"m": arm.T_zero[:3, :3].tolist()}, "t": vector_field(arm.T_zero[:3, 3])},
+        "n": arm.solver.dof,
+        "axis": [vector_field(axis) for axis in chain.axes],
+        "point": [vector_field(point) for point in chain.points],
+        "prismatic": [kind == "P" for kind in chain.joint_types],
+        "tip": {"R": {"m": chain.T_zero[:3, :3].tolist()}, "t": vector_field(chain.T_zero[:3, 3])},
     }
 
 

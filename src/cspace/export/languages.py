@@ -13,8 +13,8 @@ from typing import Any
 from cspace.errors import InputError, InputTypeError, name_new_keywords, suggest
 from cspace.export.arm import ExportedArm, exported_arm
 from cspace.export.cpp import c_files, cpp_header, words_of
-from cspace.export.texts import fill_template
 from cspace.export.python_file import python_file, python_method
+from cspace.export.texts import fill_template
 from cspace.files import path_of, write_text
 from cspace.tables import html_table, one_line
 
@@ -160,7 +160,7 @@ def write_out(arm: ExportedArm, language: str, main: str) -> Export:
     words["object"] = PurePath(main).with_suffix(".o").name
     words["module"] = PurePath(main).stem
     example = fill_template(f"example{ending}.in", words)
-    chosen = tuple(arm.joint_names[k] for k in arm.locked)
+    chosen = tuple(arm.solver.joint_names[k] for k in arm.locked)
     method = python_method(arm) if language == "python" else arm.method
     return Export(language, arm.identifier, method, files, example, chosen)
 
@@ -168,7 +168,7 @@ def write_out(arm: ExportedArm, language: str, main: str) -> Export:
 def sample_configuration(arm: ExportedArm) -> str:
     """An irregular configuration inside the limits, as a list of numbers."""
     values = []
-    for i, (lower, upper) in enumerate(zip(arm.lower, arm.upper, strict=True)):
+    for i, (lower, upper) in enumerate(zip(*arm.solver.limits.range.tolist(), strict=True)):
         low, high = max(lower, -2.0), min(upper, 2.0)
         values.append(round(low + (high - low) * (0.37 + 0.31 * i) % 1.0, 3))
     return ", ".join(map(str, values))

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from cspace.export.arm import ExportedArm
-from cspace.export.texts import fill_template
 from cspace.export.python_steps import python_steps
+from cspace.export.texts import fill_template
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.geometry import as_arrays
-from cspace.tolerances import ON_LIMIT
 
 PACKAGE = "cspace.export.python"
 IMPORTS = (ast.Import, ast.ImportFrom)
@@ -32,19 +31,15 @@ def python_file(arm: ExportedArm) -> str:
     ]
     body = "\n\n".join(without_imports(source) for source in modules)
     words: dict[str, Any] = {
-        "name": arm.identifier,
-        "title": arm.title,
-        "version": arm.version,
+        **arm.words,
         "method": python_method(arm),
         "imports": "\n".join(standard_imports(modules)),
         "body": body,
         "arm": literal(numbers(arm.solved), 1),
         "steps": python_steps(arm.solved) if arm.solved.kind == "closed" else "",
-        "joint_names": repr(list(arm.joint_names)),
-        "lower": literal(np.array(arm.lower), 0),
-        "upper": literal(np.array(arm.upper), 0),
-        "on_limit": ON_LIMIT,
-        "dof": arm.dof,
+        "joint_names": repr(list(arm.solver.joint_names)),
+        "lower": literal(arm.solver.limits.lower, 0),
+        "upper": literal(arm.solver.limits.upper, 0),
         **python_words_of_locked(arm),
     }
     return fill_template("module.py.in", words)
@@ -53,24 +48,20 @@ def python_file(arm: ExportedArm) -> str:
 def python_words_of_locked(arm: ExportedArm) -> dict[str, str]:
     """The values of the $words about locked joints, and the call of the solver."""
     solver = "solve_few_joints" if arm.solved.kind == "few_joints" else "solve_closed"
-    if not arm.locked:
-        none = dict.fromkeys(
-            ("locked_sample", "locked_of_q", "locked_parameter", "locked_words", "locked_arm_source"), ""
-        )
-        return {**none, "whole": "ARM", "solve": f"{solver}(ARM, goal, rest)"}
     count, chosen = len(arm.locked), list(arm.locked)
     lines = f"LOCKED = {chosen}  # {arm.locked_names}\n"
     lines += f"WHOLE: dict[str, Any] = {literal(chain_numbers(arm), 1)}\n"
-    of_q = ", ".join(f"q[{k}]" for k in chosen)
-    return {
+    words = {
         "locked_sample": ", locked",
-        "locked_of_q": f", [{of_q}]",
+        "locked_of_q": f", [{', '.join(f'q[{k}]' for k in chosen)}]",
         "locked_parameter": "locked: npt.ArrayLike, ",
         "locked_words": f"    locked ({count},): the values of the locked joints, {arm.locked_names}.\n",
         "locked_arm_source": lines,
-        "whole": "WHOLE",
-        "solve": f"solve_locked({solver}, ARM, WHOLE, LOCKED, values_of(locked, {count}), goal, rest)",
     }
+    if not arm.locked:
+        return {**dict.fromkeys(words, ""), "whole": "ARM", "solve": f"{solver}(ARM, goal, rest)"}
+    solve = f"solve_locked({solver}, ARM, WHOLE, LOCKED, values_of(locked, {count}), goal, rest)"
+    return {**words, "whole": "WHOLE", "solve": solve}
 
 
 def python_method(arm: ExportedArm) -> str:
@@ -101,17 +92,15 @@ def numbers(arm: ExportedArm) -> dict[str, Any]:
 
 def chain_numbers(arm: ExportedArm) -> dict[str, Any]:
     """The product of exponentials."""
-    return {
-        "axes": np.asarray(arm.axes),
-        "points": np.asarray(arm.points),
-        "slides": np.array([kind == "P" for kind in arm.joint_types]),
-        "T_zero": np.asarray(arm.T_zero),
-    }
+    chain = arm.chain
+    slides = np.array([kind == "P" for kind in chain.joint_types])
+    return {"axes": chain.axes, "points": chain.points, "slides": slides, "T_zero": chain.T_zero}
 
 
 def size_of(arm: ExportedArm) -> float:
     """A length typical of the arm [m]."""
-    reach = np.abs(np.vstack([arm.points, arm.T_zero[:3, 3]]) - arm.points[0]).max()
+    points = arm.chain.points
+    reach = np.abs(np.vstack([points, arm.chain.T_zero[:3, 3]]) - points[0]).max()
     return float(reach) or 1.0
 
 

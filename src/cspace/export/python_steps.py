@@ -22,7 +22,7 @@ WIDTH = 100
 
 def python_steps(arm: ExportedArm) -> str:
     """A function per step, the list of the steps, and the angles t1 … t6 after the last one."""
-    plan = settled_plan(arm.solver, IkPlan(arm.title, arm.joint_names))
+    plan = settled_plan(arm.solver, IkPlan(arm.title, arm.solver.joint_names))
     steps = [step for step in plan.steps if step.angles]
     writer = Writer(sorted(word for step in steps for word in step.angles.split()), plan.constants)
     functions = "\n\n".join(writer.function(step) for step in steps)
