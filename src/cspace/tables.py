@@ -5,11 +5,13 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-__all__ = ["align_cells", "html_table", "line_of_fields", "markdown_table", "one_line", "shown"]
+__all__ = ["align_cells", "html_table", "markdown_table", "one_line", "show_fields", "shown"]
+
+Record = TypeVar("Record")
 
 LONGEST_LINE = 120
 """Characters of a line that represents an object."""
@@ -29,12 +31,18 @@ def one_line(kind: str, text: str) -> str:
     return line if len(line) <= LONGEST_LINE else line[: LONGEST_LINE - 2].rstrip() + "…>"
 
 
-def line_of_fields(answer: Any) -> str:
-    """The fields of a record as one line, with the shapes of its arrays in place of their values."""
-    names = getattr(answer, "_fields", None) or answer.__dataclass_fields__
-    values = ((name, getattr(answer, name)) for name in names if not name.startswith("_"))
-    texts = (f"{k} {v.shape}" if isinstance(v, np.ndarray) else f"{k} {v!r}" for k, v in values)
-    return one_line(type(answer).__name__, ", ".join(texts))
+def show_fields(record: type[Record]) -> type[Record]:
+    """The class, whose objects are shown as one line: their fields, with the shapes of arrays in place of
+    their values."""
+
+    def line(answer: Any) -> str:
+        names = getattr(answer, "_fields", None) or answer.__dataclass_fields__
+        values = ((name, getattr(answer, name)) for name in names if not name.startswith("_"))
+        texts = (f"{k} {v.shape}" if isinstance(v, np.ndarray) else f"{k} {v!r}" for k, v in values)
+        return one_line(type(answer).__name__, ", ".join(texts))
+
+    record.__repr__ = line  # type: ignore[method-assign]
+    return record
 
 
 def align_cells(rows: Sequence[Sequence[str]]) -> str:

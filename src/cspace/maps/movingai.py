@@ -13,7 +13,7 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.errors import InputError, MapError
 from cspace.maps.files import check_map_path, read_map_bytes
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 from cspace.tolerances import MAP_CELLS
 
 FREE: Final = b".GS"
@@ -27,6 +27,7 @@ VERSIONS: Final = (["version", "1"], ["version", "1.0"])
 """First lines of a scenario file."""
 
 
+@show_fields
 class Scenarios(NamedTuple):
     """The queries of a scenario file, one row each."""
 
@@ -36,9 +37,6 @@ class Scenarios(NamedTuple):
     """(k, 2): x and y of the goal."""
     length: Array
     """(k,): the length of the shortest path by eight moves without cutting corners [cells], as printed."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
     def ends(self, line: int, grid: Any) -> tuple[Array, Array]:
         """Start and goal of a query, 0 to k − 1, as points (2,) [m]: the centres of their cells in grid,

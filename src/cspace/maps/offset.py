@@ -15,12 +15,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cspace.arrays import Array, positive_number
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 from cspace.tolerances import OFFSET_PIECE, OFFSET_SLACK
 
 Clearance = Callable[[Array], Any]
 
 
+@show_fields
 class OffsetCurve(NamedTuple):
     """A closed curve of k pieces, with the free space of the disc's centre on its left."""
 
@@ -32,9 +33,6 @@ class OffsetCurve(NamedTuple):
     """(k, 2) [m]: the centre of an arc; NaN for a segment."""
     angles: Array
     """(k, 2) [rad]: the start and end angle of an arc around its centre, clockwise; NaN for a segment."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
     def points(self, chord: float) -> Array:
         """The curve as a closed polygon (m, 2) [m] whose sides deviate from it by at most `chord` [m]."""
@@ -50,15 +48,13 @@ class OffsetCurve(NamedTuple):
         return np.vstack(made)
 
 
+@show_fields
 class Offset(NamedTuple):
     """The free space of the centre of a disc."""
 
     radius: float
     """Radius of the disc [m]."""
     curves: list[OffsetCurve]
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
     @property
     def length(self) -> float:

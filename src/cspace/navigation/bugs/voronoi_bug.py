@@ -33,10 +33,11 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things, explain_entry
 from cspace.search import draw_seed, option
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 from cspace.tolerances import SCAN_NOISE
 
 
+@show_fields
 class VoronoiBugEvidence(NamedTuple):
     """The record of a robot that traced the points equally near to two walls, and the loop that encloses
     its goal."""
@@ -54,9 +55,6 @@ class VoronoiBugEvidence(NamedTuple):
     shut: tuple[int, tuple[float, float]] | None
     """For an unreachable goal: the boundary loop that encloses it, an index of `world.walls`, and a point
     (x, y) of the loop where the line to the goal enters the wall; else None."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,12 +20,13 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things, explain_entry
 from cspace.search import option
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 
 HANDS: Final = {"left": 0, "right": 1, None: 2}
 """The numbers of hands in the compiled core; None: either."""
 
 
+@show_fields
 class BugEvidence(NamedTuple):
     """The k stretches of wall that a robot followed, and the loop that encloses its goal."""
 
@@ -40,9 +41,6 @@ class BugEvidence(NamedTuple):
     shut: tuple[int, tuple[float, float]] | None
     """For an unreachable goal: the boundary loop that encloses it, and a point (x, y) of the loop where the
     line to the goal enters the wall; else None."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
 
 class WallFollower(PlanePlanner):

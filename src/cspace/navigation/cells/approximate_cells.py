@@ -27,7 +27,7 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
 from cspace.search import option
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 from cspace.tolerances import FINEST_LEVEL, QUADTREE_CELLS, QUADTREE_DEPTH, UNIFORM_DEPTH
 
 METRICS: Final = ("euclidean", "manhattan")
@@ -42,6 +42,7 @@ class ApproximateCells(NamedTuple):
     """(k,): 0 free, 1 mixed, 2 full."""
 
 
+@show_fields
 class CellEvidence(NamedTuple):
     """The squares that support a verdict."""
 
@@ -52,9 +53,6 @@ class CellEvidence(NamedTuple):
     """The level of the smallest square."""
     side: float
     """Side of the smallest square [m]."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,11 +25,12 @@ from cspace.navigation.checks import need_grid
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.search import option
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 
 PREFER: Final = ("clearance", "length")
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class BrushfireDiagram:
     """The Voronoi diagram of a grid (rows, columns), and the fields behind it.
@@ -47,9 +48,6 @@ class BrushfireDiagram:
     ends: npt.NDArray[np.int32]
     lengths: Array
     widths: Array
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
 
 def brushfire_diagram(grid: Any) -> BrushfireDiagram:

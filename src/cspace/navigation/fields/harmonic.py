@@ -22,10 +22,11 @@ from cspace.navigation.checks import check_ends, need_grid
 from cspace.navigation.planner import NO_EVENTS, PlanePlanner
 from cspace.navigation.route import Route, Stats, new_route
 from cspace.navigation.text import count_things
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_FIELDS, HARMONIC_RESIDUAL
 
 
+@show_fields
 class HarmonicEvidence(NamedTuple):
     """The accuracy of the solution of Laplace's equation."""
 
@@ -36,9 +37,6 @@ class HarmonicEvidence(NamedTuple):
     rests: int
     """Cells other than the goal without a descending step; if there are none, descents arrive from
     everywhere."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
 
 UNSOLVED: Final = HarmonicEvidence(0.0, 0, 0)

@@ -27,7 +27,7 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
 from cspace.search import option
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 from cspace.tolerances import DESCENT_LOOKS, LEAST_REACH
 
 RESTS: Final = ("goal", "minimum", "saddle", "crease", "wall", "budget")
@@ -40,6 +40,7 @@ SAID: Final = {
 }
 
 
+@show_fields
 class PotentialRest(NamedTuple):
     """Where and how a descent ended."""
 
@@ -52,9 +53,6 @@ class PotentialRest(NamedTuple):
     """The number of equilibria that the descent left again."""
     gains: dict[str, float]
     """k, k_r, rho_0, cone and step as they were used."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,7 +31,7 @@ from cspace.navigation.planner import NO_EVENTS, PlanePlanner
 from cspace.navigation.route import Route, Stats, new_route
 from cspace.navigation.text import count_things
 from cspace.search import option
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 from cspace.tolerances import (
     FARTHEST_POINT,
     NAVIGATION_FUNCTIONS,
@@ -42,6 +42,7 @@ from cspace.tolerances import (
 )
 
 
+@show_fields
 class NavigationEvidence(NamedTuple):
     """The evidence for a descent on a navigation function."""
 
@@ -51,9 +52,6 @@ class NavigationEvidence(NamedTuple):
     """The number of saddles that the descent was pushed off."""
     fault: str
     """The reason why there is no navigation function, as one sentence; empty where there is one."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
 
 class NavigationFunction:

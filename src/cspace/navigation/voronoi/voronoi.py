@@ -25,7 +25,7 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import explain_division
 from cspace.search import option
-from cspace.tables import line_of_fields
+from cspace.tables import show_fields
 from cspace.tolerances import DIAGRAM_CHORD
 
 PREFER: Final = ("clearance", "length")
@@ -42,6 +42,7 @@ class VoronoiEvidence(NamedTuple):
     at_goal: float
 
 
+@show_fields
 class VoronoiDiagram(NamedTuple):
     """The Voronoi diagram of a world's free space: n vertices and k arcs."""
 
@@ -56,9 +57,6 @@ class VoronoiDiagram(NamedTuple):
     is_whole: bool
     """Whether each component's part has as many cycles as the component has holes. False where rounding has
     lost arcs."""
-
-    def __repr__(self) -> str:
-        return line_of_fields(self)
 
 
 @dataclass(frozen=True, eq=False)
