@@ -1,5 +1,4 @@
-"""The robot: one object with every function of the library; each method calls the free function of its
-package."""
+"""The robot: one object with every function of the library, each the free function of its package."""
 
 from __future__ import annotations
 

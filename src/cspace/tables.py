@@ -32,8 +32,7 @@ def one_line(kind: str, text: str) -> str:
 
 
 def show_fields(record: type[Record]) -> type[Record]:
-    """The class, whose objects are shown as one line: their fields, with the shapes of arrays in place of
-    their values."""
+    """The class, its objects shown as one line: their fields, with shapes in place of arrays."""
 
     def line(answer: Any) -> str:
         names = getattr(answer, "_fields", None) or answer.__dataclass_fields__

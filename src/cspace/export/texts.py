@@ -1,5 +1,4 @@
-"""Texts of exports: templates with placeholders $word; ASCII, as compilers differ in which other characters
-they accept in comments."""
+"""Texts of exports: templates with placeholders $word, and ASCII, which every compiler takes in comments."""
 
 from __future__ import annotations
 

@@ -61,9 +61,7 @@ class Answers(Renamed):
 
     @property
     def freedom(self) -> tuple[str, ...]:
-        """The names of the parameters that the goal leaves free, one per dimension; empty if it leaves
-        none except in self-motions.
-        """
+        """The names of the parameters that the goal leaves free, one per dimension, self-motions aside."""
         return () if self._about is None else self._about.freedom
 
     @property
@@ -89,9 +87,7 @@ class Answers(Renamed):
 
     @property
     def _whole(self) -> tuple[Solver, Array]:
-        """The solver that reaches the goal as a whole, and its rows: those of a partial goal have its virtual
-        joints too.
-        """
+        """The solver that reaches the whole goal, and its rows, with the virtual joints of a partial goal."""
         if self._about is None or self._about.goal is None:
             return self.solver, self.q
         return cast(Solver, self._about.extended), cast(Array, self._about.q)

@@ -135,9 +135,7 @@ def in_a_plane(turns: list[int]) -> Words:
 
 
 def towards_viewer(h: Array) -> Array:
-    """h or −h, whichever looks at a viewer who sees the base's x (else y) to the right and its z (else y)
-    up.
-    """
+    """h or −h, towards a viewer who sees the base's x (else y) to the right and its z (else y) up."""
     X, Y, Z = np.eye(3)
     right = Y if are_parallel(h, X) else X
     up = Y if are_parallel(h, Z) else Z
@@ -175,8 +173,7 @@ def name_slide(at: Placed, turn: int, sliding: int, end: Array) -> str:
 
 
 def side_of(at: Placed, turn: int, sliding: int, end: Array, words: tuple[str, str]) -> str:
-    """On which side of a turning axis `end` lies, along a prismatic joint; "level" with it at the fold
-    between."""
+    """On which side of a turning axis `end` lies, along a prismatic joint; "level" at the fold between."""
     from_axis = part_across(end - at.points[turn], at.axes[turn])
     ahead = from_axis @ at.axes[sliding]
     if abs(ahead) <= BRANCH_OFFSET * np.linalg.norm(from_axis):

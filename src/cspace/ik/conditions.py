@@ -14,9 +14,7 @@ from cspace.kinematics import KinematicModel
 
 
 class NoClosedFormError(CspaceError, NotImplementedError):
-    """The arm has none of the geometries that this version solves; the message lists the conditions that
-    failed.
-    """
+    """No geometry that this version solves fits the arm; the message lists the conditions that failed."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +47,7 @@ def common_point(axes: Array, points: Array) -> tuple[Array, float]:
 
 
 def arm_length(robot: KinematicModel) -> float:
-    """The longest distance between neighbouring axes or to the tip [m], 1 if all meet; the scale of
-    tolerances.
-    """
+    """The scale of tolerances [m]: the longest way from axis to axis, or to the tip; 1 if all meet."""
     points = np.vstack([robot.chain.points, robot.chain.T_zero[:3, 3]])
     axes = robot.chain.axes
     steps = [np.linalg.norm(np.cross(points[i + 1] - points[i], axes[i])) for i in range(len(axes))]
@@ -78,9 +74,7 @@ def measure_conditions(robot: KinematicModel) -> tuple[Condition, ...]:
 
 
 def best_conditioning(robot: KinematicModel) -> float:
-    """The largest, over some configurations, of the Jacobian's smallest singular value (lengths over the
-    arm's length).
-    """
+    """The best smallest singular value of the Jacobian at some configurations (lengths over the arm's)."""
     n = len(robot.chain.axes)
     steps = np.arange(1, 9)[:, None] * np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0])[:n]
     q = 2 * np.pi * (steps - np.floor(steps)) - np.pi

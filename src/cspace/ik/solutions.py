@@ -92,16 +92,12 @@ class Solutions(Answers, _core.SolutionsBase):
 
     @property
     def branch(self) -> tuple[str, ...]:
-        """A name for each solution: shoulder, elbow and wrist where the arm has them, else its branch
-        number.
-        """
+        """A name for each solution: shoulder, elbow and wrist where the arm has them, else a number."""
         return branch_labels(self.solver, self.q, self._branch_numbers)
 
     @property
     def out_of_reach(self) -> float:
-        """The distance [m] of the goal from the reachable poses: how far it would have to move with its
-        orientation kept.
-        """
+        """How far [m] the goal would have to move, its orientation kept, to be reached."""
         if self._status != UNREACHABLE:
             return 0.0
         return nearest_to_goal(self, ORIENTATION_FIRST)[1]

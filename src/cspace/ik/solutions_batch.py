@@ -90,9 +90,7 @@ class SolutionsBatch(Answers):
 
     @property
     def out_of_reach(self) -> Array:
-        """By how much each goal is out of reach [m], (...,), as of `Solutions`; made when read, by a search
-        for each unreachable goal.
-        """
+        """How far each goal is out of reach [m], (...,), as of `Solutions`: a search for each when read."""
         return self._of_each("out_of_reach", np.dtype(float))
 
     def _of_each(self, name: str, kind: np.dtype[Any]) -> npt.NDArray[Any]:
@@ -138,9 +136,7 @@ class SolutionsBatch(Answers):
         return replace(self, q=wrap_joints(self.q, self.solver.joint_types))
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Array:
-        """Per goal the configuration nearest to q (dof,) or (..., dof), (..., dof); NaN where there is
-        none.
-        """
+        """Per goal the configuration (..., dof) nearest to q (dof,) or (..., dof); NaN if there is none."""
         moved, row = self._towards(self._seed(q), metric)
         return np.take_along_axis(moved, row[..., None, None], axis=-2)[..., 0, :]
 

@@ -116,9 +116,7 @@ def all_windings(
 
 
 def joint_windings(angle: float, kind: str, lower: float, upper: float) -> tuple[float, int]:
-    """The lowest copy of an angle inside its limits or onto one by rounding, and how many follow a turn
-    apart.
-    """
+    """The lowest copy of an angle inside its limits, up to rounding, and how many follow a turn apart."""
     lower, upper = lower - ON_LIMIT, upper + ON_LIMIT
     if kind == "P":
         return angle, int(lower <= angle <= upper)

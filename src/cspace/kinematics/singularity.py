@@ -110,9 +110,7 @@ def singularity(
 
 
 def _dependent(J: Array, weights: Array, rank: int) -> list[int]:
-    """The columns of J (m, n) that become dependent, at most `rank`; weights (n,): the joint velocities that
-    move least.
-    """
+    """The columns of J (m, n) that become dependent, at most `rank`; weights (n,): the weakest motion."""
     sizes = np.linalg.norm(J, axis=0)
     taking_part = np.flatnonzero(sizes > SINGULAR_VALUE)
     if taking_part.size < rank:

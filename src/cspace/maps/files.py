@@ -16,8 +16,7 @@ def check_map_path(path: Any) -> str:
 
 
 def read_map_bytes(path: str | os.PathLike[str]) -> bytes:
-    """The bytes of a map file; MapError names the path of a file that is missing, too large or not
-    readable."""
+    """The bytes of a map file; MapError names the path of one that is missing, too large or not readable."""
     return files.read_regular(check_map_path(path), "map", MAP_BYTES, MapError)
 
 

@@ -91,8 +91,7 @@ def _make_strip(ahead: int, one: tuple[Directions, Array], other: tuple[Directio
 def _find_tight_directions(
     corners: Array, nexts: Array, ahead: Directions, radius: float, sides: int, keep: Array
 ) -> list[Directions]:
-    """For each corner the directions of objects between which the disc just fits: other corners, walls and
-    the positions of `keep`."""
+    """For each corner the directions of corners, walls and points of `keep` that the disc can just pass."""
     found: list[list[Directions]] = [[np.empty(0, np.int64)] for _ in corners]
     near, far = 2 * radius * (1 - TIGHT_GAP), 2 * radius / np.cos(np.pi / sides)
     low, high = np.minimum(corners, nexts) - far, np.maximum(corners, nexts) + far

@@ -45,8 +45,7 @@ def _check_size(columns: int, rows: int, name: str) -> None:
 
 
 def _read_pgm(data: bytes, name: str) -> Array:
-    """The grey values of a PGM file: a header of three numbers, with comments, then numbers as text or as
-    bytes."""
+    """The grey values of a PGM file: three numbers, with comments, then numbers as text or as bytes."""
     token = re.compile(rb"(?:\s|#[^\n]*(?:\n|$))*(\d{1,10})")
     numbers, at = [], 2
     for what in ("width", "height", "largest grey"):

@@ -1,5 +1,4 @@
-"""MovingAI benchmarks: reads maps and scenarios (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding",
-2012)."""
+"""Reads MovingAI maps and scenarios (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding", 2012)."""
 
 from __future__ import annotations
 
@@ -105,8 +104,7 @@ def _read_cells(lines: list[bytes], rows: int, columns: int, name: str, first: i
 
 
 def read_scenarios(path: str | os.PathLike[str]) -> Scenarios:
-    """The queries of a `.scen` file: start (k, 2), goal (k, 2), length (k,); MapError names the line at
-    fault."""
+    """The queries of a `.scen` file: start, goal (k, 2), length (k,); MapError names the line at fault."""
     name = check_map_path(path)
     lines = read_map_bytes(path).decode("utf-8", "replace").split("\n")
     if lines[0].split() not in VERSIONS:

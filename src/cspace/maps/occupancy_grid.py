@@ -137,8 +137,7 @@ class OccupancyGrid(_core.GridBase):
         return self.origin + self.resolution * (index[..., ::-1] + 0.5)
 
     def is_free(self, points: ArrayLike) -> Any:
-        """Whether points (..., 2) [m] lie in free cells or on their borders: (...) of bool; points outside
-        do not."""
+        """Whether points (..., 2) [m] lie in free cells or on their borders: (...) of bool; none outside."""
         given = as_floats(points, "points", last=(2,))
         free = self._free(np.ascontiguousarray(given).reshape(-1, 2))
         return free.view(np.bool_).reshape(given.shape[:-1]) if given.ndim > 1 else bool(free[0])

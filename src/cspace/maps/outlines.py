@@ -86,8 +86,7 @@ def longer_side(bounds: Sequence[float] | Array) -> float:
 
 
 def find_bounds(outlines: list[Outline]) -> Array:
-    """The bounding box of all points, extended by a quarter of its longer side (4,); the unit square if
-    there are no points."""
+    """The box around all points plus a quarter of its longer side (4,); the unit square without points."""
     if not outlines:
         return np.array([0.0, 0.0, 1.0, 1.0])
     points = np.vstack([ring for rings in outlines for ring in rings])

@@ -96,8 +96,7 @@ class PolygonWorld:
 
     @classmethod
     def from_grid(cls, grid: OccupancyGrid) -> PolygonWorld:
-        """The blocked cells of a grid as one obstacle, with its outline along their sides; the bounds are
-        the grid's."""
+        """The blocked cells of a grid as one obstacle, outlined along their sides; the grid's bounds."""
         made = cls.__new__(cls)
         side, (x, y) = grid.resolution, map(float, grid.origin)
         rows, columns = grid.shape

@@ -17,8 +17,7 @@ from cspace.tolerances import CELL_ROUNDING, DEFAULT_CELLS, MAP_CELLS
 def rasterize_world(
     core: _core.PolygonCore, bounds: Array, resolution: float | None
 ) -> tuple[npt.NDArray[np.bool_], float]:
-    """Which cells (rows, columns) are blocked, and their side [m]; cell (0, 0) is at the lower left of the
-    bounds."""
+    """Which cells (rows, columns) are blocked, and their side [m]; (0, 0) is the lower left of the bounds."""
     xmin, ymin, xmax, ymax = map(float, bounds)
     wide = longer_side(bounds)
     if resolution is None:

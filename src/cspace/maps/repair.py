@@ -17,8 +17,7 @@ class GeometryError(InputError):
 
 
 def check_area(outlines: Sequence[Sequence[Array]], repair: bool) -> list[str]:
-    """Polygons without area, which the repair keeps as walls without thickness; GeometryError without
-    repair."""
+    """Polygons without area, which repair keeps as walls without thickness; GeometryError without it."""
     said = []
     for k, rings in enumerate(outlines):
         for ring in rings:
@@ -40,8 +39,7 @@ def _is_on_one_line(ring: Array) -> bool:
 
 
 def describe_crossings(core: _core.PolygonCore, repair: bool) -> list[str]:
-    """Polygons that cross themselves, which the repair reads by the even-odd rule; GeometryError without
-    repair."""
+    """Polygons that cross themselves, which repair reads by the even-odd rule; GeometryError without it."""
     points, pairs = core.crossings()
     own: dict[int, list[Array]] = {}
     for point, (one, other) in zip(points, pairs, strict=True):

@@ -16,6 +16,5 @@ def path_of(source: Any) -> str:
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
-    """The bytes of a robot file; DescriptionError names the path of one that is missing, too large or not
-    readable."""
+    """The bytes of a robot file; DescriptionError names the path of one missing, too large or unreadable."""
     return files.read_regular(path, "robot", DESCRIPTION_BYTES, DescriptionError)

@@ -11,8 +11,7 @@ T = TypeVar("T")
 
 
 def keep_with(world: Any, slot: str, key: Hashable, make: Callable[[], T], most: int = 1) -> T:
-    """What `make` returns, kept in a slot of the world for the next call with this key; of more keys than
-    `most` the oldest go."""
+    """What `make` returns, kept in a slot of the world for the next call with a key; `most` keys stay."""
     kept: dict[Hashable, T] = vars(world).setdefault(slot, {})
     if key not in kept:
         while len(kept) >= most:

@@ -123,8 +123,7 @@ def new_route(
     stats: Stats,
     evidence: Any = None,
 ) -> Route:
-    """A route from what a planner with the options in force found. path: (m, 2) [m]; ends: start and goal,
-    (2,) each."""
+    """A route of a planner with the options in force. path: (m, 2) [m]; ends: start and goal, (2,) each."""
     verdict = STATUSES.index(status)
     made: Route = _core._route_make(world, planner, *ends, verdict, path, length, *stats, evidence)
     return made

@@ -1,5 +1,4 @@
-"""What each planner works with, drawn beneath its path: cells, graphs, diagrams, waves, the points it
-touched."""
+"""What each planner works with, beneath its path: cells, graphs, diagrams, waves, the points it touched."""
 
 from __future__ import annotations
 

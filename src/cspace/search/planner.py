@@ -70,8 +70,7 @@ class Planner:
         return type(self)(**{**self.values, **options})
 
     def _in_force(self: Same, **values: Any) -> Same:
-        """A copy in which values that depend on the world, and seeds, are as used. They are not checked, and
-        the last copy is kept."""
+        """A copy with values that depend on the world, and seeds, as used, unchecked; the last is kept."""
         kept = vars(self).get("_kept")
         if kept is None or kept[0] != values:
             made = object.__new__(type(self))

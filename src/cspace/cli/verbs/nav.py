@@ -164,8 +164,7 @@ def time_planner(world: Any, planner: str, args: argparse.Namespace, options: di
 def collect_answers(
     world: Any, given: dict[str, dict[str, Any]], args: argparse.Namespace
 ) -> tuple[list[Answer], dict[str, str]]:
-    """What planners answer, and why others refuse the question; InputError where all do. given: the options
-    of each."""
+    """What planners answer, and why others refuse; InputError where all do. given: the options of each."""
     found, refused = [], {}
     for planner, options in given.items():
         try:

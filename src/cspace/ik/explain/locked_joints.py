@@ -36,8 +36,7 @@ WHOLE, INNER = "whole_", "inner_"
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """Which joints are locked and which move, by number from 0. at: values of the locked ones between
-    others."""
+    """Which joints are locked, which move (from 0). at: the values of the locked ones between others."""
 
     solver: Solver
     locked: tuple[int, ...]
@@ -54,8 +53,7 @@ class Split:
         return between_others(len(self.solver.joint_names), self.locked)
 
     def others(self) -> Solver:
-        """The arm of the joints that move; the locked ones at the ends at zero, which leaves the plan
-        alone."""
+        """The arm of the joints that move; locked ones at the ends at zero, which leaves the plan alone."""
         return self.solver.lock({k: self.at[k] if k in self.between else 0.0 for k in self.locked})
 
     def frame(self, k: int) -> Array:

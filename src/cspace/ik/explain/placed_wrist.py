@@ -1,5 +1,4 @@
-"""A wrist behind three joints of any kind, and three turns with three prismatic joints:
-general/decoupled.hpp."""
+"""A wrist behind three joints of any kind; three turns and three prismatic joints: general/decoupled.hpp."""
 
 from __future__ import annotations
 

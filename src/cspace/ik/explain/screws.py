@@ -55,8 +55,7 @@ def vector_text(v: Any) -> str:
 
 
 def joint_values(kinds: str, q: Array, *, length: float = 1.0) -> dict[str, Any]:
-    """The numeric values of t_i and q_i (prismatic joints over `length`); joints behind those of q (..., n)
-    are at zero."""
+    """The values of t_i and q_i (slides over `length`); zero for joints behind those of q (..., n)."""
     out: dict[str, Any] = {}
     for i, kind in enumerate(kinds):
         value = q[..., i] if i < q.shape[-1] else np.zeros(q.shape[:-1])

@@ -16,9 +16,7 @@ from cspace.tolerances import FARTHEST, LEVEL_SLIDE, UPRIGHT_TURN
 
 
 def goal_array(goal: Any) -> Array:
-    """The goals as contiguous float64; a plain batch goes on unchecked, for the core checks every goal
-    itself.
-    """
+    """The goals as contiguous float64; a plain batch stays unchecked, as the core checks every goal."""
     if type(goal) is np.ndarray and goal.dtype == np.float64 and goal.ndim > 2 and goal.shape[-2:] == (4, 4):
         return np.require(goal, requirements=["C", "A"])
     return np.require(as_pose(goal, "goal"), requirements=["C", "A"])
@@ -34,9 +32,7 @@ def checked_poses(T: Array) -> Array:
 
 
 def points_in_base(solver: Solver, position: Any) -> Array:
-    """Points in the base (..., 3); points of the plane (..., 2) are lifted to the height that a planar arm
-    keeps.
-    """
+    """Points in the base (..., 3); those of the plane (..., 2) at the height that a planar arm keeps."""
     p = as_floats(position, "position")
     if p.ndim > 0 and p.shape[-1] == 2:
         p = lift_points(solver, p)

@@ -104,9 +104,7 @@ class PartialGoal:
         return replace(self, T=np.broadcast_to(self.T, (*shape, 4, 4)))
 
     def residual(self, T: Array) -> Array:
-        """How far poses (k, 4, 4) are from the goal (or from k goals), (k,): the largest of its distances
-        [m] and angles [rad].
-        """
+        """The largest distance [m] or angle [rad] of poses (k, 4, 4) from the goal, or from k goals, (k,)."""
         distances, angles = self.misses(T)
         return np.asarray(np.max(distances + angles, axis=0))
 

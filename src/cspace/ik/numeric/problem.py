@@ -104,9 +104,7 @@ def bounds_of(robot: KinematicModel, limits: Any) -> Array:
 
 
 def middle_configuration(robot: KinematicModel, bounds: Array) -> Array:
-    """The configuration halfway between the limits (n,); zero, or the limit nearest to it, where one is
-    missing.
-    """
+    """The middle between the limits (n,); zero, or the limit nearest to it, where one is missing."""
     if not bounds.size:
         return np.zeros(len(robot.joint_names))
     lower, upper = bounds

@@ -117,8 +117,7 @@ def redundancy_of_pose(
 
 
 def is_bounded(solver: Solver, joint: int) -> bool:
-    """Whether the parameter has limits or is an angle: of a prismatic joint without limits the search covers
-    the length of the arm."""
+    """Whether the parameter has limits or is an angle; else the search covers the length of the arm."""
     bounds = solver.limits.lower[joint], solver.limits.upper[joint]
     return solver.joint_types[joint] == "R" or bool(np.isfinite(bounds).all())
 

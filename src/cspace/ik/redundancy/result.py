@@ -81,8 +81,7 @@ class Redundancy:
         return replace(self, solver=solver, intervals=rows)
 
     def feasible(self, value: float) -> tuple[int, ...]:
-        """The branches that keep all limits at this value of the parameter [rad or m], multiples of 2π
-        aside."""
+        """The branches that keep all limits at this value of the parameter [rad or m], up to turns of 2π."""
         number = as_floats(value, "value", largest=FARTHEST)
         if number.ndim:
             raise InputError(f"value has shape {number.shape}, expected one number; call it in a loop")

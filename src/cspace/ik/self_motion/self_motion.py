@@ -92,8 +92,7 @@ class SelfMotion:
 
 
 def self_motion_at(solver: Solver, row: int, q: Array, whole_pose: bool) -> SelfMotion:
-    """The self-motion through q: the joint velocity keeping the tip's twist, or the tip's velocity, at
-    zero."""
+    """The self-motion through q: the joint velocity that keeps the tip's twist, or its velocity, zero."""
     rows = 6 if whole_pose else 3
     found = _core._ik_direction(solver, np.ascontiguousarray(q), whole_pose)
     direction = np.linalg.svd(solver.jacobian(q)[:rows])[2][-1] if found is None else found

@@ -39,8 +39,7 @@ from cspace.tolerances import SCAN_NOISE
 
 @show_fields
 class VoronoiBugEvidence(NamedTuple):
-    """The record of a robot that traced the points equally near to two walls, and the loop that encloses
-    its goal."""
+    """What a robot found that traced the points equally near to two walls, and what encloses its goal."""
 
     meets: Array
     """(k, 2) [m]: where three or more walls are nearest, in the order of their discovery."""

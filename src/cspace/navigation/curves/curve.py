@@ -86,8 +86,7 @@ class Curve:
         return poses.reshape(*lengths.shape, 3)
 
     def sample(self, spacing: float) -> Array:
-        """Poses along the curve at most `spacing` [m] apart, (n, 3), including both ends and those of every
-        segment."""
+        """Poses at most `spacing` [m] apart, (n, 3), both ends and those of every segment included."""
         step = positive_number(spacing, "spacing", "give a length above zero, in metres")
         parts, begin = [np.zeros(1)], 0.0
         with guard_memory("spacing", spacing, 3 * self.length / step, "give a larger one"):

@@ -92,8 +92,7 @@ class NavigationFunction:
 
     @property
     def saddles(self) -> Any:
-        """The stationary points that are not minima: (k, 2) [m]; one for each obstacle where there is a
-        single minimum."""
+        """The stationary points but minima (k, 2) [m]; one for each obstacle if there is a single minimum."""
         return self._core.saddles()
 
     def __call__(self, points: ArrayLike) -> Any:

@@ -145,8 +145,7 @@ def _make_again(
 
 @dataclass(frozen=True, eq=False)
 class DStarLiteSearch(GridPlanner):
-    """The shortest path over the cells of a grid, searched from the goal: D* Lite before anything has
-    changed."""
+    """The shortest path over the cells of a grid, searched from the goal: D* Lite before any change."""
 
     name = "d_star_lite"
     summary = "shortest path over cells, repaired after map changes"

@@ -125,8 +125,7 @@ class GridPlanner(SearchPlanner):
 
 @dataclass(frozen=True, eq=False)
 class CostPlanner(GridPlanner):
-    """A search over the cells of a grid that may have costs. With costs, route.evidence["cost"] is what the
-    way costs."""
+    """A search over cells that may have costs; route.evidence["cost"] is then what the way costs."""
 
     costs: ArrayLike | None = option(
         None,
