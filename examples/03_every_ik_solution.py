@@ -14,7 +14,7 @@ from cspace import plot
 
 def main(folder: Path) -> None:
     robot = cs.load_robot("kr6_r900")
-    T_base_tip = cs.pose([0.4, 0.1, 0.5], rpy=[0.0, np.pi / 2, 0.0])
+    T_base_tip = cs.pose([0.4, 0.1, 0.5], rpy=[0.0, np.pi, 0.0])
 
     solutions = robot.ik(T_base_tip)
     print(solutions.reason)

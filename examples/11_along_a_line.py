@@ -9,8 +9,8 @@ import cspace as cs
 
 def main() -> None:
     robot = cs.load_robot("crx10ia")
-    down = np.diag([1.0, -1.0, -1.0])
-    first, last = cs.pose([-0.3, -0.5, -0.5], matrix=down), cs.pose([-0.7, -0.1, -0.2], matrix=down)
+    ahead = (0.0, np.pi / 2, 0.0)  # the flange points along x
+    first, last = cs.pose([-0.3, -0.5, -0.5], rpy=ahead), cs.pose([-0.7, -0.1, -0.2], rpy=ahead)
     poses = cs.spatial.interpolate_decoupled(first, last, np.linspace(0, 1, 200))
 
     # Every solution of the first pose begins a branch.

@@ -49,13 +49,32 @@ def rated(robots: list[Description]) -> int:
     return sum(not {"velocity", "effort"} & set(robot.provenance.missing) for robot in robots)
 
 
+def posed(robots: list[Description]) -> int:
+    """How many robots have named poses."""
+    return sum(bool(robot.poses) for robot in robots)
+
+
 def index_text(robots: list[Description]) -> str:
     """The rows of cspace.robots, one line each: the fields of CatalogueRow."""
     return "[\n" + ",\n".join(json.dumps(row(robot), ensure_ascii=False) for robot in robots) + "\n]\n"
 
 
+FIELDS = ("velocity", "acceleration", "effort", "inertia", "collision", "visual")
+"""The groups of numbers besides joint axes, ranges and named poses, as `missing` names them."""
+
+
+def fields_text(robot: Description) -> str:
+    """What a file has besides joint axes and ranges; the names of its poses."""
+    missing = robot.provenance.missing
+    known = [] if "link frames" in missing else ["frames"]
+    known += [field for field in FIELDS if field not in missing]
+    poses = f"poses: {', '.join(robot.poses)}" if robot.poses else ""
+    return "; ".join(filter(None, [", ".join(known), poses]))
+
+
 def page_text(robots: list[Description]) -> str:
     """The page docs/catalogue.md."""
+    framed = sum("link frames" not in robot.provenance.missing for robot in robots)
     lines = [
         "# The catalogue",
         "",
@@ -63,19 +82,23 @@ def page_text(robots: list[Description]) -> str:
         "Capitals, blanks, dashes, underscores and full stops do not count: `UR-5e` is `ur5e`. This page is",
         "made by `tools/catalogue.py` from `src/cspace/robots/catalogue`, where every number is.",
         "",
-        f"These are joint axes and ranges; {rated(robots)} robots have velocity and effort limits as well.",
-        "Acceleration limits, inertias, shapes and named poses are absent; each file lists what it lacks",
-        "under `missing` and says where each group of numbers is from. Base and tip are links of the source;",
-        "the link frames between stand on the joint axes, parallel to the base at zero (where a",
-        "file holds a Denavit–Hartenberg table: where that table puts them). A limit that the source prints",
-        "as a multiple of half a degree with nine digits or more is that angle to the last digit.",
+        f"Every robot has joint axes and, where published, ranges. {framed} robots have link frames:",
+        "links and joints have the names and the frames of the maker's description (of a textbook arm: of",
+        "its table), and the flanges of one maker's arms are alike. The others are screws: their base and",
+        "tip are links of the source, and the frames between stand on the joint axes, parallel to the base",
+        "at zero. Both are [TOML files of robots](robots.md#toml); a",
+        "[decision](decisions/catalogue-format.md) gives the reasons.",
+        f"{rated(robots)} robots have velocity and effort limits, {posed(robots)} have named poses.",
+        "Each file lists what it lacks under `missing` and says where each group of numbers is from. A",
+        "limit that the source prints as a multiple of half a degree with nine digits or more is that",
+        "angle to the last digit.",
         "",
-        "| name | joints | robot | vendor | other names | source | licence |",
-        "|---|---|---|---|---|---|---|",
+        "| name | joints | robot | vendor | other names | fields | source | licence |",
+        "|---|---|---|---|---|---|---|---|",
     ]
     for robot in robots:
         name, _, joints, title, vendor, source, licence, aliases, _ = map(str_or_tuple, row(robot))
-        cells = [f"`{name}`", joints, title, vendor, aliases, source, licence]
+        cells = [f"`{name}`", joints, title, vendor, aliases, fields_text(robot), source, licence]
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines) + "\n"
 

@@ -25,7 +25,7 @@ def ur5e_solutions() -> Sequence[Any]:
 def kr6_r900_solutions() -> Sequence[Any]:
     """The same of a KUKA KR 6."""
     robot = cs.load_robot("kr6_r900")
-    T = cs.pose([0.4, 0.1, 0.5], rpy=[0.0, np.pi / 2, 0.0])
+    T = cs.pose([0.4, 0.1, 0.5], rpy=[0.0, np.pi, 0.0])
     return plot.solutions(
         robot, robot.ik(T), T, near=[0, -1.6, 1.6, 0, 0, 0], title="kr6_r900: every way to one pose"
     )

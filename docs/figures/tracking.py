@@ -20,8 +20,8 @@ MARKS = {"limit": "o", "singularity": "s", "unreachable": "X", "jump": "^"}
 
 def line():
     """The robot and the path of the page."""
-    down = np.diag([1.0, -1.0, -1.0])
-    first, last = cs.pose([-0.3, -0.5, -0.5], matrix=down), cs.pose([-0.7, -0.1, -0.2], matrix=down)
+    ahead = (0.0, np.pi / 2, 0.0)  # the flange points along x
+    first, last = cs.pose([-0.3, -0.5, -0.5], rpy=ahead), cs.pose([-0.7, -0.1, -0.2], rpy=ahead)
     poses = cs.spatial.interpolate_decoupled(first, last, np.linspace(0, 1, 100))
     return cs.load_robot("crx10ia"), poses
 

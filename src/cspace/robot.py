@@ -196,6 +196,15 @@ class Robot(Renamed, RobotBase, KinematicModel):
     workspace = kinematics.workspace
 
     @property
+    def named_poses(self) -> dict[str, Array]:
+        """The named configurations of the description: name → q (n,) [rad or m], such as "home" or "ready".
+
+        Only those that have a value for every joint of the robot. An unknown name raises UnknownNameError
+        with the similar ones.
+        """
+        return model.named_poses(self.description, self.joint_names)
+
+    @property
     def solver(self) -> Solver:
         """The inverse kinematics of the chain from base to tip, built when first read.
 

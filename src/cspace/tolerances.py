@@ -71,10 +71,6 @@ CALIBRATION_DISTANCE: Final = 0.015
 CALIBRATION_BYTES: Final = 2**20
 """Largest calibration file that is read (bytes): a real one has one thousand."""
 
-FRAME_SNAP: Final = 1e-6
-"""Largest entry by which the rotation between two frames of one flange may miss quarter turns: published
-frames are printed with seven digits or more."""
-
 DH_PARALLEL: Final = 2.0**-26
 """Angle [rad] up to which consecutive axes get the parallel row of a Denavit–Hartenberg table: the square
 root of the rounding, where calling them parallel costs as much as their true normal far away."""

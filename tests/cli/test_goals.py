@@ -252,7 +252,7 @@ def numbers_of(document):
 
 
 def test_a_reason_is_in_the_unit_that_was_asked_for():
-    line = "ik kr6_r900 --xyz -0.6 0 0.3 --rpy pi 0 0 --limits drop"
+    line = "ik kr6_r900 --xyz -0.6 0 0.3 --rpy pi -pi/2 0 --limits drop"
     in_radians, in_degrees = cspace(line), cspace(f"{line} --deg")
     beyond = float(in_radians.out.split(" out by ")[1].removesuffix(" rad\n"))
     assert in_degrees.out.endswith(f" out by {np.degrees(beyond):.4g} deg\n")

@@ -80,6 +80,7 @@ KEYWORDS = keywords()
 PUBLIC = {name for name, _ in exports()}
 MEMBERS = set().union(*(members(value) for _, value in exports() if inspect.isclass(value)))
 DATA = {*cs.navigation.PLANNERS, *cs.navigation.STATUSES, *cs.robots.names()}
+DATA.update(*(cs.robots.load_description(name).link_by_name for name in cs.robots.names()))
 
 
 def resolves(value: Any, names: list[str]) -> bool:

@@ -99,6 +99,8 @@ def test_the_tip_is_found_where_there_is_no_choice():
         *arm.joints, Joint("f", "fixed", "hand", "tool0"), Joint("g", "fixed", "hand", "camera")
     )
     assert default_tip(flange) == "tool0"
+    gripped = robot_of(*flange.joints, Joint("h", "fixed", "tool0", "tool"))
+    assert default_tip(gripped) == "tool"
     assert default_tip(robot_of(Joint("f", "fixed", "a", "b"))) == "b"
 
 

@@ -78,8 +78,12 @@ def degrees_note(args: argparse.Namespace, robot: Robot) -> str:
 
 
 def gripper_note(args: argparse.Namespace, robot: Robot) -> str:
-    """What to type where the last joint of a file is named like a gripper's and nobody chose the tip."""
-    if args.tip is not None or robot.tip is None or not robot.joint_names:
+    """What to type where the last joint of a file is named like a gripper's and nobody chose the tip.
+
+    The arms of the catalogue, which name their sources, have no grippers.
+    """
+    catalogued = robot.description.provenance.sources
+    if args.tip is not None or robot.tip is None or not robot.joint_names or catalogued:
         return ""
     last = robot.joint_names[-1]
     joint = next(joint for joint in robot.description.joints if joint.name == last)

@@ -9,7 +9,7 @@ from cspace.model.degrees_of_freedom import (
     task_word,
     tree_freedoms,
 )
-from cspace.model.description import Description, Provenance, Source
+from cspace.model.description import Description, Provenance, Source, named_poses
 from cspace.model.dh import DHTable, dh_matrix, from_dh
 from cspace.model.dh_derivation import to_dh
 from cspace.model.joint import Joint, Limits, Loop, Mimic
@@ -55,6 +55,7 @@ __all__ = [
     "link_matrices",
     "mobility",
     "mounted",
+    "named_poses",
     "point_freedoms",
     "task_word",
     "to_dh",

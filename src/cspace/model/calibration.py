@@ -11,57 +11,40 @@ from typing import Final
 
 import numpy as np
 
-from cspace.arrays import Array
 from cspace.errors import DescriptionError, InputError
 from cspace.model.calibration_file import PARTS, Calibration, read_calibration
-from cspace.model.chain import chain, default_tip
+from cspace.model.chain import chain
 from cspace.model.description import Description, Source
 from cspace.model.joint import Joint
-from cspace.model.link import Link
-from cspace.model.transforms import from_rpy
-from cspace.model.values import IDENTITY
-from cspace.tolerances import CALIBRATION_ANGLE, CALIBRATION_DISTANCE, FRAME_SNAP
+from cspace.tolerances import CALIBRATION_ANGLE, CALIBRATION_DISTANCE
 
 JOINTS: Final = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
 """The joints of a UR arm, in order, without "_joint"; each is placed by the entry of PARTS at its place."""
-
-TOOL0_AT_ZERO: Final = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
-"""How tool0 is turned in base_link with every joint of a UR arm at zero."""
-
-Z_AXIS: Final = np.array([0.0, 0.0, 1.0])
-
-BASE_INERTIA: Final = from_rpy((0.0, 0.0, 0.0), (0.0, 0.0, math.pi))
-"""base_link_inertia in base_link: the controller's base looks backward."""
 
 
 def calibrated(description: Description, path: str | os.PathLike[str]) -> Description:
     """A UR arm with the joint frames of a calibration file.
 
     The file is what ur_calibration of ROS extracts from the arm, or a default_kinematics.yaml of
-    ur_description. Its frames stand as in ur_description: each joint turns about its own z; base_link_inertia
-    is base_link turned by π about z; tool0 is the frame of wrist_3. A description with such frames keeps all
-    else; one of the catalogue gets these links, and keeps its base, tip, limits and name.
+    ur_description. Its frames stand as in ur_description, and so do those of the description, a UR arm of the
+    catalogue or a URDF: each joint turns about its own z. All else is kept.
     Raises DescriptionError with file and line for a bad file, and for a calibration that is further off than
     tolerances.CALIBRATION_DISTANCE or CALIBRATION_ANGLE, which is that of another arm; InputError for a robot
     that is no UR arm, and for one with other link frames.
     """
     calibration = read_calibration(path)
     joints = joints_of(description)
-    if all(joint.axis.tolist() == [0.0, 0.0, 1.0] for joint in joints):
-        result = replace_joints(description, joints, calibration)
-    elif len(description.links) == len(PARTS) + 2:
-        result = rebuild_chain(description, joints, calibration)
-    else:
+    if any(joint.axis.tolist() != [0.0, 0.0, 1.0] for joint in joints):
         raise InputError(
             f"the link frames of robot {description.name!r} do not fit a calibration, in which each joint"
             " rotates about its own z axis; use a URDF of ur_description, or the name of the arm"
         )
+    result = replace_joints(description, joints, calibration)
     check_calibration(description, result, joints, calibration)
     known = description.provenance
     named = f"calibration {calibration.hash}".rstrip() + f" ({os.path.basename(calibration.path)})"
-    missing = tuple(group for group in known.missing if group != "link frames")
     sources = {**known.sources, "joints": Source(named)}
-    return replace(result, provenance=replace(known, sources=sources, missing=missing))
+    return replace(result, provenance=replace(known, sources=sources))
 
 
 def joints_of(description: Description) -> list[Joint]:
@@ -95,33 +78,6 @@ def replace_joints(
         for joint in description.joints
     )
     return replace(description, joints=changed)
-
-
-def rebuild_chain(description: Description, joints: Sequence[Joint], calibration: Calibration) -> Description:
-    """A chain from base to tip through the links of ur_description."""
-    base, tip = joints[0].parent, default_tip(description)
-    links = ["base_link_inertia", *(f"{part}_link" for part in PARTS)]
-    chained = [Joint("base_link-base_link_inertia", "fixed", base, links[0], BASE_INERTIA)]
-    for i, (joint, part) in enumerate(zip(joints, PARTS, strict=True)):
-        place = calibration.origins[part]
-        chained.append(replace(joint, parent=links[i], child=links[i + 1], origin=place, axis=Z_AXIS))
-    turned = turn_of_tip(description)
-    chained.append(Joint(f"{tip}_fixed", "fixed", links[-1], tip, turned))
-    return replace(description, links=tuple(map(Link, (base, *links, tip))), joints=tuple(chained))
-
-
-def turn_of_tip(description: Description) -> Array:
-    """The tip in tool0 (4, 4), which differ by quarter turns."""
-    R = TOOL0_AT_ZERO.T @ chain(description).T_zero[:3, :3]
-    quarter = np.round(R)
-    if np.abs(R - quarter).max() > FRAME_SNAP:
-        raise InputError(
-            f"the tip of robot {description.name!r} is not rotated against tool0 by multiples of 90°; "
-            "choose another tip"
-        )
-    turned = np.eye(4)
-    turned[:3, :3] = quarter + 0.0
-    return turned if np.any(turned != IDENTITY) else IDENTITY
 
 
 def check_calibration(

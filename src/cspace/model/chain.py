@@ -217,8 +217,8 @@ def rigid_group(description: Description, link: str) -> tuple[str, ...]:
 def default_tip(description: Description, base: str | None = None) -> str:
     """The end of the only chain of moving joints that `base` (default: the root) carries.
 
-    Fixed side frames do not count as branches. Behind the last moving joint the tip is the only leaf, or the
-    leaf named "tool0" (the flange frame of ROS-Industrial) where there are several.
+    Fixed side frames do not count as branches. Behind the last moving joint the tip is the only leaf; where
+    there are several, it is "tool0" (the flange frame of ROS-Industrial) or the only leaf attached to tool0.
     Raises InputError naming the leaves where there is a choice.
     """
     here = description.root if base is None else description.link(base).name
@@ -231,10 +231,12 @@ def default_tip(description: Description, base: str | None = None) -> str:
     choice = [link for link in carried if not description.child_joints[link]]
     if onward:
         choice = [link for link in description.leaves if link not in carried]
-    elif len(choice) == 1:
-        return choice[0]
-    elif "tool0" in choice:
-        return "tool0"
+    else:
+        if len(choice) > 1 and "tool0" in carried:
+            on_flange = _carried(description, "tool0")
+            choice = [link for link in choice if link in on_flange]
+        if len(choice) == 1:
+            return choice[0]
     shown = ", ".join(repr(leaf) for leaf in choice[:12])
     more = f" and {len(choice) - 12} more" if len(choice) > 12 else ""
     raise InputError(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
+from cspace.arrays import Array
 from cspace.errors import suggest
 from cspace.model.joint import Joint, Loop
 from cspace.model.link import Link
@@ -155,3 +158,29 @@ class Description:
     def renamed(self, name: str) -> Description:
         """The same robot under another name."""
         return replace(self, name=name)
+
+
+class NamedPoses(dict[str, Array]):
+    """Configurations by name; an unknown name gets suggestions."""
+
+    def __init__(self, robot: str, poses: Mapping[str, Array]) -> None:
+        super().__init__(poses)
+        self.robot = robot
+
+    def __missing__(self, name: str) -> Array:
+        raise suggest("named pose", name, self, owner=f"robot {self.robot!r}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A dict with arguments is not pickled as one."""
+        return type(self), (self.robot, dict(self))
+
+
+def named_poses(description: Description, joints: Sequence[str]) -> dict[str, Array]:
+    """The named poses as configurations q (n,) [rad or m] of these joints, in their order.
+
+    A pose without a value for one of the joints is left out. The arrays are copies. An unknown name raises
+    UnknownNameError with the similar ones.
+    """
+    whole = {name: values for name, values in description.poses.items() if all(j in values for j in joints)}
+    found = {name: np.array([values[j] for j in joints], dtype=np.float64) for name, values in whole.items()}
+    return NamedPoses(description.name, found)

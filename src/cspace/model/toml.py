@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -28,6 +29,7 @@ FORMAT: Final = 1
 """The version of the file format that is written and read."""
 
 T = TypeVar("T")
+Poses = dict[str, dict[str, float]]
 
 ABOUT = ("format", "name", "title", "vendor", "aliases", "missing", "sources", "poses")
 FORMS = {"joints": ("links", "joints", "loops"), "screws": ("screws",), "dh": ("dh",)}
@@ -85,12 +87,13 @@ class _Reader:
         if top.number("format", FORMAT) != FORMAT:
             raise top.fault(f"format is {top.values['format']!r}; this version reads format {FORMAT}")
         name = top.text("name")
-        read = {"joints": self.tree, "screws": self.screws, "dh": self.dh}[forms[0]]
-        plain = self.at(top, lambda: read(top, name))
         poses = {pose: self.pose(top.table("poses"), pose) for pose in top.table("poses").values}
         about = self.provenance(top)
-        links, joints, loops = plain.links, plain.joints, plain.loops
-        return self.at(top, lambda: Description(name, links, joints, loops, poses, about))
+        if forms[0] == "joints":
+            return self.at(top, lambda: self.tree(top, name, poses, about))
+        read = self.screws if forms[0] == "screws" else self.dh
+        plain = self.at(top, lambda: read(top, name))
+        return self.at(top, lambda: replace(plain, poses=poses, provenance=about))
 
     def pose(self, poses: Table, pose: str) -> dict[str, float]:
         values = poses.table(pose)
@@ -119,14 +122,14 @@ class _Reader:
             raise table.fault(f"rpy is {rpy}; every number must be finite")
         return from_rpy(xyz, rpy)
 
-    def tree(self, top: Table, name: str) -> Description:
+    def tree(self, top: Table, name: str, poses: Poses, about: Provenance) -> Description:
         link_tables, joint_tables = top.tables("links"), top.tables("joints")
         loop_tables = top.tables("loops")
         links = tuple(map(self.link, link_tables))
         joints = tuple(map(self.joint, joint_tables))
         loops = tuple(map(self.loop, loop_tables))
         try:
-            return Description(name, links, joints, loops)
+            return Description(name, links, joints, loops, poses, about)
         except ElementError as error:
             parts = zip((*links, *joints, *loops), (*link_tables, *joint_tables, *loop_tables), strict=True)
             culprit = next((table for part, table in parts if part is error.part), None)

@@ -75,7 +75,13 @@ def find(name: str) -> str:
 
 def catalogue_description(name: str) -> Description:
     """The description of a robot of the catalogue; raises as `find`."""
-    return from_toml(FOLDER / f"{find(name)}.toml")
+    return _read(find(name))
+
+
+@cache
+def _read(name: str) -> Description:
+    """The description in the file of a robot, which is read once: nothing can change it."""
+    return from_toml(FOLDER / f"{name}.toml")
 
 
 def search(text: str) -> tuple[CatalogueRow, ...]:

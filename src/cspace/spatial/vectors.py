@@ -36,11 +36,11 @@ def cross(a: Array, b: Array) -> Array:
 
 def perpendicular(h: Array) -> Array:
     """A unit vector (3,) perpendicular to a unit vector (3,); to a coordinate axis another one."""
-    across = np.cross(h, np.eye(3)[int(np.argmin(np.abs(h)))])
+    across = cross(h, np.eye(3)[int(np.argmin(np.abs(h)))])
     return np.asarray(across / np.linalg.norm(across))
 
 
 def frame_along(axis: Array) -> Array:
     """A rotation (3, 3) whose third column is the unit axis (3,); a coordinate axis is only permuted."""
     y = perpendicular(axis)
-    return np.column_stack([np.cross(y, axis), y, axis])
+    return np.column_stack([cross(y, axis), y, axis])
