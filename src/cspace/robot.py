@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
+from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -17,12 +19,26 @@ from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
+    from cspace import ik
     from cspace.export import Export
-    from cspace.ik import IkPlan, NumericSolution, Redundancy, SampledSolutions, Solver, TaskSolution, Track
 
     Seed = int | np.random.Generator | None
 
 __all__ = ["Robot"]
+
+
+class _Later:
+    """A method that is a function of a room, which is imported when the method is first used."""
+
+    def __init__(self, room: str) -> None:
+        self.room = room
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.owner, self.name = owner, name
+
+    def __get__(self, robot: Robot | None, owner: type) -> Any:
+        setattr(self.owner, self.name, getattr(import_module(self.room), self.name))
+        return getattr(owner if robot is None else robot, self.name)
 
 
 class Robot(Renamed, RobotBase, KinematicModel):
@@ -156,31 +172,11 @@ class Robot(Renamed, RobotBase, KinematicModel):
         """The joint axes at zero from base to tip, including tool and mounting; the same as chain."""
         return self.chain
 
-    @name_new_keywords
-    def export(
-        self,
-        lang: str | None = None,
-        path: str | os.PathLike[str] | None = None,
-        *,
-        name: str | None = None,
-        locked: Any = None,
-    ) -> Export:
-        """The inverse kinematics as source code that does not depend on cspace, written to `path` if one is
-        given.
-
-        See export.export, which also names the errors. lang: "cpp", "c" or "python"; by the suffix of path
-        unless given. name: of the namespace in the code. locked: joints whose values the caller of the code
-        supplies; for arms with more than six joints, the solver's choice unless given.
-        """
-        from cspace.export import export
-
-        return export(self, lang, path, name=name, locked=locked)
-
     def _whole(self) -> Description:
         """The description with the tool as a link on the tip and the mounting under a new root."""
         whole = self.description
         if self._T_tip_tool is not None:
-            tip = self._changed(T_tip_tool=None).tip
+            tip = self._constructor(T_tip_tool=None)().tip
             whole = model.with_frame(whole, str(tip), self._T_tip_tool)
         return whole if self._T_world_base is None else model.mounted(whole, self.base, self._T_world_base)
 
@@ -194,6 +190,29 @@ class Robot(Renamed, RobotBase, KinematicModel):
     distance_to_singularity = kinematics.distance_to_singularity
     singularity = kinematics.singularity
     workspace = kinematics.workspace
+    if TYPE_CHECKING:
+        ik_many_starts = ik.ik_many_starts
+        ik_numeric = ik.ik_numeric
+        ik_plan = ik.ik_plan
+        ik_tasks = ik.ik_tasks
+        redundancy = ik.redundancy
+        resolved_rate = ik.resolved_rate
+        task_velocity = ik.task_velocity
+        track = ik.track
+
+        def export(
+            self,
+            lang: str | None = None,
+            path: str | os.PathLike[str] | None = None,
+            *,
+            name: str | None = None,
+            locked: Any = None,
+        ) -> Export: ...
+
+    else:
+        export = _Later("cspace.export")
+        ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
+        redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
 
     @property
     def named_poses(self) -> dict[str, Array]:
@@ -205,7 +224,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         return model.named_poses(self.description, self.joint_names)
 
     @property
-    def solver(self) -> Solver:
+    def solver(self) -> ik.Solver:
         """The inverse kinematics of the chain from base to tip, built when first read.
 
         Raises NoClosedFormError for mimic joints, a floating base, no joint or more than sixteen; InputError
@@ -215,20 +234,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
             from cspace.ik import solver_of_robot
 
             self._solver = solver_of_robot(self)
-        return cast("Solver", self._solver)
-
-    @name_new_keywords
-    def ik_plan(self, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
-        """How ik solves this arm: the geometry found, the steps, and the equations with the arm's numbers.
-
-        goal_parts: the keywords of a partial goal, such as ("position", "direction"), or a dict with
-        values. locked: joints that will be locked, with their values. The result prints and has
-        to_markdown(), to_latex() and residuals(q, T). For an arm without a solver it is falsy and gives the
-        reason; see cspace.ik.ik_plan.
-        """
-        from cspace.ik.explain import ik_plan
-
-        return ik_plan(self, goal_parts=goal_parts, locked=locked, tool_axis=tool_axis)
+        return cast("ik.Solver", self._solver)
 
     def with_tool(self, T_tip_tool: PoseLike) -> Robot:
         """The same robot with a tool on its tip. The new tip is the frame "tool", and it applies in every
@@ -238,7 +244,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         Raises InputError for a value that is not a pose, and for a tree without a tip.
         """
         tool = one_pose(T_tip_tool, "T_tip_tool")
-        return self._changed(T_tip_tool=tool if self._T_tip_tool is None else self._T_tip_tool @ tool)
+        return self._constructor(T_tip_tool=tool if self._T_tip_tool is None else self._T_tip_tool @ tool)()
 
     def with_base(self, T_world_base: PoseLike) -> Robot:
         """The same robot mounted in the world: its poses are world poses in every function.
@@ -248,7 +254,9 @@ class Robot(Renamed, RobotBase, KinematicModel):
         pose is an argument of each call instead.
         """
         mount = one_pose(T_world_base, "T_world_base")
-        return self._changed(T_world_base=mount if self._T_world_base is None else mount @ self._T_world_base)
+        return self._constructor(
+            T_world_base=mount if self._T_world_base is None else mount @ self._T_world_base
+        )()
 
     @name_new_keywords
     def random_configuration(
@@ -261,118 +269,17 @@ class Robot(Renamed, RobotBase, KinematicModel):
         """
         return kinematics.random_configurations(self.limits, self.joint_types, n, rng=rng, reach=reach)
 
-    def redundancy(
-        self,
-        goal: PoseLike | None = None,
-        parameter: str | int | None = None,
-        *,
-        locked: Mapping[Any, float] | None = None,
-        **parts: Any,
-    ) -> Redundancy:
-        """The feasible values of a redundant joint: a goal is reached and all limits are kept; see
-        ik.redundancy.
-
-        goal: a pose (4, 4), or parts of one by name, as `ik` takes them (position=, direction=,
-        tool_axis=).
-        """
-        from cspace.ik import redundancy
-
-        return redundancy(self, goal, parameter, locked=locked, **parts)
-
-    def ik_numeric(self, goal: Any = None, start: Any = None, **options: Any) -> NumericSolution:
-        """One configuration that reaches a goal (..., 4, 4), by descent from start (dof,) and further starts.
-
-        options: position, frame, method, limits, starts, rest, rest_weights, weights, tolerance,
-        max_iterations, rng, threads, as in ik.ik_numeric, which also names the errors.
-        """
-        from cspace.ik import ik_numeric
-
-        return ik_numeric(self, goal, start, **options)
-
-    def ik_many_starts(self, goal: Any = None, starts: Any = 64, **options: Any) -> SampledSolutions:
-        """The different solutions of one goal (4, 4) that descents from many starts find; a sample.
-
-        options: position, frame, limits, weights, tolerance, max_iterations, rng, threads, as in
-        ik.ik_many_starts, which also names the errors.
-        """
-        from cspace.ik import ik_many_starts
-
-        return ik_many_starts(self, goal, starts, **options)
-
-    def ik_tasks(self, tasks: Any, start: Any = None, **options: Any) -> TaskSolution:
-        """The configuration that minimises the weighted errors of several tasks, by steps from start (n,).
-
-        options: limits, starts, max_iterations, tolerance, rng, T_world_base, as in ik.ik_tasks, which also
-        names the errors.
-        """
-        from cspace.ik import ik_tasks
-
-        return ik_tasks(self, tasks, start, **options)
-
-    def task_velocity(self, q: Any, tasks: Any, dt: float, **options: Any) -> Array:
-        """The velocities (dof,) that minimise the weighted errors of several tasks in the next step of dt
-        [s], at q (n,).
-
-        options: limits, velocity, damping, T_world_base, as in ik.task_velocity, which also names the
-        errors.
-        """
-        from cspace.ik import task_velocity
-
-        return task_velocity(self, q, tasks, dt, **options)
-
-    def track(
-        self,
-        poses: Any,
-        start: Any = None,
-        *,
-        limits: Any = True,
-        cost: str | Callable[[Array], Any] = "length",
-        max_step: Any = np.pi / 2,
-    ) -> Track:
-        """The branches of configurations that follow a path of poses (n, 4, 4), and where each other branch
-        ends.
-
-        start (dof,): follow only the branch nearest to it. limits: True for the robot's, False for none, or
-        Limits. cost: of the best branch, "length", "step", "time" or a function of q (n, dof). max_step:
-        the largest joint displacement between neighbouring poses [rad], or (dof,). See ik.track, which also
-        names the errors.
-        """
-        from cspace.ik import track
-
-        return track(self, poses, start, limits=limits, cost=cost, max_step=max_step)
-
-    def resolved_rate(self, q: Any, twist: Any, **options: Any) -> Array:
-        """The joint velocities (..., dof) of least norm that give the tip a twist (..., 6) at q (..., n).
-
-        options: frame, point, expressed_in, damping, null_space, velocity, T_world_base, threads, as in
-        ik.resolved_rate, which also names the errors.
-        """
-        from cspace.ik import resolved_rate
-
-        return resolved_rate(self, q, twist, **options)
-
-    def _changed(self, **changes: Any) -> Robot:
+    def _constructor(self, **changes: Any) -> partial[Robot]:
+        """The call that makes this robot, or one with other arguments."""
         description, base, tip, floating = self._made_from
         kept = {"T_world_base": self._T_world_base, "T_tip_tool": self._T_tip_tool}
-        return type(self)(description, base, tip, floating=floating, **(kept | changes))
+        return partial(type(self), description, base, tip, floating=floating, **(kept | changes))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _again, (type(self), *self._made_from, self._T_world_base, self._T_tip_tool)
+        return self._constructor(), ()
 
     def __repr__(self) -> str:
         ends = f"{self.base} → {self.tip or '(' + ', '.join(self.leaves) + ')'}"
         freedom = f"{self.joint_types}, {self.dof} dof" + (" with a floating base" if self.floating else "")
         mounted = ", mounted in the world" if self._T_world_base is not None else ""
         return f"<Robot {self.name}: {freedom}, {ends}{mounted}>"
-
-
-def _again(
-    kind: type[Robot],
-    description: Description,
-    base: str | None,
-    tip: str | None,
-    floating: bool | None,
-    T_world_base: Array | None,
-    T_tip_tool: Array | None,
-) -> Robot:
-    return kind(description, base, tip, floating=floating, T_world_base=T_world_base, T_tip_tool=T_tip_tool)
