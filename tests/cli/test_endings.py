@@ -16,9 +16,9 @@ import pytest
 import cspace as cs
 from cli.run import command, cspace, environment
 from cspace.cli import app
+from cspace.cli.app import VERBS
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table
-from cspace.cli.registry import VERBS
 from cspace.files import whole_file
 
 BAD_LINES = [

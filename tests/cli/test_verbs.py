@@ -8,7 +8,7 @@ import pytest
 import cspace as cs
 from cli import schema
 from cli.run import ROOT, cspace
-from cspace.cli.registry import VERBS, import_verb
+from cspace.cli.app import VERBS, import_verb
 
 LINES = {
     "robots": "robots --search ur5",

@@ -5,7 +5,7 @@ import pytest
 
 from cspace.errors import CspaceError, DescriptionError, InputError, UnknownNameError
 from cspace.model import Description, Geometry, Inertial, Joint, Limits, Link, Loop, Mesh, Mimic
-from cspace.model.transforms import translation_by
+from cspace.model.values import translation_by
 
 
 def links(*names):

@@ -11,7 +11,7 @@ import pytest
 
 from cspace.errors import UnknownNameError
 from cspace.model import chain, dh_matrix, from_dh, from_urdf, to_dh, to_urdf
-from cspace.model.transforms import from_rpy
+from cspace.model.values import from_rpy
 from cspace.robot import Robot
 from cspace.robots import find, load_description, load_robot, names, rows, search
 from cspace.robots.lookup import FOLDER, plain_text

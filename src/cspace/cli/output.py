@@ -1,4 +1,4 @@
-"""Output of results: JSON, aligned plain text for pipes, rich tables for terminals."""
+"""Output of results: JSON, aligned plain text for pipes, rich tables for terminals; files."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ import sys
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final, TextIO
 
 from cspace.arrays import Array
+from cspace.cli.exits import UsageError
 
 MOST_COLUMNS: Final = 400
 """The widest table: one that a terminal is too narrow for runs over its edge rather than lose digits."""
@@ -175,3 +177,29 @@ def _rich_table(table: Table) -> Any:
     for row in table.rows:
         drawn.add_row(*(Text(cell.text, style=cell.style) for cell in row))
     return drawn
+
+
+FORMATS: Final = (".png", ".svg", ".pdf")
+"""The endings of pictures."""
+
+
+def check_writable(path: Path) -> None:
+    """Refuse an output path that cannot be written, before any work is done for it."""
+    try:
+        is_folder, has_folder = path.is_dir(), path.parent.is_dir()
+    except OSError as error:  # a name that is too long, a folder that may not be entered
+        raise UsageError(f"cannot write {str(path)[:80]!r}: {error.strerror or error}") from None
+    if is_folder:
+        raise UsageError(f"cannot write {str(path)!r}: it is a folder; give a file name")
+    if not has_folder:
+        raise UsageError(f"cannot write {str(path)!r}: there is no folder {str(path.parent)!r}")
+    if not os.access(path.parent, os.W_OK):
+        raise UsageError(f"cannot write {str(path)!r}: the folder {str(path.parent)!r} is not writable")
+
+
+def check_format(path: Path) -> None:
+    """Raise UsageError for a file name without the ending of a picture, before any computation."""
+    if path.suffix.lower() not in FORMATS:
+        raise UsageError(
+            f"unknown picture format {str(path)!r}; its name must end with one of {', '.join(FORMATS)}"
+        )

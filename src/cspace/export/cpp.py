@@ -6,12 +6,11 @@ import math
 import re
 import textwrap
 from collections.abc import Iterable, Mapping
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from string import Template
 from typing import Any
 
-from cspace.errors import InputError
-from cspace.export.amalgam import amalgamate_headers
+from cspace.errors import CspaceError, InputError
 from cspace.export.arm import ExportedArm, vector_field
 from cspace.export.texts import fill_template, in_ascii, read_template
 
@@ -196,3 +195,36 @@ def quote_text(text: str) -> str:
     """A string literal in plain ASCII: everything else as the octal numbers of its UTF-8."""
     plain = {c: c for c in map(chr, range(32, 127)) if c not in '"\\?'}
     return '"' + "".join(plain.get(c) or "".join(f"\\{b:03o}" for b in c.encode()) for c in text) + '"'
+
+
+# --- the headers of the core as one text ----------------------------------------------------------------
+def include_folder() -> Path:
+    """The folder that contains cspace/version.hpp: in the installed package or in the source tree."""
+    package = Path(__file__).resolve().parents[1]
+    for folder in (package / "include", package.parents[1] / "include"):
+        if (folder / "cspace" / "version.hpp").is_file():
+            return folder
+    raise CspaceError(f"the C++ headers are not in {package / 'include'}; install cspace again")
+
+
+def amalgamate_headers(entries: Iterable[str]) -> str:
+    """The headers in `entries` and everything that they include, each once, after its own includes."""
+    folder = include_folder()
+    parts: list[str] = []
+    seen: set[str] = set()
+
+    def append_header(name: str) -> None:
+        if name in seen:
+            return
+        seen.add(name)
+        own: list[str] = []
+        for line in (folder / name).read_text(encoding="utf-8").splitlines():
+            if included := re.match(r'#include "(cspace/[^"]+)"', line):
+                append_header(included.group(1))
+            elif line != "#pragma once":
+                own.append(line)
+        parts.append(f"// --- {name.removeprefix('cspace/')} ---\n" + "\n".join(own) + "\n")
+
+    for entry in entries:
+        append_header(entry)
+    return "\n".join(parts)

@@ -3,8 +3,8 @@
 from cspace.maps.movingai import Scenarios, read_scenarios
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, OffsetCurve
+from cspace.maps.outlines import GeometryError
 from cspace.maps.polygon_world import PolygonWorld
-from cspace.maps.repair import GeometryError
 
 __all__ = [
     "GeometryError",

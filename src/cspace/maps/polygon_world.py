@@ -14,22 +14,23 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.maps.geojson import read_geojson, write_geojson
 from cspace.maps.grow import grow_outlines
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, find_offset
 from cspace.maps.outlines import (
+    GeometryError,
     Outline,
+    check_area,
     check_bounds,
     circumscribe_discs,
+    describe_crossings,
     find_bounds,
     longer_side,
     read_outlines,
 )
 from cspace.maps.points import as_path, as_point, check_inflation
+from cspace.maps.polygon_files import read_geojson, read_polygons, write_geojson, write_polygons
 from cspace.maps.rasterize import rasterize_world
-from cspace.maps.repair import GeometryError, check_area, describe_crossings
-from cspace.maps.text import read_polygons, write_polygons
 from cspace.tolerances import ON_WALL
 
 

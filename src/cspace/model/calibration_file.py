@@ -18,8 +18,7 @@ from cspace.arrays import Array
 from cspace.errors import DescriptionError, suggest
 from cspace.files import YamlLine, read_text, unquote, yaml_lines
 from cspace.model.files import path_of
-from cspace.model.transforms import from_rpy
-from cspace.model.values import freeze_array
+from cspace.model.values import freeze_array, from_rpy
 from cspace.tolerances import CALIBRATION_BYTES, LARGEST_NUMBER
 
 PARTS: Final = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")

@@ -13,8 +13,7 @@ from cspace.errors import InputError
 from cspace.model.description import Description
 from cspace.model.joint import Joint, limit_row
 from cspace.model.link import Link
-from cspace.model.transforms import translation_by
-from cspace.model.values import check_placement, check_size, unit_axis
+from cspace.model.values import check_placement, check_size, translation_by, unit_axis
 
 
 def from_screws(

@@ -21,8 +21,7 @@ from cspace.model.packages import check_folders
 from cspace.model.screws import from_screws
 from cspace.model.structure import ElementError
 from cspace.model.toml_table import Document, Table, parse_toml
-from cspace.model.transforms import from_rpy
-from cspace.model.values import IDENTITY, X_AXIS
+from cspace.model.values import IDENTITY, X_AXIS, from_rpy
 from cspace.tolerances import TOML_BYTES
 
 FORMAT: Final = 1

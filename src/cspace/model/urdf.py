@@ -16,9 +16,8 @@ from cspace.model.joint import JOINT_TYPES, Joint, Mimic
 from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
 from cspace.model.packages import check_folders
 from cspace.model.structure import ElementError
-from cspace.model.transforms import from_rpy
 from cspace.model.urdf_words import ATTRIBUTES, CHILDREN, slip_in
-from cspace.model.values import IDENTITY, X_AXIS, freeze_array
+from cspace.model.values import IDENTITY, X_AXIS, freeze_array, from_rpy
 from cspace.model.xml import Element, parse_source
 from cspace.tolerances import UNLIMITED
 

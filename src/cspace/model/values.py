@@ -1,15 +1,19 @@
-"""Numbers of a description: checked once, then read-only."""
+"""Numbers of a description, checked once, then read-only; rigid transforms of the readers and writers."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Array, one_array
 from cspace.errors import InputError, InputTypeError, shown
-from cspace.spatial.checks import one_pose
+from cspace.spatial import single
+from cspace.spatial.checks import embed_rotation, one_pose
+from cspace.spatial.quaternions import matrix_of_quaternion
+from cspace.spatial.rotations import matrix_of_axis_angle
 from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER
 
 BEYOND = f"no robot has numbers beyond {LARGEST_NUMBER:g} in SI units"
@@ -90,3 +94,25 @@ def unit_axis(value: Any, subject: str) -> Array:
         return freeze_array(np.array(vector))
     scaled: Array = vector / length
     return freeze_array(scaled)
+
+
+def from_rpy(xyz: tuple[float, float, float], rpy: tuple[float, float, float]) -> Array:
+    """The transform with translation xyz [m] and rotation Rz(yaw) Ry(pitch) Rx(roll), rpy in rad."""
+    return single.pose(single.euler((2, 1, 0), rpy[::-1]), xyz)
+
+
+def from_wxyz(quaternion: Sequence[float], subject: str) -> Array:
+    """The rotation (4, 4) of a quaternion (4,) of any length, its scalar first; InputError for a zero one."""
+    return embed_rotation(matrix_of_quaternion(quaternion, subject))
+
+
+def rotation_about(axis: Array, angle: float) -> Array:
+    """The rotation (4, 4) by `angle` [rad] about the unit vector `axis` (3,)."""
+    return embed_rotation(matrix_of_axis_angle(axis, np.asarray(angle)))
+
+
+def translation_by(vector: Array) -> Array:
+    """The translation (4, 4) by `vector` (3,) [m]."""
+    result = np.eye(4)
+    result[:3, 3] = vector
+    return result

@@ -1,1 +1,1 @@
-"""One file per verb; the table of contents is cspace.cli.registry."""
+"""One file per verb; the table of contents is cspace.cli.app."""

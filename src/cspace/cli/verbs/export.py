@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from cspace.cli.arguments import add_chain, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.files import check_writable
-from cspace.cli.output import Output
+from cspace.cli.output import Output, check_writable
 from cspace.cli.robot import joint_called, load_chosen, need_chain
 
 if TYPE_CHECKING:

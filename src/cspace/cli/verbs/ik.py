@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.files import check_format, check_writable
 from cspace.cli.freedom import FREEDOM_WORDS, add_freedom, locked_joints, options_of
 from cspace.cli.goals import GOAL_WORDS, Goal, add_goal, axis_of, goal_of
-from cspace.cli.output import Output
+from cspace.cli.output import Output, check_format, check_writable
 from cspace.cli.robot import degrees_note, gripper_note, load_chosen, need_chain, read_configuration
 from cspace.cli.solutions import print_solutions, solution_rows, solutions_document
 from cspace.errors import InputError, InputTypeError

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from cspace.cli.arguments import add_option, named_value, read_number
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.files import check_format, check_writable
-from cspace.cli.output import Cell, Output, Table
+from cspace.cli.output import Cell, Output, Table, check_format, check_writable
 from cspace.cli.verbs.planners import options_given, typed_value
 from cspace.errors import InputError
 

@@ -16,7 +16,7 @@ from cspace.model.attributes import complain_at, fault_at, read_floats
 from cspace.model.link import Geometry, Mesh
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.settings import Settings, shortest_rotation, unit_direction
-from cspace.model.transforms import from_wxyz, translation_by
+from cspace.model.values import from_wxyz, translation_by
 from cspace.model.xml import Element
 from cspace.spatial.poses import invert_pose
 

@@ -14,8 +14,7 @@ from cspace.model.attributes import complain_at, fault_at
 from cspace.model.joint import Joint, Mimic
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.settings import Settings
-from cspace.model.transforms import rotation_about, translation_by
-from cspace.model.values import IDENTITY, X_AXIS, unit_axis
+from cspace.model.values import IDENTITY, X_AXIS, rotation_about, translation_by, unit_axis
 from cspace.model.xml import Element
 
 KINDS: Final = ("hinge", "slide", "free", "ball")

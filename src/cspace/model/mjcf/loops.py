@@ -13,7 +13,7 @@ from cspace.model.attributes import complain_at, fault_at
 from cspace.model.joint import Loop
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.skeleton import WORLD, Skeleton, new_name
-from cspace.model.transforms import from_wxyz, translation_by
+from cspace.model.values import from_wxyz, translation_by
 from cspace.model.xml import Element
 from cspace.spatial.poses import invert_pose
 

@@ -10,8 +10,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.model.attributes import complain_at, fault_at
 from cspace.model.mjcf.given import Given
-from cspace.model.transforms import from_wxyz, rotation_about, translation_by
-from cspace.model.values import IDENTITY
+from cspace.model.values import IDENTITY, from_wxyz, rotation_about, translation_by
 from cspace.model.xml import Element
 from cspace.tolerances import AXIS_LENGTH, MJCF_SAME_AXIS
 

@@ -12,8 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.plot.raytrace.quadrics import Piece
-from cspace.plot.raytrace.solids import Solid, bounding_pieces
+from cspace.plot.raytrace.solids import Piece, Solid, bounding_pieces
 from cspace.plot.raytrace.view import Block, View, pixel_centers
 
 SAMPLES: Final = (np.array([[1, 3, 5, 7, 9, 11, 13, 15], [5, 13, 1, 9, 15, 3, 11, 7]]) / 16.0)[:, :, None]
