@@ -13,8 +13,8 @@ from cspace import _core
 from cspace.errors import InputError, UnknownNameError
 from cspace.ik import ik_plan
 from cspace.ik.explain.general import Loop
-from cspace.ik.explain.goal_parts import goal_of_parts
 from cspace.ik.explain.locked_joints import Split
+from cspace.ik.explain.make_plan import goal_of_parts
 from cspace.model import from_screws
 from cspace.robot import Robot
 from ik import geometries

@@ -28,6 +28,7 @@ from cspace.ik.goals.given import (
 )
 from cspace.ik.goals.partial import KEYWORDS
 from cspace.ik.goals.parts import check_one_goal, partial_goal
+from cspace.ik.redundancy.arm_angle import solve_swivel
 from cspace.ik.redundancy.solve import choose_nearest, solve_freedom
 from cspace.ik.solutions import Solutions, nearest_to_goal
 from cspace.ik.solutions_batch import SolutionsBatch
@@ -121,8 +122,6 @@ def approach_unreached(found: Answer, options: Options) -> Answer:
 
 
 def answer_swivel(solver: Solver, T: Array, options: Options) -> Answer:
-    from cspace.ik.redundancy.arm_angle import solve_swivel
-
     if options.sets_freedom or options.least_squares:
         raise InputTypeError(
             "swivel= can only be combined with near=, because it fixes the redundant degree of freedom"

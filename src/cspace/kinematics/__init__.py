@@ -2,7 +2,6 @@
 
 from cspace.kinematics.assembly import Assembly, add_tool, assemble, assemble_chain, mount, screws
 from cspace.kinematics.center_of_mass import center_of_mass, center_of_mass_jacobian
-from cspace.kinematics.configurations import random_configurations
 from cspace.kinematics.forward import forward_kinematics, forward_kinematics_all
 from cspace.kinematics.jacobian import fk_jacobian, jacobian, jacobian_dot
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -14,7 +13,7 @@ from cspace.kinematics.manipulability import (
     singular_values,
 )
 from cspace.kinematics.singularity import Singularity, singularity
-from cspace.kinematics.workspace import Workspace, workspace
+from cspace.kinematics.workspace import Workspace, random_configurations, workspace
 
 __all__ = [
     "Assembly",

@@ -1,16 +1,20 @@
-"""Attributes of an XML element: numbers and texts; every error contains file and line."""
+"""Attributes of an XML element: numbers, texts, slips of the pen; every error contains file and line."""
 
 from __future__ import annotations
 
 import contextlib
+import difflib
 import math
-from collections.abc import Callable, Sequence
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from typing import Final, TypeVar
 
 from cspace.errors import CspaceError, DescriptionError
 from cspace.model.xml import Element
 
 T = TypeVar("T")
+
+LIKENESS: Final = 0.65
+"""How much of two words must agree (Ratcliff and Metzener 1988) for one to be meant for the other."""
 
 
 def fault_at(element: Element, message: str) -> DescriptionError:
@@ -70,3 +74,31 @@ def text_of(element: Element, attribute: str) -> str:
     if not value:
         raise fault_at(element, f"<{element.tag}> needs the attribute {attribute!r}")
     return value
+
+
+def slip_in(
+    element: Element, known: Set[str], missing: Set[str], attributes: Mapping[str, Set[str]]
+) -> tuple[str, Element] | None:
+    """A message about a misspelled name in an element or its children, and its place; else None.
+
+    known, missing: the elements that may stand in this one, and those that a name can be meant for.
+    attributes: those of the children, by tag. A name that is not known is an extension, unless it is close to
+    one that is not there.
+    """
+    for child in element.children:
+        meant = closest_word(child.tag, missing) if known and child.tag not in known else None
+        if meant:
+            return f"<{element.tag}> has no <{child.tag}>; did you mean <{meant}>?", child
+        names = attributes.get(child.tag, child.attributes.keys())
+        for name in child.attributes.keys() - names:
+            meant = closest_word(name, names - child.attributes.keys())
+            if meant:
+                return f"<{child.tag}> has no attribute {name!r}; did you mean {meant!r}?", child
+    return None
+
+
+def closest_word(word: str, known: Iterable[str]) -> str | None:
+    """The known word that `word` was meant for, if any; names of another namespace are never meant so."""
+    if ":" in word:
+        return None
+    return next(iter(difflib.get_close_matches(word, sorted(known), 1, LIKENESS)), None)

@@ -9,7 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array, one_array
 from cspace.errors import InputError, suggest
-from cspace.model.packages import locate_file
+from cspace.model.files import locate_file
 from cspace.model.values import IDENTITY, check_placement, check_size, finite_number, freeze_array, name_of
 from cspace.tolerances import INERTIA_SYMMETRY
 

@@ -14,10 +14,9 @@ from cspace.errors import CspaceError, DescriptionError
 from cspace.files import read_text
 from cspace.model.description import Description, Provenance, Source
 from cspace.model.dh import DHTable, from_dh
-from cspace.model.files import path_of
+from cspace.model.files import check_folders, path_of
 from cspace.model.joint import LIMIT_FIELDS, Joint, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
-from cspace.model.packages import check_folders
 from cspace.model.screws import from_screws
 from cspace.model.structure import ElementError
 from cspace.model.toml_table import Document, Table, parse_toml

@@ -6,23 +6,40 @@ import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from cspace.arrays import Array
 from cspace.errors import suggest
-from cspace.model.attributes import complain_at, fault_at, read_floats, read_number, text_of
+from cspace.model.attributes import complain_at, fault_at, read_floats, read_number, slip_in, text_of
 from cspace.model.description import Description
+from cspace.model.files import check_folders
 from cspace.model.joint import JOINT_TYPES, Joint, Mimic
 from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
-from cspace.model.packages import check_folders
 from cspace.model.structure import ElementError
-from cspace.model.urdf_words import ATTRIBUTES, CHILDREN, slip_in
 from cspace.model.values import IDENTITY, X_AXIS, freeze_array, from_rpy
 from cspace.model.xml import Element, parse_source
 from cspace.tolerances import UNLIMITED
 
 Color = tuple[float, float, float, float]
 
+CHILDREN: Final[dict[str, frozenset[str]]] = {
+    "robot": frozenset({"link", "joint", "material", "transmission", "gazebo"}),
+    "link": frozenset({"inertial", "visual", "collision"}),
+    "joint": frozenset({"origin", "parent", "child", "axis", "limit", "mimic", "dynamics", "calibration"}),
+    "inertial": frozenset({"origin", "mass", "inertia"}),
+    "visual": frozenset({"origin", "geometry", "material"}),
+    "collision": frozenset({"origin", "geometry", "material"}),
+}
+ATTRIBUTES: Final[dict[str, frozenset[str]]] = {
+    "origin": frozenset({"xyz", "rpy"}),
+    "axis": frozenset({"xyz"}),
+    "limit": frozenset({"lower", "upper", "velocity", "effort", "acceleration", "jerk"}),
+    "mimic": frozenset({"joint", "multiplier", "offset"}),
+    "dynamics": frozenset({"damping", "friction"}),
+    "inertia": frozenset({"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}),
+    "mesh": frozenset({"filename", "scale"}),
+}
+"""The elements and attributes of URDF, to tell a slip of the pen from an extension."""
 OTHER_ROOTS = {
     "mujoco": "this is MJCF (MuJoCo), which load_robot and model.from_mjcf read",
     "sdf": "this is SDF (Gazebo); convert it to URDF",

@@ -15,8 +15,7 @@ from typing import Any, Final
 from cspace.errors import DescriptionError, InputError, InputTypeError, MissingExtraError
 from cspace.model.attributes import fault_at
 from cspace.model.description import Description
-from cspace.model.files import path_of, read_bytes
-from cspace.model.packages import check_folders
+from cspace.model.files import check_folders, path_of, read_bytes
 from cspace.model.urdf import urdf_description
 from cspace.model.xml import Element
 from cspace.tolerances import XACRO_SECONDS

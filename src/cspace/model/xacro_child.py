@@ -11,8 +11,7 @@ from typing import Any
 from xml.dom import expatbuilder, minidom
 
 from cspace.errors import CspaceError, DescriptionError, suggest
-from cspace.model.files import read_bytes
-from cspace.model.packages import locate_package
+from cspace.model.files import locate_package, read_bytes
 from cspace.model.xml import parse_document
 from cspace.tolerances import XACRO_ELEMENTS
 

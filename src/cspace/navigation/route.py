@@ -8,7 +8,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import Renamed
 from cspace.navigation.text import count_things
-from cspace.search.trace import Trace
+from cspace.search.planner import Trace
 
 STATUSES: Final = ("found", "unreachable", "undetermined", "local_minimum")
 """The verdicts, in the order of the compiled core."""

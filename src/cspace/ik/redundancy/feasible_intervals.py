@@ -14,6 +14,7 @@ from cspace.errors import RENAMED, InputError, InputTypeError
 from cspace.ik.goals.partial import KEYWORDS, PartialGoal
 from cspace.ik.goals.parts import check_one_goal, partial_goal
 from cspace.ik.locked_joints import joint_number, locked_values, value_in_words
+from cspace.ik.redundancy.arm_angle import swivel_intervals
 from cspace.ik.redundancy.result import Interval, Redundancy
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.spatial.checks import one_pose
@@ -56,8 +57,6 @@ def redundancy(
         return redundancy_of_parts(solver, partial_goal(given, tool_axis), parameter, locked)
     T = one_pose(goal, "goal")
     if isinstance(parameter, str) and parameter == "swivel" and "swivel" not in solver.joint_names:
-        from cspace.ik.redundancy.arm_angle_intervals import swivel_intervals
-
         if locked is not None:
             raise InputTypeError(
                 "locked= cannot be combined with the swivel, the only free dimension of seven joints"

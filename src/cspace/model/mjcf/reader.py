@@ -12,6 +12,7 @@ from typing import Any, Final
 from cspace.arrays import Array
 from cspace.model.attributes import complain_at, fault_at, read_floats
 from cspace.model.description import Description
+from cspace.model.files import check_folders
 from cspace.model.link import Geometry, Inertial, Link
 from cspace.model.mjcf.document import Includes
 from cspace.model.mjcf.geoms import Geom, Geoms
@@ -28,7 +29,6 @@ from cspace.model.mjcf.masses import (
 from cspace.model.mjcf.settings import settings_of
 from cspace.model.mjcf.skeleton import WORLD, Skeleton
 from cspace.model.mjcf.words import check_words
-from cspace.model.packages import check_folders
 from cspace.model.structure import ElementError
 from cspace.model.values import IDENTITY
 from cspace.model.xml import Element

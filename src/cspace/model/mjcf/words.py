@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from cspace.model.attributes import fault_at
-from cspace.model.urdf_words import slip_in
+from cspace.model.attributes import fault_at, slip_in
 from cspace.model.xml import Element
 
 
