@@ -69,6 +69,18 @@ def test_a_gripper_taken_for_the_last_joint_is_pointed_out(tmp_path):
     assert "seems" not in cspace(f"info {path} --tip palm").out
 
 
+def test_a_named_pose_stands_for_the_values():
+    q = cs.load_robot("panda").named_poses["ready"]
+    for verb in ("fk", "jacobian"):
+        typed = cspace(f"{verb} panda --json", *map(repr, q.tolist()))
+        assert cspace(f"{verb} panda --pose ready --json").out == typed.out
+        assert cspace(f"{verb} panda --pose ready --deg --json").out == typed.out
+    unknown = cspace("fk panda --pose redy")
+    assert (unknown.code, "did you mean 'ready'" in unknown.err) == (2, True)
+    both = cspace("fk panda 0 0 0 0 0 0 0 --pose ready")
+    assert (both.code, "not both" in both.err) == (2, True)
+
+
 def test_no_arm_of_the_catalogue_ends_in_a_gripper():
     for row in cs.robots.search(""):
         assert "seems" not in cspace(f"info {row.name}").out, row.name

@@ -183,10 +183,11 @@ def add_chain(parser: argparse.ArgumentParser) -> None:
 
 
 def add_joints(parser: argparse.ArgumentParser) -> None:
-    """One value per joint, and a frame."""
+    """One value per joint or a named pose, and a frame."""
     parser.add_argument(
         "q", metavar="Q", nargs="*", type=read_number, help="one value per joint [rad, m]; pi/2 may be typed"
     )
+    add_option(parser, "--pose NAME", "a named pose of the robot instead of values, such as home")
     add_option(parser, "--frame LINK", "a frame other than the tip")
 
 

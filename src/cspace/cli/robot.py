@@ -43,7 +43,13 @@ def load_posed(args: argparse.Namespace) -> tuple[Robot, Array, str | None]:
     robot = load_chosen(args)
     if args.frame is None:
         need_chain(robot)
-    return robot, read_configuration(args.q, robot, "q", degrees=args.deg), args.frame or robot.tip
+    if args.pose is None:
+        q = read_configuration(args.q, robot, "q", degrees=args.deg)
+    elif args.q:
+        raise UsageError(f"give either values of the joints or --pose {args.pose}, not both")
+    else:
+        q = robot.named_poses[args.pose]
+    return robot, q, args.frame or robot.tip
 
 
 def need_chain(robot: Robot) -> None:

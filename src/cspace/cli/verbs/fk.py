@@ -15,6 +15,7 @@ from cspace.cli.robot import degrees_note, load_posed
 
 EXAMPLES: Final = """
 cspace fk ur5e 0 -pi/2 pi/2 0 pi/2 0
+cspace fk panda --pose ready
 cspace fk puma560 10 -20 30 0 45 0 --deg
 cspace fk arm.urdf 0.1 0.2 --frame elbow_link --json
 """
