@@ -262,6 +262,13 @@ def install_row(results: Results) -> Row:
     )
 
 
+def first_command_row(results: Results) -> Row:
+    seconds = (results["install"] or {}).get("first_command_seconds")
+    text = "" if seconds is None else f"{seconds:.0f} s"
+    name = "README's first command from a wheel, empty environment, no compiler"
+    return row(name, "≤ 20 s", "", text, None if seconds is None else seconds <= 20)
+
+
 ROWS: list[Callable[[Results], Row]] = [
     single_row,
     batch_row,
@@ -285,6 +292,7 @@ ROWS: list[Callable[[Results], Row]] = [
     forward_batch_row,
     import_row,
     install_row,
+    first_command_row,
 ]
 
 
