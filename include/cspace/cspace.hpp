@@ -10,7 +10,6 @@
 #include "cspace/ik/numeric/resolved_rate.hpp"
 #include "cspace/ik/numeric/search.hpp"
 #include "cspace/ik/numeric/tasks.hpp"
-#include "cspace/ik/redundancy/arcs.hpp"
 #include "cspace/ik/redundancy/arm_angle.hpp"
 #include "cspace/ik/redundancy/nearest_search.hpp"
 #include "cspace/ik/subproblems/sp2.hpp"

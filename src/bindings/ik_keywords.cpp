@@ -53,7 +53,7 @@ PyObject* solve_near(PyObject* self, const double* goal, PyObject* near) {
     PyObject* about = nullptr;
     if (solver.is_redundant()) {
         about = solver_object(self)->nearest_about;
-        if (!about || !solver.redundant().find_nearest_turned(goal, seed, q)) return nullptr;
+        if (!about || !solver.redundant().find_nearest_within(goal, seed, q).is_within) return nullptr;
     } else if (!ik::nearest_listed(solver.arm(), solver.lower(), solver.upper(), goal, seed, q, &branch)) {
         return nullptr;
     }

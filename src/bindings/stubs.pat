@@ -27,7 +27,7 @@ cspace._core.KinematicsBase.fk_jacobian:
         \doc
 
 cspace._core.RobotBase.ik$:
-    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Any = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         \doc
 
 cspace._core.RobotBase._solver:
@@ -37,7 +37,7 @@ cspace._core.RobotBase._solver:
     def _solver(self, value: Any) -> None: ...
 
 cspace._core.SolverBase.solve$:
-    def solve(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def solve(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Any = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         \doc
 
 cspace._core.AXIS_RELATION:

@@ -122,7 +122,7 @@ def subproblem_6(h: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 3), o
 class SolverBase(KinematicsBase):
     """The compiled half of cspace.ik.Solver."""
 
-    def solve(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def solve(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Any = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
         Every configuration q with fk(q) = goal.
 
@@ -133,16 +133,16 @@ class SolverBase(KinematicsBase):
         angle (...): of the tip [rad]. look_at (..., 3): a point on the tool axis, ahead of the tip. ray=(p, d): the line of
         the tool axis, through p along d. tool_axis: in the tip, "x", "-z" or any (3,).
 
-        near (dof,) or (..., dof) [rad, m]: the answer is the one solution nearest to it, and joints that a singular pose
-        leaves free take its values. Limits choose among the multiples of 2π of a joint, not among solutions. locked: values
-        of locked joints by name or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel
+        near (dof,) or (..., dof) [rad, m]: the answer is the one solution within limits that is nearest to it, or none, with
+        the reason, if none is within limits. Joints that a singular pose leaves free take its values. limits: those that near=
+        keeps; the arm's own unless given, False for none, or Limits. locked: values of locked joints by name or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel
         [rad]: the arm angle of an arm with two spherical joints (see cs.ik.swivel). samples: the number of values of a
         redundant joint at which branches are listed, 16 unless given. least_squares: for an unreachable goal, answer with
         the configuration of least error (a radian weighs like the characteristic length of the arm). threads: for a batch,
         all cores unless given; the answer does not depend on it.
 
         An arm with more than six joints, or with dependent joints, leaves freedom, which s.freedom names. With locked= for
-        all redundant joints the answer lists every solution of the others; with near= it is the nearest of all. Otherwise,
+        all redundant joints the answer lists every solution of the others; with near= it is the nearest of all within limits. Otherwise,
         with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
         it is the configuration nearest to the middle of the limits.
 
@@ -155,9 +155,9 @@ class SolverBase(KinematicsBase):
 class RobotBase(KinematicsBase):
     """The compiled half of cspace.Robot."""
 
-    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Any = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
-        solve($self, goal=None, *, position=None, rotation=None, direction=None, look_at=None, ray=None, angle_to=None, tool_axis='z', angle=None, near=None, locked=None, swivel=None, samples=None, least_squares=False, threads=None)
+        solve($self, goal=None, *, position=None, rotation=None, direction=None, look_at=None, ray=None, angle_to=None, tool_axis='z', angle=None, near=None, limits=None, locked=None, swivel=None, samples=None, least_squares=False, threads=None)
         --
 
         Every configuration q with fk(q) = goal.
@@ -169,16 +169,16 @@ class RobotBase(KinematicsBase):
         angle (...): of the tip [rad]. look_at (..., 3): a point on the tool axis, ahead of the tip. ray=(p, d): the line of
         the tool axis, through p along d. tool_axis: in the tip, "x", "-z" or any (3,).
 
-        near (dof,) or (..., dof) [rad, m]: the answer is the one solution nearest to it, and joints that a singular pose
-        leaves free take its values. Limits choose among the multiples of 2π of a joint, not among solutions. locked: values
-        of locked joints by name or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel
+        near (dof,) or (..., dof) [rad, m]: the answer is the one solution within limits that is nearest to it, or none, with
+        the reason, if none is within limits. Joints that a singular pose leaves free take its values. limits: those that near=
+        keeps; the arm's own unless given, False for none, or Limits. locked: values of locked joints by name or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel
         [rad]: the arm angle of an arm with two spherical joints (see cs.ik.swivel). samples: the number of values of a
         redundant joint at which branches are listed, 16 unless given. least_squares: for an unreachable goal, answer with
         the configuration of least error (a radian weighs like the characteristic length of the arm). threads: for a batch,
         all cores unless given; the answer does not depend on it.
 
         An arm with more than six joints, or with dependent joints, leaves freedom, which s.freedom names. With locked= for
-        all redundant joints the answer lists every solution of the others; with near= it is the nearest of all. Otherwise,
+        all redundant joints the answer lists every solution of the others; with near= it is the nearest of all within limits. Otherwise,
         with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
         it is the configuration nearest to the middle of the limits.
 

@@ -70,6 +70,15 @@ CSPACE_KERNEL(cspace::ik, void, locked_rows,
 // The configuration on the self-motion of a goal nearest to a seed; false where nothing reaches the goal.
 CSPACE_NARROW_KERNEL(cspace::ik, bool, ik_nearest,
                      (const Redundant& arm, const Posed& goal, const double* seed, double* q))
+// The same within limits; false where none was found. arms: null unless one joint is redundant. trail: memory
+// to follow arcs in, where samples of that joint are too few; null without.
+CSPACE_NARROW_KERNEL(cspace::ik, bool, ik_nearest_within,
+                     (const Redundant& arm, const LimitArms* arms, const Posed& goal, const double* seed,
+                      Trail* trail, double* q))
+// The nearest within limits that a configuration `start` within limits leads to.
+CSPACE_NARROW_KERNEL(cspace::ik, bool, ik_nearest_from,
+                     (const Redundant& arm, const Posed& goal, const double* seed, const double* start,
+                      double* q))
 
 // --- ik_intervals.cpp: the feasible intervals of joint `parameter`, which `locked` locks -------------------
 CSPACE_NARROW_KERNEL(cspace::ik, void, ik_make_limit_arms, (const Redundant& arm, LimitArms& out))

@@ -7,5 +7,13 @@ namespace cspace::ik::inline CSPACE_ISA {
 bool ik_nearest(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
     return nearest_configuration(arm, goal, seed, q);
 }
+bool ik_nearest_within(const Redundant& arm, const LimitArms* arms, const Posed& goal, const double* seed,
+                       Trail* trail, double* q) {
+    return nearest_within_limits(arm, arms, goal, seed, trail, q);
+}
+bool ik_nearest_from(const Redundant& arm, const Posed& goal, const double* seed, const double* start,
+                     double* q) {
+    return nearest_from(arm, goal, seed, start, q);
+}
 
 }  // namespace cspace::ik::inline CSPACE_ISA

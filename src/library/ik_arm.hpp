@@ -76,13 +76,13 @@ NearestPose nearest_to_point(const BuiltArm& built, const Vec3d& goal);
 // Whether the lengths and directions of the axes alone rule the goal out.
 bool is_ruled_out(const BuiltArm& built, const double* goal);
 
-// Among solutions that stand alone the one nearest to a seed, by multiples of 2π inside the limits where one
-// is. False where the list is not settled.
+// Among solutions that stand alone the one within limits that is nearest to a seed. False where none is
+// within limits, or the list is not settled.
 bool nearest_listed(const BuiltArm& built, const double* lower, const double* upper, const double* goal,
                     const double* seed, double* q, std::int8_t* branch);
 
 // Moves the revolute joints of q by multiples of 2π as close to the seed as the limits allow, if they allow
-// any; onto a limit that rounding takes them past.
+// any; any joint onto a limit that rounding takes it past.
 void turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper, const double* seed,
                   double* q);
 

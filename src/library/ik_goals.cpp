@@ -20,12 +20,18 @@ constexpr double same = 1e-8;     // [rad, m] configurations closer than this ar
 constexpr double behind = -1e-6;  // [m] a point to look at that lies this far behind the tip is refused
 
 // A search among infinitely many configurations, from a seed or else from the middle of the limits, does not
-// prove that there is none.
+// prove that there is none. Where none is within limits, the answer is the nearest of all.
 void answer_nearest(Solver& solver, const double* goal, const double* seed, GoalAnswer& out) {
     double q[max_joints];
-    const RedundantSolver& arm = solver.redundant();
-    out.complete = seed ? arm.find_nearest_turned(goal, seed, q) : arm.find_near_middle(goal, q);
-    if (!out.complete) return;
+    RedundantSolver& arm = solver.redundant();
+    if (seed) {
+        const RedundantSolver::NearestFound found = arm.find_nearest_within(goal, seed, q);
+        out.complete = found.complete;
+        if (!found.any) return;
+    } else {
+        out.complete = arm.find_near_middle(goal, q);
+        if (!out.complete) return;
+    }
     out.status = Status::exact;
     out.append_row(q, solver.chain().n, -1, false);
 }

@@ -31,6 +31,24 @@ double unit_of(const Redundant& arm) {
     return slides && !usual ? std::exp2(std::round(std::log2(arm.length))) : 1.0;
 }
 
+// Whether the solutions at many values of the redundant joint come from a closed form on lanes.
+bool has_fast_samples(const Redundant& arm) {
+    return arm.locked.at_ends && rank_of(arm.locked.arm) == 3 &&
+           !arm.chain.prismatic[arm.locked.locked_joint[0]];
+}
+
+// Whether the limits leave the configuration as near to the seed as it is without them: turned, its copy
+// inside the limits, is the nearest of all copies and inside.
+bool is_kept_by_limits(const Redundant& arm, const double* seed, const double* nearest,
+                       const double* turned) {
+    for (int i = 0; i < arm.chain.n; ++i) {
+        if (turned[i] < arm.lower[i] || turned[i] > arm.upper[i]) return false;
+        const double gap = joint_difference(arm.chain, i, nearest[i] - seed[i]);
+        if (std::fabs(turned[i] - seed[i]) > std::fabs(gap) + limit_slack) return false;
+    }
+    return true;
+}
+
 // Goals of joints that follow one another, by the closed form on lanes.
 struct LaneRows {
     static constexpr std::size_t most = 64;
@@ -183,6 +201,54 @@ bool RedundantSolver::find_nearest_turned(const double* goal, const double* seed
     if (!read.is_pose || !kernels::ik_nearest(arm, read.T, seed, q)) return false;
     turn_to_seed(arm.chain.prismatic, arm.chain.n, arm.lower, arm.upper, seed, q);
     return true;
+}
+
+// Any configuration within limits: from the feasible intervals, or else by searches from the middle of the
+// limits and around it.
+bool RedundantSolver::find_one_within(const double* goal, double* q, bool& complete) {
+    if (redundant_joints() == 1) {
+        const std::vector<Interval> all = intervals(default_locked().front(), goal, complete);
+        if (all.empty()) return false;
+        std::copy(all[0].q, all[0].q + chain().n, q);
+        return true;
+    }
+    complete = false;
+    constexpr int attempts = 8;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+        double start[max_joints];
+        start_of_search(goal, attempt, start);
+        if (kernels::ik_nearest_within(state_->arm, nullptr, pose_of(goal), start, nullptr, q)) return true;
+    }
+    return false;
+}
+
+RedundantSolver::NearestFound RedundantSolver::find_nearest_within(const double* goal, const double* seed,
+                                                                   double* q) {
+    const Redundant& arm = state_->arm;
+    const int n = arm.chain.n;
+    const ReadGoal<double> read = read_goal(goal);
+    if (!read.is_pose || !kernels::ik_nearest(arm, read.T, seed, q)) return {};
+    const auto turn = [&](double* row) {
+        turn_to_seed(arm.chain.prismatic, n, arm.lower, arm.upper, seed, row);
+    };
+    double nearest[max_joints];
+    std::copy(q, q + n, nearest);
+    turn(q);
+    if (is_kept_by_limits(arm, seed, nearest, q)) return {true, true, true};
+    const LimitArms* const arms = redundant_joints() == 1 ? &state_->limit_arms() : nullptr;
+    const auto trail = arms && !has_fast_samples(arm) ? std::make_unique_for_overwrite<Trail>() : nullptr;
+    double within[max_joints];
+    bool found = kernels::ik_nearest_within(arm, arms, read.T, seed, trail.get(), within), complete = found;
+    if (!found) {
+        double start[max_joints];
+        found = find_one_within(goal, start, complete) &&
+                kernels::ik_nearest_from(arm, read.T, seed, start, within);
+    }
+    if (found) {
+        std::copy(within, within + n, q);
+        turn(q);
+    }
+    return {true, found, found || complete};
 }
 
 std::vector<Interval> RedundantSolver::intervals(int parameter, const double* goal, bool& complete) {

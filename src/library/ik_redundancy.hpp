@@ -87,6 +87,12 @@ class RedundantSolver {
     // The configuration nearest to a seed, by multiples of 2π as close to it as the limits allow; false where
     // the search finds none.
     bool find_nearest_turned(const double* goal, const double* seed, double* q) const;
+    // The nearest within limits; where the search finds none, the nearest of all, and `is_within` is false.
+    // complete: whether there is none if none was found.
+    struct NearestFound {
+        bool any = false, is_within = false, complete = false;
+    };
+    NearestFound find_nearest_within(const double* goal, const double* seed, double* q);
 
     // The feasible intervals of one locked joint, with configurations within the limits, and whether none is
     // missing.
@@ -108,6 +114,7 @@ class RedundantSolver {
     double swivel_at(const double* q) const;
 
   private:
+    bool find_one_within(const double* goal, double* q, bool& complete);
     void start_of_search(const double* goal, int attempt, double* start) const;
 
     struct State;

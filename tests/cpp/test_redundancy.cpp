@@ -101,7 +101,8 @@ TEST(the_way_to_the_nearest_is_square_to_the_self_motion) {
         const Posed goal = forward(arm.chain, q);
         CHECK(nearest_configuration(arm, goal, seed, best));
         CHECK(pose_difference(forward(arm.chain, best), goal, 1) < 1e-9);
-        CHECK(distance_from_seed(arm, seed, best) <= distance_from_seed(arm, seed, q) + 1e-12);
+        CHECK(distance_from_seed(arm, make_target(arm, seed, false), best) <=
+              distance_from_seed(arm, make_target(arm, seed, false), q) + 1e-12);
         CurvePoint at;
         for (int i = 0; i < 7; ++i) at.q[i] = best[i];
         onto_curve(arm.chain, arm.rank, goal, arm.length, at);
@@ -212,13 +213,13 @@ TEST(what_is_proven_is_the_nearest) {
         if (!nearest_by_proof(arm.halves, goal, arm.length, seed, found)) continue;
         ++proven;
         CHECK(pose_difference(forward(arm.chain, found), goal, 1) < 1e-9);
-        const double distance = distance_from_seed(arm, seed, found);
-        CHECK(distance <= distance_from_seed(arm, seed, q) + 1e-12);
+        const double distance = distance_from_seed(arm, make_target(arm, seed, false), found);
+        CHECK(distance <= distance_from_seed(arm, make_target(arm, seed, false), q) + 1e-12);
         for (int k = 0; k < 64; ++k) values[k] = seed[6] + distance * ((k + 0.5) / 32 - 1);
         const Sweep sweep = make_sweep(arm.locked, 6, goal, seed);
         sweep_values(sweep, values, 64, [&](int, const SweptRows& rows) {
             for (int k = 0; k < rows.count; ++k)
-                CHECK(distance <= distance_from_seed(arm, seed, rows.q[k]) + 1e-9);
+                CHECK(distance <= distance_from_seed(arm, make_target(arm, seed, false), rows.q[k]) + 1e-9);
         });
     }
     CHECK(proven > 200);

@@ -96,12 +96,12 @@ class Answers(Renamed):
         """The solutions, those that rounding takes past a limit set to it."""
         return settle_on_limits(self.solver, self.q, limits, slice(3 if self._is_point else 6))
 
-    def _towards(self, seed: Array, metric: str) -> tuple[Array, Any]:
-        """The rows (..., k, dof), each revolute joint by the turn that brings it closest to seeds (..., dof),
-        and the number of the nearest row, (...).
+    def _towards(self, seed: Array, metric: str, limits: Limits) -> tuple[Array, Any]:
+        """The rows (..., k, dof), each revolute joint by the turn inside its limits that brings it closest to
+        seeds (..., dof), and the number of the nearest row, (...).
         """
         check_choice(metric, "metric", METRICS)
-        limits, seed = self.solver.limits, seed[..., None, :]
+        seed = seed[..., None, :]
         moved = nearest_winding(self.q, seed, self.solver.joint_types, limits.lower, limits.upper)
         gap = np.abs(moved - seed)
         distance = gap.max(axis=-1) if metric == "max" else np.linalg.norm(gap, axis=-1)

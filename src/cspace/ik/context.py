@@ -11,13 +11,15 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.goals.partial import PartialGoal
 from cspace.ik.solver import Solver
+from cspace.model import Limits
 
 
 @dataclass(frozen=True)
 class Options:
-    """Which of the solutions: the keywords of `Solver.solve` of these names."""
+    """Which of the solutions: the keywords of `Solver.solve` of these names. limits: what near= keeps."""
 
     near: Any
+    limits: Limits
     locked: Any
     swivel: Any
     samples: Any

@@ -157,7 +157,7 @@ class Solutions(Answers, _core.SolutionsBase):
             rows, q = np.flatnonzero(fits), moved[fits]
         note = None
         if len(rows) == 0 and len(self):
-            note = limits_reason(self, settled, bounds)
+            note = limits_reason(self.solver, settled, bounds)
         return self._take(rows, q, note)
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Solutions:
@@ -169,18 +169,38 @@ class Solutions(Answers, _core.SolutionsBase):
         """
         seed = one_configuration(self.solver, q, "q")
         check_choice(metric, "metric", METRICS)
-        if not self:
-            return self
-        moved, row = self._towards(seed, metric)
+        return self._nearest_of_all(seed, metric, self.solver.limits) if self else self
+
+    def _nearest_of_all(self, seed: Array, metric: str, limits: Limits) -> Solutions:
+        moved, row = self._towards(seed, metric, limits)
         return self._take(row[None], moved[row[None]], None)
 
-    def _with_members(self, seed: Array, within: float = np.inf) -> Solutions:
-        """The same solutions, self-motions by their members nearest to a seed (dof,) if near enough."""
-        q = self.q.copy()
+    def _nearest_within(self, q: Any, limits: Limits) -> Solutions:
+        """The one solution within limits that is nearest to q (dof,), or none with the reason."""
+        seed = one_configuration(self.solver, q, "near")
+        inside = self.within(limits)
+        return inside._nearest_of_all(seed, METRICS[0], limits) if inside else inside
+
+    def _chosen_within(self, limits: Limits) -> Solutions:
+        """The same for the nearest configuration of a self-motion that was searched: none if it breaks the
+        limits, as no other one keeps them."""
+        inside = self.within(limits)
+        if inside or not self:
+            return inside
+        return inside._take(range(0), inside.q, chosen_reason(self.solver, self.q, limits, self.complete))
+
+    def _with_members(self, seed: Array, limits: Limits, within: float = np.inf) -> Solutions:
+        """The same solutions, self-motions by their members nearest to a seed (dof,): where it is near
+        enough, and within limits where the representative is not.
+        """
+        q, bounds = self.q.copy(), (limits.lower, limits.upper)
         for self_motion in self.self_motions:
+            row = self_motion.row
             member = self_motion.nearest(seed)
             if np.abs(member - seed).max() < within:
-                q[self_motion.row] = member
+                q[row] = member
+            if not into_limits(q[row], self.solver.joint_types, *bounds)[1]:
+                q[row] = self_motion._nearest_within(seed, limits)
         return self._take(np.arange(len(self)), q, self._note)
 
     def wrapped(self) -> Solutions:
@@ -303,15 +323,27 @@ def nearest_to_goal(found: Solutions, radian: float = 1.0) -> tuple[Array, float
     return min(made, key=lambda one: one[1] + radian * one[2])
 
 
-def limits_reason(found: Solutions, q: Array, limits: Limits) -> str:
-    excess = measure_violations(q, found.solver.joint_types, limits.lower, limits.upper)
+def limits_reason(solver: Solver, q: Array, limits: Limits) -> str:
+    """Why no row of q (k, dof) is within limits."""
+    joint = worst_joint(solver, q, limits)
+    return f"{how_many(len(q))} the goal, none within limits; the nearest one has {joint}"
+
+
+def chosen_reason(solver: Solver, q: Array, limits: Limits, complete: bool) -> str:
+    """Why the configuration q (1, dof), which a search for the nearest within limits chose, is not within."""
+    found = "no configuration that reaches the goal is within limits"
+    if not complete:
+        found = "no configuration within limits was found that reaches the goal"
+    return f"{found}; the one nearest to near= has {worst_joint(solver, q, limits)}"
+
+
+def worst_joint(solver: Solver, q: Array, limits: Limits) -> str:
+    """Of the row of q (k, dof) that breaks limits least, the joint that breaks them most, and by how much."""
+    excess = measure_violations(q, solver.joint_types, limits.lower, limits.upper)
     best = int(np.argmin(excess.max(axis=1)))
     joint = int(np.argmax(excess[best]))
-    unit = "rad" if found.solver.joint_types[joint] == "R" else "m"
-    return (
-        f"{how_many(len(found))} the goal, none within limits; the nearest one has "
-        f"{found.solver.joint_names[joint]} out by {excess[best, joint]:.4g} {unit}"
-    )
+    unit = "rad" if solver.joint_types[joint] == "R" else "m"
+    return f"{solver.joint_names[joint]} out by {excess[best, joint]:.4g} {unit}"
 
 
 _core._ik_results(Solutions)

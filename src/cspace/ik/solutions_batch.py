@@ -14,12 +14,41 @@ from cspace.errors import InputError
 from cspace.ik.answers import INCOMPLETE, METRICS, NEAREST, UNREACHABLE, VERDICTS, Answers
 from cspace.ik.context import About
 from cspace.ik.goals.given import rows_for_goals
-from cspace.ik.solutions import Solutions
+from cspace.ik.solutions import Solutions, chosen_reason, limits_reason
 from cspace.ik.solver import Solver
 from cspace.ik.wrapping import into_limits, wrap_joints
 from cspace.kinematics.batch import limits_of
 from cspace.model import Limits
 from cspace.tables import one_line
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """What a batch leaves out because of limits: goals (m,) by flat number, ascending, that have solutions
+    and none within limits; q (m, k, dof): their solutions. is_chosen: whether the search for the nearest
+    within limits chose them, as it found none.
+    """
+
+    goals: npt.NDArray[np.intp]
+    q: Array
+    limits: Limits
+    is_chosen: bool
+
+    @classmethod
+    def of(cls, all_found: SolutionsBatch, kept: SolutionsBatch, limits: Limits, is_chosen: bool) -> LeftOut:
+        goals = np.flatnonzero(all_found.reachable & ~kept.reachable)
+        q = all_found.q.reshape(-1, *all_found.q.shape[-2:])[goals]
+        return cls(goals, q, limits, is_chosen)
+
+    def reason(self, solver: Solver, goal: int, complete: bool) -> str | None:
+        """Why a goal has no solution; None for one that is not of these."""
+        k = int(np.searchsorted(self.goals, goal))
+        if k == len(self.goals) or self.goals[k] != goal:
+            return None
+        q = self.q[k][np.isfinite(self.q[k, :, 0])]
+        if self.is_chosen:
+            return chosen_reason(solver, q, self.limits, complete)
+        return limits_reason(solver, q, self.limits)
 
 
 @dataclass(eq=False, repr=False)
@@ -39,6 +68,7 @@ class SolutionsBatch(Answers):
     _verdict: npt.NDArray[np.uint8]
     _about: About | None = None
     _self_motion: Any = None  # which rows stand for a self-motion (..., k_max), where there is _about
+    _left_out: LeftOut | None = None
 
     @classmethod
     def of(
@@ -115,8 +145,14 @@ class SolutionsBatch(Answers):
             if len(full) == k and np.array_equal(full.q, rows):
                 return cast(Solutions, full)
             gaps = np.abs(np.sin((full.q - rows[:, None]) / 2)).max(axis=2)
-            numbers = tuple(full._branch_numbers[row] for row in gaps.argmin(axis=1)) if k else ()
+            same = gaps.argmin(axis=1) if k else ()
+            numbers = tuple(full._branch_numbers[row] for row in same)
+            flags = tuple(full._is_self_motion[row] for row in same)
             note = None if k or not len(full) else "solutions exist, the filters left none"
+        if not k and self._left_out is not None:
+            row = index if isinstance(index, tuple) else (index,)
+            number = int(np.ravel_multi_index(row, self.count.shape, mode="wrap"))
+            note = self._left_out.reason(self.solver, number, bool(self.complete[index])) or note
         return Solutions.of(self.solver, goal, int(verdict), rows, numbers, flags, note, about)
 
     def within(self, limits: Limits | None = None) -> SolutionsBatch:
@@ -137,13 +173,20 @@ class SolutionsBatch(Answers):
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Array:
         """Per goal the configuration (..., dof) nearest to q (dof,) or (..., dof); NaN if there is none."""
-        moved, row = self._towards(self._seed(q), metric)
+        moved, row = self._towards(self._seed(q), metric, self.solver.limits)
         return np.take_along_axis(moved, row[..., None, None], axis=-2)[..., 0, :]
 
-    def _nearest_alone(self, q: Any) -> SolutionsBatch:
-        """The batch with the solution nearest to q alone, for each goal that has one."""
-        moved, row = self._towards(self._seed(q), METRICS[0])
-        return self._take(moved, row[..., None], self.reachable.astype(np.int64))
+    def _nearest_within(self, q: Any, limits: Limits) -> SolutionsBatch:
+        """The batch with the solution within limits nearest to q alone, for each goal that has one."""
+        inside = self.within(limits)
+        moved, row = inside._towards(self._seed(q), METRICS[0], limits)
+        found = inside._take(moved, row[..., None], inside.reachable.astype(np.int64))
+        return replace(found, _left_out=LeftOut.of(self, found, limits, False))
+
+    def _chosen_within(self, limits: Limits) -> SolutionsBatch:
+        """The same for the nearest configurations of self-motions that were searched."""
+        found = self.within(limits)
+        return replace(found, _left_out=LeftOut.of(self, found, limits, True))
 
     def _take(
         self, moved: Array, order: npt.NDArray[np.intp], count: npt.NDArray[np.int64]

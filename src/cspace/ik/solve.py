@@ -13,7 +13,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.buffer_pool import pooled_array
 from cspace.errors import InputTypeError
-from cspace.ik.answers import NEAREST, UNREACHABLE
+from cspace.ik.answers import NEAREST, SINGULAR, UNREACHABLE
 from cspace.ik.context import Options
 from cspace.ik.goals.given import (
     checked_poses,
@@ -34,7 +34,7 @@ from cspace.ik.solutions import Solutions, nearest_to_goal
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solver import Solver
 from cspace.ik.wrapping import wrap_joints
-from cspace.kinematics.batch import thread_count
+from cspace.kinematics.batch import limits_of, thread_count
 from cspace.spatial import as_pose
 from cspace.tolerances import SAME_MEMBER
 
@@ -56,6 +56,7 @@ def solve(
     tool_axis: Any = "z",
     angle: Any = None,
     near: Any = None,
+    limits: Any = None,
     locked: Any = None,
     swivel: Any = None,
     samples: int | None = None,
@@ -66,7 +67,10 @@ def solve(
     workers = (os.cpu_count() or 1) if threads is None else thread_count(threads, (1,)) or os.cpu_count() or 1
     if not isinstance(least_squares, (bool, np.bool_)):
         raise InputTypeError(f"least_squares must be True or False, got {type(least_squares).__name__}")
-    options = Options(near, locked, swivel, samples, bool(least_squares), workers)
+    if limits is not None and near is None:
+        raise InputTypeError("limits= can only be combined with near=; s.within(limits) filters a list")
+    bounds = solver.limits if limits is None else limits_of(solver.limits, limits, solver.name)
+    options = Options(near, bounds, locked, swivel, samples, bool(least_squares), workers)
     if angle is not None:
         goal, position = planar_poses(solver, goal, position, angle), None
     position = open_in_space(solver, position)
@@ -93,7 +97,7 @@ def answer_poses(solver: Solver, goal: Any, options: Options) -> Answer:
         return approach_unreached(solve_freedom(solver, None, checked_poses(T), options), options)
     if T.ndim > 2:
         return choose_solutions(solve_many(solver, T, _core._ik_many, options.threads), options)
-    return choose_solutions(solve_one(solver, T, options.near), options)
+    return choose_solutions(solve_one(solver, T, options), options)
 
 
 def answer_points(solver: Solver, p: Array, options: Options) -> Answer:
@@ -101,13 +105,32 @@ def answer_points(solver: Solver, p: Array, options: Options) -> Answer:
         return choose_solutions(solve_many(solver, p, _core._ik_positions, options.threads), options)
     found = cast(Solutions, _core._ik_position(solver, p))
     if options.near is not None and found.self_motions:
-        found = found._with_members(one_configuration(solver, options.near, "near"))
+        found = found._with_members(one_configuration(solver, options.near, "near"), options.limits)
     return choose_solutions(found, options)
 
 
 def choose_solutions(found: Answer, options: Options) -> Answer:
     """Of all solutions those that the options name."""
-    return approach_unreached(choose_nearest(found, options.near), options)
+    chosen = choose_nearest(found, options)
+    if options.near is not None and isinstance(chosen, SolutionsBatch):
+        chosen = with_nearest_members(cast(SolutionsBatch, found), chosen, options)
+    return approach_unreached(chosen, options)
+
+
+def with_nearest_members(found: SolutionsBatch, chosen: SolutionsBatch, options: Options) -> SolutionsBatch:
+    """The same, goals with self-motions answered one by one: of these the nearest members count."""
+    singular: Any = np.nonzero(found._status == SINGULAR)
+    if not len(singular[0]) or found._about is not None:
+        return chosen
+    seeds = found._seed(options.near)
+    q, count = chosen.q.copy(), chosen.count.copy()
+    for index in zip(*singular, strict=True):
+        goal, near = np.ascontiguousarray(found.goal[index]), seeds if seeds.ndim == 1 else seeds[index]
+        single = answer_points if found._is_point else answer_poses
+        one = cast(Solutions, single(found.solver, goal, replace(options, near=near)))
+        count[index] = len(one)
+        q[(*index, 0)] = one.q[0] if one else np.nan
+    return replace(chosen, q=q, count=count)
 
 
 def approach_unreached(found: Answer, options: Options) -> Answer:
@@ -118,7 +141,7 @@ def approach_unreached(found: Answer, options: Options) -> Answer:
         raise InputTypeError("least_squares= cannot be combined with locked=, because it moves every joint")
     if isinstance(found, SolutionsBatch):
         return least_squares_batch(found, options.threads)
-    return found or least_squares_answer(found)
+    return least_squares_answer(found) if found._status == UNREACHABLE else found
 
 
 def answer_swivel(solver: Solver, T: Array, options: Options) -> Answer:
@@ -135,17 +158,17 @@ def is_plain_position(solver: Solver, given: dict[str, Any]) -> bool:
     return few and list(given) == ["position"] and not is_open(given["position"])
 
 
-def solve_one(solver: Solver, T: Array, near: Any) -> Solutions:
-    if near is None:
+def solve_one(solver: Solver, T: Array, options: Options) -> Solutions:
+    if options.near is None:
         found = _core._ik_single(solver, T)
         if found is None:
             raise too_far("goal", T[:3, 3])
         return cast(Solutions, found)
-    seed = one_configuration(solver, near, "near")
+    seed = one_configuration(solver, options.near, "near")
     if is_far(T[:3, 3]):
         raise too_far("goal", T[:3, 3])
     found = cast(Solutions, _core._ik_near_singular(solver, T, seed))
-    return found._with_members(seed, SAME_MEMBER) if found.self_motions else found
+    return found._with_members(seed, options.limits, SAME_MEMBER) if found.self_motions else found
 
 
 def solve_many(solver: Solver, goals: Array, fill: Callable[..., int], workers: int) -> SolutionsBatch:

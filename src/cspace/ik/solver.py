@@ -70,6 +70,7 @@ class Solver(_core.SolverBase, KinematicModel):
         self._goal_joints, self._reach = tuple(goal_joints), reach
         self._locked: dict[Any, Solver] = {}
         self._extended: dict[Any, Solver] = {}
+        self._limited: dict[Any, Solver] = {}
         weight = np.ones(n)
         weight[list(goal_joints)] = 0.0  # a goal's own joints do not count in distances
         _core._ik_build(
@@ -129,6 +130,16 @@ class Solver(_core.SolverBase, KinematicModel):
         """The number of dimensions that a pose leaves free, with these joints locked at typical values."""
         joints = {joint_number(self, joint, "locked") for joint in locked}
         return _core._ik_redundancy_degree(self, sorted(joints))
+
+    def limited(self, limits: Limits) -> Solver:
+        """The solver of the same arm with other limits, or the solver itself if they are its own."""
+        if limits is self.limits:
+            return self
+        return keep_solver(
+            self._limited,
+            (limits.lower.tobytes(), limits.upper.tobytes()),
+            lambda: make_solver(self.chain.with_limits(limits), self.name, self._goal_joints, self._reach),
+        )
 
     def lock(self, values: Mapping[int, float]) -> Solver:
         """The solver of the other joints, with these joints (by number) at fixed values [rad or m]."""

@@ -289,6 +289,14 @@ inline void trace_loops(Tracer& tracer, const Sweep& sweep, const LimitArms& arm
         tracer.out->complete = agrees_with_solutions(tracer, swept[k], values[k]);
 }
 
+// How far prismatic joints without limits are followed; 0 if there are none.
+inline double far_to_follow(const Redundant& arm, const Posed& goal) {
+    for (int i = 0; i < arm.chain.n; ++i)
+        if (arm.chain.prismatic[i] && !(std::isfinite(arm.lower[i]) && std::isfinite(arm.upper[i])))
+            return far_away(arm, goal);
+    return 0;
+}
+
 // The intervals of joint `parameter`, which `locked` locks. trail: working memory.
 inline void intervals_by_arcs(const Redundant& arm, const LockedArm& locked, int parameter,
                               const LimitArms& arms, const Posed& goal, Trail& trail, Intervals& out) {
@@ -298,11 +306,7 @@ inline void intervals_by_arcs(const Redundant& arm, const LockedArm& locked, int
     out.complete = points.complete;
     trail.count = 0;
     for (int k = 0; k < points.count; ++k) trail.used[k] = false;
-    double far = 0;
-    for (int i = 0; i < arm.chain.n; ++i)
-        if (arm.chain.prismatic[i] && !(std::isfinite(arm.lower[i]) && std::isfinite(arm.upper[i])))
-            far = far_away(arm, goal);
-    Tracer tracer{&arm, &points, goal, parameter, &trail, &out, far};
+    Tracer tracer{&arm, &points, goal, parameter, &trail, &out, far_to_follow(arm, goal)};
     trace_from_limits(tracer);
     trace_loops(tracer, make_sweep(locked, parameter, goal, arm.middle), arms, trail.swept);
 }

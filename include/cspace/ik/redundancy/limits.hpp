@@ -69,7 +69,7 @@ inline void make_limit_arms(const Redundant& arm, LimitArms& out) {
                             ? arm.locked
                             : lock_joints(arm.chain, &i, 1, at);
         for (int side = 0; side < 2 && !out.locked[i].at_ends; ++side) {
-            if (!has_limit(arm, i, side)) continue;
+            if (!std::isfinite(limit_of(arm, i, side))) continue;
             double there[max_joints];
             there[i] = limit_of(arm, i, side);
             out.at_limit[i][side] = arm_at(out.locked[i], there);
@@ -77,34 +77,43 @@ inline void make_limit_arms(const Redundant& arm, LimitArms& out) {
     }
 }
 
-// Joint `except` is left out (−1: none).
+// Adds the points with one joint at one of its limits.
+inline void add_limit_points(const Redundant& arm, const LimitArms& arms, const Posed& goal, int joint,
+                             int side, LimitPoints& out) {
+    double at[max_joints] = {};
+    at[joint] = limit_of(arm, joint, side);
+    const LockedArm& locked = arms.locked[joint];
+    const Arm& rest = locked.at_ends ? locked.arm : arms.at_limit[joint][side];
+    // Six joints with one to spare among them: the joint rests there along every self-motion, and no branch
+    // crosses its limit.
+    if (!is_solvable(rest)) return;
+    const Solutions found =
+        solve_arm_quickly(rest, locked.at_ends ? goal_between_ends(locked, goal, at) : goal);
+    out.complete = out.complete && found.complete;
+    for (int j = 0; j < found.count; ++j) {
+        LimitPoint point{joint, side, {}};
+        whole_row(locked, at, found.q[j], point.q);
+        if (!is_within(arm, point.q, limit_slack, joint)) continue;
+        if (out.count == LimitPoints::room)
+            out.complete = false;
+        else
+            out.point[out.count++] = point;
+    }
+}
+
+// counts(joint, side): which limits.
+template <class Counts>
+inline void find_limit_points(const Redundant& arm, const LimitArms& arms, const Posed& goal,
+                              LimitPoints& out, const Counts& counts) {
+    for (int joint = 0; joint < arm.chain.n; ++joint)
+        for (int side = 0; side < 2; ++side)
+            if (counts(joint, side)) add_limit_points(arm, arms, goal, joint, side, out);
+}
+// All limits that stop a joint. Joint `except` is left out (−1: none).
 inline void find_limit_points(const Redundant& arm, const LimitArms& arms, const Posed& goal, int except,
                               LimitPoints& out) {
-    double at[max_joints] = {};
-    for (int joint = 0; joint < arm.chain.n; ++joint) {
-        if (joint == except) continue;
-        for (int side = 0; side < 2; ++side) {
-            if (!has_limit(arm, joint, side)) continue;
-            at[joint] = limit_of(arm, joint, side);
-            const LockedArm& locked = arms.locked[joint];
-            const Arm& rest = locked.at_ends ? locked.arm : arms.at_limit[joint][side];
-            // Six joints with one to spare among them: the joint rests there along every self-motion, and no
-            // branch crosses its limit.
-            if (!is_solvable(rest)) continue;
-            const Solutions found =
-                solve_arm_quickly(rest, locked.at_ends ? goal_between_ends(locked, goal, at) : goal);
-            out.complete = out.complete && found.complete;
-            for (int j = 0; j < found.count; ++j) {
-                LimitPoint point{joint, side, {}};
-                whole_row(locked, at, found.q[j], point.q);
-                if (!is_within(arm, point.q, limit_slack, joint)) continue;
-                if (out.count == LimitPoints::room)
-                    out.complete = false;
-                else
-                    out.point[out.count++] = point;
-            }
-        }
-    }
+    find_limit_points(arm, arms, goal, out,
+                      [&](int joint, int side) { return joint != except && has_limit(arm, joint, side); });
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

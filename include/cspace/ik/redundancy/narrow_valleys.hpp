@@ -5,6 +5,7 @@
 // the distance between the samples.
 #pragma once
 
+#include "cspace/ik/redundancy/target.hpp"
 #include "cspace/ik/redundancy/turning_points.hpp"
 
 namespace cspace::ik {
@@ -38,7 +39,19 @@ CSPACE_INLINE Pack<4> squared_way(const Redundant& arm, const Difference& differ
     return sum;
 }
 
-// Whether a branch may come nearer than `best` between two adjacent samples.
+inline void copy_branch(const Chain& chain, const CurveSample& at, int branch, double* q) {
+    for (int i = 0; i < chain.n; ++i) q[i] = at.q[i][branch];
+}
+inline bool is_acceptable(const Redundant& arm, const Target& target, const CurveSample& at, int branch) {
+    double q[max_joints];
+    if (!target.within_limits) return true;
+    copy_branch(arm.chain, at, branch, q);
+    return is_within(arm, q, limit_slack);
+}
+
+// Whether a branch may come nearer than `best` between two adjacent samples. Where the distances differ by
+// more than the way between them, a joint passes from one end of its limits to the other, and the nearer
+// sample alone is on its side.
 inline bool may_hide(const Redundant& arm, const CurveSample& a, const CurveSample& b, double best) {
     using V = Pack<4>;
     constexpr double least_gap = 1e-4, detour = 1.2, short_way_between = 0.15;
@@ -47,16 +60,21 @@ inline bool may_hide(const Redundant& arm, const CurveSample& a, const CurveSamp
     for (int k = 0; k < max_branches; k += 4) {
         const V way =
             detour * sqrt(squared_way(arm, [&](int i) { return load<V>(a.q[i] + k) - load<V>(b.q[i] + k); }));
-        const V sum = load<V>(a.distance + k) + load<V>(b.distance + k);
+        const V from = load<V>(a.distance + k), to = load<V>(b.distance + k), least = min(from, to);
+        const V sum = select(abs(to - from) > way, 2.0 * least - way, from + to);
         hidden |= bits_of(way > short_way_between && sum - way < 2 * best) << k;
     }
     return (hidden & a.there & b.there) != 0;
 }
 
-inline void measure_sample(const Redundant& arm, const double* seed, CurveSample& at) {
+inline void measure_sample(const Redundant& arm, const Target& target, CurveSample& at) {
     using V = Pack<4>;
     for (int k = 0; k < max_branches; k += 4) {
-        const V square = squared_way(arm, [&](int i) { return load<V>(at.q[i] + k) - seed[i]; });
+        V square = fill<V>(0.0);
+        for (int i = 0; i < arm.chain.n; ++i) {
+            const V gap = gap_from_seed(arm.chain, target, i, load<V>(at.q[i] + k));
+            square = mul_add(arm.weight[i] * gap, gap, square);
+        }
         store(at.distance + k, sqrt(square));
     }
 }
@@ -64,7 +82,7 @@ inline void measure_sample(const Redundant& arm, const double* seed, CurveSample
 // Adds samples at given values, with their distances from the seed. after[k]: the sample that value k
 // follows.
 inline void add_samples(const Redundant& arm, const Sweep& sweep, const double* values, const int* after,
-                        int n, const double* seed, CurveSamples& all) {
+                        int n, const Target& target, CurveSamples& all) {
     sweep_values(sweep, values, n, [&](int k, const SweptRows& rows) {
         const int at = all.count++;
         CurveSample& made = all.sample[at];
@@ -78,7 +96,7 @@ inline void add_samples(const Redundant& arm, const Sweep& sweep, const double* 
             made.there |= 1u << b;
             for (int i = 0; i < arm.chain.n; ++i) made.q[i][b] = rows.q[j][i];
         }
-        measure_sample(arm, seed, made);
+        measure_sample(arm, target, made);
         made.next = -1;
         if (after && after[k] >= 0) {
             made.next = all.sample[after[k]].next;
@@ -90,7 +108,7 @@ inline void add_samples(const Redundant& arm, const Sweep& sweep, const double* 
 }
 
 // Divides until no pair can contain a point nearer than `best` (or than the nearest sample).
-inline void divide_samples(const Redundant& arm, const Sweep& sweep, double best, const double* seed,
+inline void divide_samples(const Redundant& arm, const Sweep& sweep, double best, const Target& target,
                            CurveSamples& all) {
     constexpr int most_rounds = 10;
     for (int round = 0; round < most_rounds; ++round) {
@@ -98,7 +116,9 @@ inline void divide_samples(const Redundant& arm, const Sweep& sweep, double best
         int after[CurveSamples::room], n = 0;
         for (int k = 0; k < all.count; ++k)
             for (int b = 0; b < max_branches; ++b)
-                if (all.sample[k].there >> b & 1) best = min(best, all.sample[k].distance[b]);
+                if (all.sample[k].there >> b & 1 && all.sample[k].distance[b] < best &&
+                    is_acceptable(arm, target, all.sample[k], b))
+                    best = all.sample[k].distance[b];
         for (int k = 0; k < all.count && all.count + n < CurveSamples::room; ++k) {
             const CurveSample& a = all.sample[k];
             if (a.next < 0 || !may_hide(arm, a, all.sample[a.next], best)) continue;
@@ -106,7 +126,7 @@ inline void divide_samples(const Redundant& arm, const Sweep& sweep, double best
             after[n++] = k;
         }
         if (n == 0) return;
-        add_samples(arm, sweep, values, after, n, seed, all);
+        add_samples(arm, sweep, values, after, n, target, all);
     }
 }
 
@@ -147,7 +167,7 @@ inline void lowest_samples(const Chain& chain, const CurveSamples& all, const do
                                      lies_between(chain, at, *other, b, found));
             if (!wanted) continue;
             double q[max_joints];
-            for (int i = 0; i < chain.n; ++i) q[i] = at.q[i][b];
+            copy_branch(chain, at, b, q);
             visit(q, at.distance[b]);
         }
         before = &at;
@@ -171,7 +191,9 @@ inline int values_between_folds(const FoldValues& folds, double middle, double h
     int count = 0;
     for (int k = 0; k < n && count + each <= room; ++k) {
         const double from = fold[k], to = fold[k + 1];
-        if (to - from < limit_slack || to < middle - half || from > middle + half) continue;
+        // The last of them reaches into the next revolution, and so into the window from below.
+        const bool inside = (to >= middle - half && from <= middle + half) || to - 2 * pi >= middle - half;
+        if (to - from < limit_slack || !inside) continue;
         for (int j = 0; j < each; ++j)
             values[count++] = from + 0.5 * (to - from) * (1 - std::cos(pi * (j + 0.5) / each));
     }

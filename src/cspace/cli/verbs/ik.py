@@ -75,7 +75,7 @@ def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     """Solve a goal; no solution is a negative answer, with its reason."""
     goal, options = goal_of(args), options_of(args, robot)
     near = None if args.near is None else read_configuration(args.near, robot, "--near", degrees=args.deg)
-    found = solve_goal(robot, goal, near, options)
+    found = solve_goal(robot, goal, near, None if args.limits != "keep" else False, options)
     if args.limits == "drop":
         found = found.within()
     rows = solution_rows(robot, found, near, check=args.limits != "keep", counting=goal.rows)
@@ -91,11 +91,18 @@ def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     return Exit.DONE if found else Exit.NEGATIVE
 
 
-def solve_goal(robot: Robot, goal: Goal, near: Array | None, options: dict[str, Any]) -> Any:
-    """Every solution; where the goal leaves freedom, and no list is whole, the one nearest to `near`."""
+def solve_goal(
+    robot: Robot, goal: Goal, near: Array | None, limits: bool | None, options: dict[str, Any]
+) -> Any:
+    """Every solution; where the goal leaves freedom, and no list is whole, the one nearest to `near`.
+
+    limits: False lifts those of the robot for the nearest.
+    """
     found = goal.ask(robot, **options)
     leaves_freedom = found.freedom or found.status == "singular"
-    return found if near is None or not leaves_freedom else goal.ask(robot, near=near, **options)
+    return (
+        found if near is None or not leaves_freedom else goal.ask(robot, near=near, limits=limits, **options)
+    )
 
 
 def draw_solutions(path: Path, robot: Robot, rows: list[dict[str, Any]], goal: Array | None) -> None:

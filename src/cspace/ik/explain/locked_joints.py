@@ -226,7 +226,8 @@ def describe_answers(split: Split, default: tuple[int, ...], others: Solver) -> 
         "`near=`: Newton's method on the distance from the seed and on the pose together, with exact second "
         f"derivatives, starts at the seed. Then {locked} {'is' if one else 'are'} sampled around the seed, "
         + ("as far as a nearer configuration could have it" if one else "ever farther")
-        + ", each sample solved by the steps above, and the lowest settled by the same method."
+        + ", each sample solved by the steps above, and the lowest settled by the same method. If "
+        "a joint is then out of its limits, the search is repeated within limits."
     )
     if one:
         out.append(f"`robot.redundancy(T)`, the feasible intervals of {locked}: {describe_intervals(others)}")

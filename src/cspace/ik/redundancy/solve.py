@@ -31,13 +31,14 @@ def solve_freedom(
 
     goal: the partial goal that T stands for; its virtual joints are then part of the arm.
     """
-    whole = solver if goal is None else solver.extend(goal)
-    values = locked_values(whole, options.locked, None if whole is solver else solver)
+    arm = solver.limited(options.limits)
+    whole = arm if goal is None else arm.extend(goal)
+    values = locked_values(whole, options.locked, None if goal is None else solver)
     leaves_joints = bool(values) or whole.is_redundant
     degree = whole.redundancy_degree(tuple(values)) if leaves_joints else 0
     check_samples(solver, options, degree)
     if leaves_joints and degree <= 0:
-        return choose_nearest(solve_locked(solver, whole, goal, T, values, options), options.near)
+        return choose_nearest(solve_locked(solver, whole, goal, T, values, options), options)
     if any(np.ndim(value) for value in values.values()):
         raise InputTypeError(
             "locked= takes one value per joint while dimensions stay free; lock all redundant joints,"
@@ -56,14 +57,12 @@ def solve_freedom(
     if options.samples is not None:
         samples = whole_number(options.samples, "samples", 1, MOST_SAMPLES)
     found = ask_core(solver, asked, T, about, options.threads, seeds=seeds, samples=samples)
-    return found if seeds is not None else choose_nearest(found, options.near)
+    return choose_nearest(found, options) if seeds is None else found._chosen_within(options.limits)
 
 
-def choose_nearest(found: Solutions | SolutionsBatch, near: Any) -> Solutions | SolutionsBatch:
-    """Of all solutions the nearest to a seed, or all without one."""
-    if near is None:
-        return found
-    return found._nearest_alone(near) if isinstance(found, SolutionsBatch) else found.nearest(near)
+def choose_nearest(found: Solutions | SolutionsBatch, options: Options) -> Solutions | SolutionsBatch:
+    """Of all solutions the nearest to a seed within limits, or all without a seed."""
+    return found if options.near is None else found._nearest_within(options.near, options.limits)
 
 
 def ask_core(

@@ -18,8 +18,9 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.solver import Solver
-from cspace.ik.wrapping import into_limits, short_way, turning_joints
+from cspace.ik.wrapping import into_limits, nearest_winding, short_way, turning_joints
 from cspace.math.wrapping import TURN, wrap_near
+from cspace.model import Limits
 from cspace.tolerances import RESTING_JOINT
 
 CLOSED, FAR = 0, 1
@@ -123,28 +124,40 @@ def arc_through(solver: Solver, q: Array, direction: Array, whole_pose: bool) ->
     return Arc(curve, first, last, False)
 
 
-def nearest_member(solver: Solver, q: Array, direction: Array, whole_pose: bool, seed: Array) -> Array:
-    """The configuration (dof,) of the self-motion through q that is nearest to a seed, limits aside, each
-    revolute joint by the turn that brings it closest."""
+def nearest_member(
+    solver: Solver, q: Array, direction: Array, whole_pose: bool, seed: Array, limits: Limits | None = None
+) -> Array:
+    """The configuration (dof,) of the self-motion through q that is nearest to a seed, each revolute joint by
+    the turn that brings it closest; with limits of those inside, or q where there is none."""
     rounds, parts = 9, 33
     curve, _ = trace_curve(solver, np.ascontiguousarray(q), direction, whole_pose)
     near, last = slice(None), len(curve.s) - 1
     if curve.shift is not None:  # once around before q, so that every point has neighbours
         curve, near = curve.repeat(1, 1), slice(last, 2 * last)
     k = near.start or 0
-    k += int(np.argmin(measure_distances(solver, curve.points[near], seed)))
+    distances = measure_distances(solver, curve.points[near], seed, limits)
+    k += int(np.argmin(distances))
+    if not np.isfinite(distances).any():
+        return q
     low, high = curve.s[max(k - 1, 0)], curve.s[min(k + 1, len(curve.s) - 1)]
     for _ in range(rounds):  # each narrows the piece between two points sixteenfold
         s = np.linspace(low, high, parts)
         points = curve.at(s)
-        k = int(np.argmin(measure_distances(solver, points, seed)))
+        k = int(np.argmin(measure_distances(solver, points, seed, limits)))
         low, high = s[max(k - 1, 0)], s[min(k + 1, parts - 1)]
+    if limits is not None:
+        return nearest_winding(points[k], seed, solver.joint_types, limits.lower, limits.upper)
     return np.where(turning_joints(solver.joint_types), wrap_near(points[k], seed), points[k])
 
 
-def measure_distances(solver: Solver, points: Array, seed: Array) -> Array:
-    """How far configurations (k, dof) are from a seed, revolute joints the short way round, (k,)."""
-    return np.asarray(np.linalg.norm(short_way(points - seed, solver.joint_types), axis=1))
+def measure_distances(solver: Solver, points: Array, seed: Array, limits: Limits | None) -> Array:
+    """How far configurations (k, dof) are from a seed, revolute joints the short way round or, with limits,
+    by the turn inside them, (k,); infinite beyond limits."""
+    if limits is None:
+        return np.asarray(np.linalg.norm(short_way(points - seed, solver.joint_types), axis=1))
+    moved = nearest_winding(points, seed, solver.joint_types, limits.lower, limits.upper)
+    inside = ((moved >= limits.lower) & (moved <= limits.upper)).all(axis=1)
+    return np.where(inside, np.linalg.norm(moved - seed, axis=1), np.inf)
 
 
 def trace_curve(

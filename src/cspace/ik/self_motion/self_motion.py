@@ -16,6 +16,7 @@ from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
 from cspace.ik.solver import Solver
 from cspace.ik.wrapping import wrap_joints
+from cspace.model import Limits
 from cspace.tables import one_line
 from cspace.tolerances import MOVING_JOINT
 
@@ -89,6 +90,10 @@ class SelfMotion:
         Limits aside; each revolute joint by the turn that brings it closest.
         """
         return nearest_member(self._solver, self.q, self.direction, self._whole_pose, q)
+
+    def _nearest_within(self, q: Array, limits: Limits) -> Array:
+        """The same within limits; self.q where none of the family is."""
+        return nearest_member(self._solver, self.q, self.direction, self._whole_pose, q, limits)
 
 
 def self_motion_at(solver: Solver, row: int, q: Array, whole_pose: bool) -> SelfMotion:

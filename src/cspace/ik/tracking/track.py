@@ -142,12 +142,12 @@ def nearest_start(
     """The solution of the first pose nearest to a configuration: itself, if it is one."""
     if plain_goal(first).residual(robot.fk(seed)) <= NUMERIC_TOLERANCE:
         return np.ascontiguousarray(seed)[None], (-1,), False, ""
-    if is_redundant(robot, question):  # near= looks past limits, a descent keeps them
+    if is_redundant(robot, question):  # a descent also takes another frame than the tip
         d = ik_numeric(robot, first, seed, rest=seed, limits=limits)
         if d:
             return np.ascontiguousarray(d.q)[None], (-1,), False, ""
     try:
-        s: Any = as_solver(robot).solve(first, near=seed)
+        s: Any = as_solver(robot).solve(first, near=seed, limits=limits)
     except NoClosedFormError:
         s = ik_numeric(robot, first, seed, rest=seed, limits=limits)
     if s:
