@@ -59,7 +59,7 @@ def index_text(robots: list[Description]) -> str:
     return "[\n" + ",\n".join(json.dumps(row(robot), ensure_ascii=False) for robot in robots) + "\n]\n"
 
 
-FIELDS = ("velocity", "acceleration", "effort", "inertia", "collision", "visual")
+FIELDS = ("velocity", "acceleration", "jerk", "effort", "inertia", "collision", "visual")
 """The groups of numbers besides joint axes, ranges and named poses, as `missing` names them."""
 
 

@@ -56,7 +56,7 @@ def test_a_robot_says_what_it_is_and_what_it_lacks(name):
     limited = [j.type == "continuous" or np.isfinite([j.lower, j.upper]).any() for j in robot.moving_joints]
     assert ("limits" in about.sources) == any(limited)
     assert ("limits" in about.missing) != any(limited)
-    for field in ("velocity", "acceleration", "effort"):
+    for field in ("velocity", "acceleration", "jerk", "effort"):
         known = [j for j in robot.moving_joints if np.isfinite(getattr(j, field))]
         assert (field in about.missing) != bool(known)
         assert (field in about.sources) == bool(known)
@@ -393,6 +393,15 @@ def test_the_flanges_of_a_maker_are_alike(vendor):
         np.testing.assert_allclose(z, [0, 0, sense or np.sign(z[2])], atol=2e-5, rtol=0)
         gap = np.cross(c.points[-1] - c.T_zero[:3, 3], c.axes[-1])
         assert np.linalg.norm(gap) < FLANGE_CENTRE
+
+
+def test_the_published_accelerations_and_jerks():
+    """Of Franka's control interface."""
+    panda, fr3 = load_robot("panda").limits, load_robot("fr3").limits
+    np.testing.assert_array_equal(panda.acceleration, [15, 7.5, 10, 12.5, 15, 20, 20])
+    np.testing.assert_array_equal(panda.jerk, 500 * panda.acceleration)
+    np.testing.assert_array_equal(fr3.acceleration, np.full(7, 10))
+    np.testing.assert_array_equal(fr3.jerk, 500 * fr3.acceleration)
 
 
 def posed():
