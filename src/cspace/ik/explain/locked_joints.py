@@ -292,21 +292,15 @@ def locked_step(split: Split, ends: list[int]) -> Step:
         words += "A joint held between others stands at the value that the numbers below belong to."
     words = words.strip()
     goal = ("Tgoal", r"T_{\text{goal}}", TrigMatrix.symbols(WHOLE))
-    left = [part for k in ends if k < split.moving[0] for part in undo_joint(split, k, chain)]
+    left = [part for k in reversed(ends) if k < split.moving[0] for part in undo_joint(split, k, chain)]
     right = [part for k in reversed(ends) if k > split.moving[-1] for part in undo_joint(split, k, chain)]
-    parts = (*reversed_pairs(left), goal, *right)
+    parts = (*left, goal, *right)
     equations: list[Equation | MatrixEquation] = []
     if ends:
         equations.append(MatrixEquation(Product((("T", "T", TrigMatrix.symbols(INNER)),)), Product(parts)))
     for k in split.between:
         equations.append(Equation(TrigPolynomial.symbol(f"held_{k + 1}"), TrigPolynomial.number(split.at[k])))
     return Step(", ".join(number), words, tuple(equations), method="given")
-
-
-def reversed_pairs(parts: list[Any]) -> list[Any]:
-    """Displacements of three factors each in the opposite order."""
-    groups = [parts[i : i + 3] for i in range(0, len(parts), 3)]
-    return [part for group in reversed(groups) for part in group]
 
 
 def undo_joint(split: Split, k: int, chain: Any) -> list[tuple[str, str, TrigMatrix]]:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
@@ -90,10 +89,11 @@ class Arc:
         low, high = points.min(axis=0), points.max(axis=0)
         rests = high - low < RESTING_JOINT
         low, high = np.where(rests, curve.q, low), np.where(rests, curve.q, high)
-        for end, way in ((self.first, -1), (self.last, 1)):
+        for end, way, tangent in ((self.first, -1, curve.tangents[0]), (self.last, 1, curve.tangents[-1])):
             if np.isfinite(end):
                 continue
-            drift = way * (shift if curve.shift is not None else outward_directions(curve, way))
+            sliding = np.where(np.abs(tangent) > RESTING_JOINT, tangent, 0.0)  # of an unbounded curve
+            drift = way * (shift if curve.shift is not None else sliding)
             low, high = np.where(drift < 0, -np.inf, low), np.where(drift > 0, np.inf, high)
         if self.is_loop:
             round_about = (shift != 0) | (high - low >= TURN)
@@ -242,12 +242,6 @@ def find_crossing(curve: Curve, inside: float, outside: float, limits: tuple[Arr
         broken = (((q < lower) | (q > upper)) & moving).any()
         inside, outside = (inside, middle) if broken else (middle, outside)
     return inside
-
-
-def outward_directions(curve: Curve, way: int) -> npt.NDArray[np.float64]:
-    """The directions of prismatic joints at an end of an unbounded curve; zero for joints at rest."""
-    t = curve.tangents[-1 if way > 0 else 0]
-    return np.where(np.abs(t) > RESTING_JOINT, t, 0.0)
 
 
 def return_onto_curve(

@@ -83,7 +83,7 @@ class Brushfire(PlanePlanner):
     )
 
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
-        settings = _core_of(world), self.prefer == "clearance", describe_least
+        settings = _core_of(world), self.prefer == "clearance", lambda least: {"least_clearance": least}
         return _core._brushfire(traced, world, world, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
@@ -92,11 +92,6 @@ class Brushfire(PlanePlanner):
         least: float = route.evidence["least_clearance"]
         wide = "; no path over cells keeps farther" if self.prefer == "clearance" else ""
         return f"the centres of its cells keep {least:.6g} m from walls{wide}"
-
-
-def describe_least(clearance: float) -> dict[str, float]:
-    """The evidence of a path that was found."""
-    return {"least_clearance": clearance}
 
 
 def _core_of(grid: Any) -> Any:

@@ -47,7 +47,7 @@ class FastMarching(PlanePlanner):
     )
 
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
-        settings = clearance_field(world), self.slow_within / world.resolution, describe_time
+        settings = clearance_field(world), self.slow_within / world.resolution, lambda time: {"time": time}
         return _core._fast_marching(traced, world, world, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
@@ -57,11 +57,6 @@ class FastMarching(PlanePlanner):
         return (
             f"descended the arrival times of a front that takes {route.evidence['time']:.6g} m to the start"
         )
-
-
-def describe_time(time: float) -> dict[str, float]:
-    """The evidence of a path that was found."""
-    return {"time": time}
 
 
 def arrival_times(grid: Any, goal: ArrayLike, *, slow_within: float = 0.0) -> Array:
