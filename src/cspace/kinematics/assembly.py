@@ -63,6 +63,11 @@ class Assembly:
         return len(self.T_joint_frame)
 
     @property
+    def n_coordinates(self) -> int:
+        """How many numbers a configuration has."""
+        return len(self.coordinates)
+
+    @property
     def tip_index(self) -> int:
         """The number of the tip among the frames, -1 where the tree leaves the choice."""
         return -1 if self.tip is None else self.frame_index[self.tip]

@@ -10,8 +10,8 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.conditions import common_point
+from cspace.ik.explain.few_joints import goal_turns, rotation_steps
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.placed_wrist import goal_turns, rotation_steps
 from cspace.ik.explain.screws import (
     dot_product,
     goal_values,

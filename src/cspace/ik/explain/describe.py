@@ -10,12 +10,11 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import arm_length, common_point, explain_missing_form
-from cspace.ik.explain.few_joints import few_joint_steps
+from cspace.ik.explain.few_joints import few_joint_steps, orientation_steps, placed_wrist_steps
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form
 from cspace.ik.explain.general import Loop
 from cspace.ik.explain.parallel import first_parallel_steps, middle_parallel_steps, three_parallel_steps
-from cspace.ik.explain.placed_wrist import orientation_steps, placed_wrist_steps
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.ik.explain.survey import invariant_directions, invariant_points, measure_relations

@@ -92,9 +92,8 @@ def ik_numeric(
         descend(first, NO_MORE.reshape(0, n))
         if number > 1 and info[0, 4] != REACHED:
             descend(first, further_starts(robot, question.limits, goals, number - 1, rng))
-    return NumericSolution(
-        robot, question.goals, q.reshape(*lead, n), info.reshape(*lead, 5), number, question.limits
-    )
+    found = q.reshape(*lead, n), info.reshape(*lead, 5)
+    return NumericSolution.of(robot, question.goals, *found, number, question.limits)
 
 
 def ik_many_starts(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from cspace.tolerances import FARTHEST, SERVED, SETTLED
 MOST_STARTS = 1_000_000
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class TaskSolution:
     """The configuration that serves several tasks best, as far as steps from the start can tell.
 
@@ -30,21 +32,15 @@ class TaskSolution:
     every task but postures is within the tolerance.
     """
 
-    def __init__(
-        self,
-        robot: KinematicModel,
-        q: Array,
-        T_world_base: Array,
-        tasks: tuple[Task, ...],
-        errors: Array,
-        settled: bool,
-        iterations: int,
-        tolerance: float,
-    ) -> None:
-        self.robot, self.q, self.T_world_base, self.tasks = robot, q, T_world_base, tasks
-        self.position_error, self.rotation_error = errors[:, 0], errors[:, 1]
-        self.settled, self.iterations = settled, iterations
-        self.success = bool((errors <= tolerance).all())
+    robot: KinematicModel
+    q: Array
+    T_world_base: Array
+    tasks: tuple[Task, ...]
+    position_error: Array
+    rotation_error: Array
+    settled: bool
+    iterations: int
+    success: bool
 
     def __bool__(self) -> bool:
         return self.success
@@ -147,7 +143,8 @@ def ik_tasks(
         T, errors, every = base.copy(), np.empty((len(rows), 2)), np.zeros((len(listed), 2))
         used, settled, cost = _core._task_serve(robot, rows, postures, q, T, bounds, steps, SETTLED, errors)
         every[kept] = errors
-        return cost, TaskSolution(robot, q, T, listed, every, settled, used, done)
+        served = bool((every <= done).all())
+        return cost, TaskSolution(robot, q, T, listed, every[:, 0], every[:, 1], settled, used, served)
 
     best_cost, best = descend(first)
     if not best and number > 1:

@@ -35,9 +35,23 @@ class NumericSolution:
     robot: KinematicModel
     goal: Array
     q: Array
-    _info: Array  # (..., 5): position error, rotation error, iterations, start, ending
+    position_error: Array
+    rotation_error: Array
+    iterations: Counts
+    start: Counts
+    _ending: Counts
     _starts: int
     _limits: Array
+
+    @classmethod
+    def of(
+        cls, robot: KinematicModel, goal: Array, q: Array, info: Array, starts: int, limits: Array
+    ) -> NumericSolution:
+        """An answer from the numbers (..., 5) of the core: both errors, iterations, start, ending."""
+        errors, counts = info[..., :2], info[..., 2:].astype(np.int64)
+        position_error, rotation_error = (np.asarray(errors[..., k]) for k in range(2))
+        iterations, start, ending = (np.asarray(counts[..., k]) for k in range(3))
+        return cls(robot, goal, q, position_error, rotation_error, iterations, start, ending, starts, limits)
 
     def __bool__(self) -> bool:
         return bool(self.success.all())
@@ -45,30 +59,7 @@ class NumericSolution:
     @property
     def success(self) -> Flags:
         """Whether each goal is reached, (...)."""
-        return np.asarray(self._info[..., 4] == REACHED)
-
-    @property
-    def position_error(self) -> Array:
-        """Length of the counted part of the position error, (...) [m]."""
-        return np.asarray(self._info[..., 0])
-
-    @property
-    def rotation_error(self) -> Array:
-        """Length of the counted part of the rotation error, (...) [rad]."""
-        return np.asarray(self._info[..., 1])
-
-    @property
-    def iterations(self) -> Counts:
-        """Iterations of the descent that ended at q, (...)."""
-        return self._whole(2)
-
-    @property
-    def start(self) -> Counts:
-        """Which of the starts led to q, (...): 0 is the first one."""
-        return self._whole(3)
-
-    def _whole(self, column: int) -> Counts:
-        return np.asarray(self._info[..., column]).astype(np.int64)
+        return np.asarray(self._ending == REACHED)
 
     @property
     def residual(self) -> Array:
@@ -78,7 +69,7 @@ class NumericSolution:
     @property
     def status(self) -> Any:
         """ "reached", "stalled" (a local minimum of the error) or "out of iterations"; of a batch (...)."""
-        words = np.array(ENDINGS)[self._whole(4)]
+        words = np.array(ENDINGS)[self._ending]
         return str(words) if words.ndim == 0 else words
 
     @property
@@ -92,7 +83,7 @@ class NumericSolution:
         if self:
             return f"reached from {which} in {int(self.iterations)} iterations; {left} are left"
         tried = "one start" if self._starts == 1 else f"{self._starts} starts"
-        how = "a local minimum" if self._whole(4) == STALLED else "where the iterations ran out"
+        how = "a local minimum" if self._ending == STALLED else "where the iterations ran out"
         text = f"not reached from {tried}: the best result misses it by {left}, at {how}"
         at_limit = self._at_limits()
         return (

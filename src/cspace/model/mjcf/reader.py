@@ -18,7 +18,6 @@ from cspace.model.mjcf.document import Includes
 from cspace.model.mjcf.geoms import Geom, Geoms
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.joints import Coupling, Draft, read_couplings, read_efforts, read_joint
-from cspace.model.mjcf.loops import read_loops
 from cspace.model.mjcf.masses import (
     correct_inertial,
     has_weight,
@@ -27,7 +26,7 @@ from cspace.model.mjcf.masses import (
     weight_of_geoms,
 )
 from cspace.model.mjcf.settings import settings_of
-from cspace.model.mjcf.skeleton import WORLD, Skeleton
+from cspace.model.mjcf.skeleton import WORLD, Skeleton, read_loops
 from cspace.model.mjcf.words import check_words
 from cspace.model.structure import ElementError
 from cspace.model.values import IDENTITY
