@@ -51,7 +51,7 @@ std::pair<int, Table<FollowRow>> follow_path(
                             std::bit_cast<FollowSettings>(settings), touches);
     };
     FollowRecord record;
-    if (controller == 0) record = run(PurePursuit{n[0]});
+    if (controller == 0) record = run(PurePursuit{n[0], n[1]});
     if (controller == 1) record = run(Stanley{n[0], n[1]});
     if (controller == 2)
         record = run(DynamicWindow(grid, frame, {n[0], n[1], n[2], int(n[3]), n[4], n[5], n[6]}));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "cspace/math/plane.hpp"
@@ -151,25 +152,48 @@ inline double speed_to_stop(double distance, double acceleration, double time) {
     return acceleration * (std::sqrt(time * time + 2 * d / acceleration) - time);
 }
 
-// Steers along the arc that meets the run a lookahead away (Coulter 1992): its curvature is 2 y / d² for a
-// point at distance d, y to the left. A point behind is turned to as tightly as the vehicle can.
-struct PurePursuit {
-    static constexpr bool leaves_path = false;
-    double lookahead;  // [m]
+// The speed of a car close to the end of a run: who cuts a bend comes there sooner than along the run.
+inline double speed_to_end(const Vehicle& vehicle, Point here, const Run& run, const Run::Place& at,
+                           double far, double speed, double time) {
+    if (run.length() - at.s > far) return speed;
+    return std::min(speed, speed_to_stop(distance(here, run.end()), vehicle.acceleration, time));
+}
 
+// Steers along the arc that meets the run a lookahead away (Coulter 1992): its curvature is 2 y / d² for a
+// point at distance d, y to the left. A point behind is turned to as tightly as the vehicle can. The end of
+// the run is that point as soon as it is no farther away: the lookahead shrinks with what is left.
+struct PurePursuit {
+    double lookahead;  // [m], at least
+    double seconds;    // of way at the present speed
+
+    // A vehicle that turns on the spot comes back to an end that it has missed.
+    static bool leaves_path(const Vehicle& vehicle) { return !vehicle.steers(); }
     Point guided(const Vehicle&, const Motion& now) const { return place(now.pose); }
+    double far(const Motion& now) const { return std::max(lookahead, seconds * std::fabs(now.speed)); }
+    Point target(const Motion& now, const Run& run, const Run::Place& at) const {
+        const Point here = place(now.pose);
+        const double far = this->far(now);
+        const bool ends = at.s + far >= run.length() && distance(here, run.end()) <= far;
+        return ends || at.s >= run.length() ? run.end() : run.ahead(here, at.s, far);
+    }
 
     Command operator()(const Vehicle& vehicle, const Motion& now, const Run& run, const Run::Place& at,
                        double speed, double time) const {
-        const Point here = place(now.pose), way = run.ahead(here, at.s, lookahead) - here;
+        const Point way = target(now, run, at) - place(now.pose);
         const Point along = heading(now.pose);
         const double x = run.direction() * dot(along, way), y = cross(along, way);
         const double d = squared_norm(way);
         const bool behind = x < 0;
         const double curvature = d > 0 ? 2 * y / d : 0;
         if (vehicle.steers()) {
-            const double steering = std::atan(vehicle.wheelbase * curvature);
-            return {run.direction() * speed, behind ? std::copysign(vehicle.max_turn, y) : steering};
+            const double wanted =
+                behind ? std::copysign(std::numbers::pi / 2, y) : std::atan(vehicle.wheelbase * curvature);
+            const double steering = std::clamp(wanted, -vehicle.max_turn, vehicle.max_turn);
+            // Slow enough that the wheels have turned within a quarter of the way to the point.
+            const double wait = std::fabs(steering - now.turn) / vehicle.turn_change;
+            const double slow = wait > time ? 0.25 * std::sqrt(d) / wait : speed;
+            const double stops = speed_to_end(vehicle, place(now.pose), run, at, 2 * far(now), speed, time);
+            return {run.direction() * std::min(stops, slow), steering};
         }
         // Backwards the same turn rate points the other way.
         if (behind) return {0, run.direction() * std::copysign(vehicle.max_turn, y)};
@@ -183,7 +207,7 @@ struct PurePursuit {
 // Steers the front wheels of a car along the run and towards it (Hoffmann, Tomlin, Montemerlo & Thrun 2007):
 // the angle to the run's heading, and the arc tangent of gain · offset / speed.
 struct Stanley {
-    static constexpr bool leaves_path = false;
+    static bool leaves_path(const Vehicle&) { return false; }
     double gain;     // [1/s]
     double softest;  // [m/s] added to the speed
 
@@ -191,9 +215,11 @@ struct Stanley {
         return place(now.pose) + vehicle.wheelbase * heading(now.pose);
     }
 
-    Command operator()(const Vehicle&, const Motion& now, const Run&, const Run::Place& at, double speed,
-                       double) const {
+    Command operator()(const Vehicle& vehicle, const Motion& now, const Run& run, const Run::Place& at,
+                       double speed, double time) const {
         const Point along = heading(now.pose);
+        const double far = 4 * vehicle.wheelbase;
+        speed = speed_to_end(vehicle, place(now.pose), run, at, far, speed, time);
         const double error = std::atan2(cross(along, at.heading), dot(along, at.heading));
         return {speed, error - std::atan2(gain * at.offset, softest + std::fabs(now.speed))};
     }

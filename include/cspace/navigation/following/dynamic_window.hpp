@@ -93,7 +93,7 @@ struct WindowSettings {
 
 class DynamicWindow {
   public:
-    static constexpr bool leaves_path = true;
+    static bool leaves_path(const Vehicle&) { return true; }
 
     DynamicWindow(const maps::BitGrid* grid, const maps::GridFrame& frame, const WindowSettings& settings)
         : grid_(grid), frame_(frame), set_(settings) {}
@@ -106,7 +106,8 @@ class DynamicWindow {
         const bool near = at.s + set_.lookahead >= run.length();
         const Point target = near ? run.end() : run.ahead(place(now.pose), at.s, set_.lookahead);
         const double slow = std::max(0.0, now.speed - vehicle.acceleration * time);
-        const double fast = std::max(slow, std::min(speed, now.speed + vehicle.acceleration * time));
+        const double most_speed = near ? std::min(speed, speed_towards(vehicle, now.pose, target)) : speed;
+        const double fast = std::max(slow, std::min(most_speed, now.speed + vehicle.acceleration * time));
         const double left = std::max(-vehicle.max_turn, now.turn - vehicle.turn_change * time);
         const double right = std::min(vehicle.max_turn, now.turn + vehicle.turn_change * time);
         Command best = braked(vehicle, now, time);
@@ -136,6 +137,14 @@ class DynamicWindow {
             if (range < set_.range)
                 seen_.push_back(range * Point{std::cos(angle - pose.theta), std::sin(angle - pose.theta)});
         }
+    }
+
+    // The fastest at which an arc leads to a point: faster, the robot would circle around it.
+    static double speed_towards(const Vehicle& vehicle, const CarPose& from, Point target) {
+        const Point way = target - place(from), along = heading(from);
+        const double beside = std::fabs(cross(along, way));
+        if (dot(along, way) < 0) return 0;
+        return beside > 0 ? vehicle.max_turn * squared_norm(way) / (2 * beside) : vehicle.max_speed;
     }
 
     // How hard the robot can brake so that it stays on its arc.

@@ -45,10 +45,13 @@ struct Follower {
         guided = track[run].nearest(controller.guided(vehicle, now), own.s, std::max(to, own.s));
     }
     bool on_last_run() const { return run + 1 == track.size(); }
-    // How far the end of the run is along it, or also across, for who does not keep to the path.
+    // How far the end of the run is along it, or also across, for who does not keep to the path. Places
+    // beyond the end are none to come back from.
     double left(bool across) const {
         const double along = std::max(track[run].length() - own.s, 0.0);
-        return across ? std::hypot(along, own.offset) : along;
+        if (!across) return along;
+        const double straight = distance(place(now.pose), track[run].end());
+        return along > 0 ? std::max(std::hypot(along, own.offset), straight) : straight;
     }
     double progress() const { return before + own.s; }
 };
@@ -60,6 +63,7 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
                           Controller& controller, const FollowSettings& settings, const Contact& contact) {
     constexpr double rest = 1e-3;     // [m/s], as good as standing
     constexpr double advance = 1e-4;  // [m] less than this is creeping on the spot
+    constexpr double settled = 0.5;   // [s] without getting ahead, after which being there is enough
     const double dt = settings.time_step;
     FollowRecord record;
     Follower at{track, start};
@@ -76,7 +80,8 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
         const double time = double(step) * dt;
         record.steps.push_back({at.now, at.guided.offset, at.progress()});
         if (touched) return finish(Outcome::collision);
-        double left = at.left(Controller::leaves_path);
+        const bool across = controller.leaves_path(vehicle);
+        double left = at.left(across);
         if (left <= settings.tolerance && std::fabs(at.now.speed) <= rest) {
             if (at.on_last_run()) {
                 const double missing = distance(place(at.now.pose), track[at.run].end());
@@ -84,12 +89,14 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
             }
             at.before += track[at.run++].length();
             at.look(vehicle, controller, 0, settings.window);
-            left = at.left(Controller::leaves_path);
+            left = at.left(across);
         }
         if (at.progress() > farthest + advance) farthest = at.progress(), farthest_time = time;
         if (time - farthest_time >= settings.patience) return finish(Outcome::stuck);
         if (time >= settings.time_limit) return finish(Outcome::timeout);
-        const double fast = std::min(settings.speed, speed_to_stop(left, vehicle.acceleration, dt));
+        const bool rests = left <= settings.tolerance && time - farthest_time >= settled;
+        const double fast =
+            rests ? 0 : std::min(settings.speed, speed_to_stop(left, vehicle.acceleration, dt));
         const Command command = controller(vehicle, at.now, track[at.run], at.guided, fast, dt);
         const Motion next = step_vehicle(vehicle, at.now, command, dt);
         touched = contact(at.now.pose, next.speed, turn_rate(vehicle, next.speed, next.turn), dt);

@@ -59,8 +59,9 @@ def follow(
 
     Controllers and their options:
       "pure_pursuit" steers along the arc that meets the path `lookahead` [m] away: unless given, half a
-        second of way and 0.3 m at least, of a car a second and 1.5 wheelbases. A shorter one keeps nearer to
-        bends, a longer one comes calmly back from beside the path (Coulter 1992).
+        second of way at the present speed and 0.3 m at least, of a car a second and 1.5 wheelbases. Closer to
+        the end it meets the end. A shorter one keeps nearer to bends, a longer one comes calmly back from
+        beside the path (Coulter 1992).
       "stanley" steers the front wheels of a Car, forwards alone, by the error of heading and atan(gain ·
         error / (softening + v)); gain [1/s], softening [m/s]. In bends the rear axle cuts the corner
         (Hoffmann, Tomlin, Montemerlo and Thrun 2007).
@@ -69,12 +70,15 @@ def follow(
         reach and that can be braked in time, the best by `weights` of heading, free way and speed (Fox,
         Burgard and Thrun 1997).
 
+    Of a path of points, a Car leaves out those that are closer to the ends than its wheelbase: a planner on a
+    grid begins and ends with a short way to the centre of a cell, in another direction.
+
     Returns a Run, truthy if it arrived. Raises InputError for a path of fewer than two points or with none
     to follow, or a number outside its range; UnknownNameError for an unknown controller; InputTypeError for
     an option that it does not have, or a vehicle that it cannot drive.
     """
     body = Unicycle() if vehicle is None else vehicle
-    rows, runs = read_track(path)
+    rows, runs = read_track(path, body.wheelbase if isinstance(body, Car) else 0.0)
     check_controller(controller, body, runs)
     fast = body.max_speed if speed is None else min(positive_number(speed, "speed"), body.max_speed)
     if world is not None:
@@ -96,7 +100,7 @@ def follow(
     )
     times: Array = step * np.arange(len(table), dtype=np.float64)
     parts = (table[:, :3], table[:, 3:5], table[:, 5], table[:, 6])
-    return Run(body, controller, times, *parts, OUTCOMES[outcome], points[-1])
+    return Run(body, controller, times, *parts, OUTCOMES[outcome], points[-1], tightest_bend(points))
 
 
 def tune_controller(
@@ -109,19 +113,22 @@ def tune_controller(
             raise InputTypeError(str(suggest("option", name, known, owner=f"controller {controller!r}")))
     given = {**known, **options}
     wheelbase = vehicle.wheelbase if isinstance(vehicle, Car) else 0.0
+    seconds, far = 0.0, 2 * wheelbase
     if "lookahead" in given and given["lookahead"] is None:
         seconds = 1.5 if controller == "dynamic_window" else 1.0 if wheelbase else 0.5
-        given["lookahead"] = max(seconds * speed, 1.5 * wheelbase, 0.3)
+        given["lookahead"] = max(1.5 * wheelbase, 0.3)
+        far = max(seconds * speed, given["lookahead"])
+    elif "lookahead" in given:
+        far = positive_number(given["lookahead"], "lookahead")
     weights = as_floats(given.pop("weights", (1.0, 1.0, 1.0)), "weights")
     if weights.shape != (3,) or not (weights >= 0).all() or not weights.any():
         raise InputError(f"weights is {options['weights']!r}; give three numbers of zero or more")
     numbers = {name: positive_number(value, name) for name, value in given.items()}
     if controller == "dynamic_window":
         keeps = vehicle._footprint[3] + numbers["margin"]
-        order = [keeps, numbers["lookahead"], numbers["sensor_range"], numbers["rays"], *weights.tolist()]
-        return np.array(order), numbers["lookahead"]
-    order = list(numbers.values())
-    return np.array(order + [0.0] * (7 - len(order))), numbers.get("lookahead", 2 * wheelbase)
+        return np.array([keeps, far, numbers["sensor_range"], numbers["rays"], *weights.tolist()]), far
+    order = [*numbers.values(), seconds]
+    return np.array(order + [0.0] * (7 - len(order))), far
 
 
 def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> None:
@@ -145,8 +152,11 @@ def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> No
         raise InputError("part of the path is driven backwards, and max_reverse of the vehicle is 0")
 
 
-def read_track(path: Any) -> tuple[Array, Runs]:
-    """The points (m, 2) or poses (m, 3) of a path without repeated ones, and its runs."""
+def read_track(path: Any, stub: float = 0.0) -> tuple[Array, Runs]:
+    """The points (m, 2) or poses (m, 3) of a path without repeated ones, and its runs.
+
+    stub: how close to an end points are left out [m].
+    """
     if hasattr(path, "path"):
         if not path:
             raise InputError(f"the path to follow was not found: {path.reason}")
@@ -161,13 +171,29 @@ def read_track(path: Any) -> tuple[Array, Runs]:
     if len(rows) < 2:
         raise InputError("path has no length; give two different points or more")
     if rows.shape[1] == 2:
-        return rows, [(0, 1)]
+        s = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(rows, axis=0).T))])
+        keeps = (s >= stub) & (s <= s[-1] - stub)
+        keeps[[0, -1]] = True
+        return rows[keeps] if (rows[0] != rows[-1]).any() else rows, [(0, 1)]
     steps = np.diff(rows[:, :2], axis=0)
     middle = rows[:-1, 2] + 0.5 * wrap_angle(np.diff(rows[:, 2]))
     ahead = steps[:, 0] * np.cos(middle) + steps[:, 1] * np.sin(middle)
     signs = np.where(ahead < 0, -1, 1)
     begins = [0, *(np.flatnonzero(np.diff(signs)) + 1).tolist()]
     return rows, [(k, int(signs[k])) for k in begins]
+
+
+def tightest_bend(points: Array) -> float:
+    """The least radius [m] of arcs that round the corners of a path (m, 2): each takes half of the shorter
+    side, or all of it at an end of the path."""
+    steps = np.diff(points, axis=0)
+    lengths, angles = np.hypot(*steps.T), np.arctan2(steps[:, 1], steps[:, 0])
+    share = np.full(len(lengths), 0.5)
+    share[[0, -1]] = 1.0
+    room = np.minimum((share * lengths)[:-1], (share * lengths)[1:])
+    half = np.abs(np.tan(0.5 * wrap_angle(np.diff(angles))))
+    with np.errstate(divide="ignore"):
+        return float((room / half).min(initial=np.inf))
 
 
 def read_start(start: Any, rows: Array, runs: Runs) -> Array:

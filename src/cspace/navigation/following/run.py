@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.navigation.following.vehicles import Car
 from cspace.tables import one_line
 
 OUTCOMES: Final = ("arrived", "stuck", "collision", "timeout", "missed")
@@ -35,6 +36,7 @@ class Run:
     progress: Array
     status: str
     _goal: Array
+    _tightest: float = np.inf  # the least radius of a bend of the path [m]
 
     def __bool__(self) -> bool:
         return self.status == "arrived"
@@ -61,10 +63,23 @@ class Run:
                 f"touched an obstacle {at}, at ({x:.4g}, {y:.4g}), {missing:.4g} m before the end of the path"
             )
         if self.status == "missed":
-            return f"stopped {at} next to the end of the path, {missing:.2g} m from it"
+            return f"stopped {at} next to the end of the path, {missing:.2g} m from it{self._hint}"
         if self.status == "stuck":
-            return f"came no farther along the path {at}, {missing:.4g} m before its end"
+            return f"came no farther along the path {at}, {missing:.4g} m before its end{self._hint}"
         return f"the time limit was reached {at}, {missing:.4g} m before the end of the path"
+
+    @property
+    def _hint(self) -> str:
+        """The cause if the path bends more tightly than a car can turn, or bends under Stanley."""
+        if not isinstance(self.vehicle, Car):
+            return ""
+        if self._tightest >= self.vehicle.turning_radius:
+            cuts = (
+                "; the front axle is guided, and the rear axle cuts bends (pure_pursuit guides the rear axle)"
+            )
+            return cuts if self.controller == "stanley" else ""
+        radius = f"a bend of the path has a radius of {self._tightest:.2g} m"
+        return f"; {radius}, the car needs {self.vehicle.turning_radius:.2g} m (hybrid_a_star keeps to it)"
 
     def __repr__(self) -> str:
         return one_line("Run", f"of a {type(self.vehicle).__name__} by {self.controller}: {self.reason}")
