@@ -95,12 +95,20 @@ def test_two_arms_alone_pay_for_nearly_parallel_axes_in_their_tables():
 
 ENDS = {
     "fanuc_crx10ia": ("base_link", "flange"),
+    "fanuc_crx10ial": ("base_link", "fanuc_flange"),
     "fanuc_crx30ia": ("base_link", "flange"),
     "fanuc_crx3ia": ("base_link", "flange"),
     "iiwa14": ("iiwa_link_0", "iiwa_link_ee"),
+    "m1013": ("base_0", "link6"),
     "viperx300s": ("vx300s/base_link", "vx300s/gripper_link"),
 }
 """Arms whose maker names the base and the tip of the shared data otherwise."""
+
+JOINT_NAMES = {
+    "fanuc_crx10ial": ("J1", "J2", "J3", "J4", "J5", "J6"),
+    "m1013": ("joint1", "joint2", "joint3", "joint4", "joint5", "joint6"),
+}
+"""Arms whose maker names the joints of the shared data otherwise."""
 
 OLDER_UR = ("ur3", "ur5", "ur10")
 """Arms of which the shared data has a file that prints π/2 with twelve digits. Here it is π/2."""
@@ -126,7 +134,8 @@ def test_the_arms_of_the_shared_data_are_here_to_rounding():
         ends = ENDS.get(name, (arm["base_link"], arm["ee_link"]))
         assert older or ends == ("None", "None") or set(ends) <= set(robot.link_by_name)
         c = chain(robot, *(end if end in robot.link_by_name else None for end in ends))
-        assert c.joint_names == tuple(joint["name"] for joint in arm["joints"])
+        names_there = tuple(joint["name"] for joint in arm["joints"])
+        assert c.joint_names == JOINT_NAMES.get(name, names_there)
         kinds = {"prismatic": "P", "revolute": "R"}
         assert c.joint_types == "".join(kinds[joint["type"]] for joint in arm["joints"])
         axes = np.array([joint["axis"] for joint in arm["joints"]])
@@ -366,7 +375,7 @@ FLANGES = {
     "Universal Robots": (r"ur\d+e?", "tool0", 1),
     "ABB": (r"irb\d+(_5_90)?", "tool0", 1),
     "KUKA": (r"kr\d+_.*", "tool0", None),
-    "FANUC": (r"crx\d+ia|lrmate200id|m710ic", "tool0|fanuc_flange", -1),
+    "FANUC": (r"crx\d+ial?|lrmate200id|m710ic", "tool0|fanuc_flange", -1),
     "Kinova": (r"gen3.*|j2s.*", r"(\w+_)?end_effector(_link)?", None),
     "UFactory": (r"xarm\d|lite6", "link_eef", 1),
     "Franka Robotics": (r"panda.*|fr3", r"\w+_link8", 1),
