@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import Renamed
 from cspace.navigation.text import count_things
-from cspace.search.planner import Trace
+
+if TYPE_CHECKING:
+    from cspace.search.planner import Trace
 
 STATUSES: Final = ("found", "unreachable", "undetermined", "local_minimum")
 """The verdicts, in the order of the compiled core."""
