@@ -18,11 +18,12 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t rows_worth_a_thread = 256;
 
 // Solutions into one goal's rows, NaN behind them.
-void write_rows(const Solutions& found, int room, int dof, double* q, std::int64_t* count,
+void write_rows(const SolutionRows& found, int room, int dof, double* q, std::int64_t* count,
                 unsigned char* status) {
     std::fill(q, q + room * dof, none);
     *count = std::min(found.count, room);
-    for (int k = 0; k < *count; ++k) std::copy(found.q[k], found.q[k] + dof, q + k * dof);
+    for (int k = 0; k < *count; ++k)
+        std::copy(found.q + found.stride * k, found.q + found.stride * k + dof, q + k * dof);
     *status = static_cast<unsigned char>(int(found.status) + (found.complete ? 0 : incomplete));
 }
 
@@ -36,16 +37,15 @@ std::size_t solve_slice(const BuiltArm& built, const GoalRows& rows, std::size_t
     if (has_kernel)
         kernels::ik_many(arm, rows.goals + 16 * from, to - from, built.room, rows.q + row * from,
                          rows.count + from, quick + from);
-    Solutions found;
+    SolutionStore store;
+    SolutionRows found;
     for (std::size_t i = from; i < to; ++i) {
         if (has_kernel && quick[i] == FastPath::settled) {
             rows.status[i] = static_cast<unsigned char>(rows.count[i] ? Status::exact : Status::unreachable);
             continue;
         }
         poll_interrupts();
-        const ReadGoal<double> goal = read_goal(rows.goals + 16 * i);
-        if (!goal.is_pose) return i;
-        kernels::ik_pose(arm, goal.T, nullptr, found);
+        if (!list_solutions(built, rows.goals + 16 * i, nullptr, store, found)) return i;
         write_rows(found, built.room, built.dof, rows.q + row * i, rows.count + i, rows.status + i);
     }
     return to;
@@ -56,8 +56,8 @@ std::size_t solve_point_slice(const BuiltArm& built, const GoalRows& rows, std::
     for (std::size_t i = from; i < to; ++i) {
         const double* p = rows.goals + 3 * i;
         if (!(std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]) <= tolerance::farthest)) return i;
-        write_rows(solve_point(built, {p[0], p[1], p[2]}), built.room, built.dof, rows.q + row * i,
-                   rows.count + i, rows.status + i);
+        const Solutions found = solve_point(built, {p[0], p[1], p[2]});
+        write_rows(rows_of(found), built.room, built.dof, rows.q + row * i, rows.count + i, rows.status + i);
     }
     return to;
 }

@@ -74,6 +74,7 @@ inline Chain with_axis(const Chain& c, int at, const Axis& axis) {
 inline bool complete_plan(Plan& plan, const Chain& c, const int* source) {
     if (c.n == 6) {
         const auto is_virtual = [&](int i) { return source[i] < 0; };
+        plan.completed = c;
         return completed_conditioning(c, characteristic_length(c), is_virtual) > regular_enough &&
                plan_six(plan, c, source);
     }

@@ -80,7 +80,8 @@ void by_slides(Search<n>& search, const Posed& G) {
     search.add_candidate(q);
 }
 
-// The last joint is revolute: the others move points of its axis to their goals.
+// The last joint is revolute: the others move a point of its axis to its goal; a second one where they can
+// move while the first rests.
 template <int n>
 void by_last_axis(const Chain& chain, const Posed& G, double size, bool backwards, Search<n>& search) {
     Chain others = chain;
@@ -89,7 +90,9 @@ void by_last_axis(const Chain& chain, const Posed& G, double size, bool backward
     for (double along : {0.0, size}) {
         others.tip = {identity_pose().R, foot_of_tip(chain, n - 1) + along * h};
         const PositionSolutions placed = solve_position(others, G * others.tip.t, false);
+        bool isolated = placed.count > 0;
         for (int k = 0; k < placed.count; ++k) {
+            isolated = isolated && !placed.self_motion[k] && !placed.close[k];
             double q[n];
             Posed rest = G;
             for (int i = 0; i < n - 1; ++i) {
@@ -101,6 +104,7 @@ void by_last_axis(const Chain& chain, const Posed& G, double size, bool backward
             for (int i = 0; i < n; ++i) forwards[i] = q[backwards ? n - 1 - i : i];
             search.add_candidate(forwards);
         }
+        if (isolated) return;
     }
 }
 

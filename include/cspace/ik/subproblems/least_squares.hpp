@@ -34,17 +34,17 @@ double linearise(const System& system, const Unknown* t, Linearised<System>& at)
 // The upper triangle of JᵀJ, and −Jᵀ value; returns the length of the latter.
 template <class System>
 double normal_equations(const Linearised<System>& at, double (*a)[System::angles], double* down) {
-    double length = 0;
+    double square = 0;
     for (int i = 0; i < System::angles; ++i) {
         down[i] = 0;
         for (int k = 0; k < System::equations; ++k) down[i] -= at.slope[k][i] * at.value[k];
-        length = std::hypot(length, down[i]);
+        square += down[i] * down[i];
         for (int j = i; j < System::angles; ++j) {
             a[i][j] = 0;
             for (int k = 0; k < System::equations; ++k) a[i][j] += at.slope[k][i] * at.slope[k][j];
         }
     }
-    return length;
+    return std::sqrt(square);
 }
 
 // A system as a problem of descend_damped: by Gauss–Newton.
