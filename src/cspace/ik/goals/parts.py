@@ -12,7 +12,6 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.given import is_open
 from cspace.ik.goals.partial import ANY, AXES, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
-from cspace.spatial.poses import assemble
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
@@ -165,6 +164,13 @@ def open_point(value: Any) -> tuple[Array, tuple[tuple[str, Array], ...]]:
         raise InputError("position has None for all three coordinates; give at least one of them")
     p = one_array([0.0 if v is None else v for v in value], "position", (3,), largest=FARTHEST)
     return p, tuple(("P", np.eye(3)[i]) for i in free)
+
+
+def assemble(R: Array, p: Array) -> Array:
+    """As of the room of poses, but unchecked: the parts of a goal are checked already."""
+    T = np.zeros((*np.broadcast_shapes(p.shape[:-1], R.shape[:-2]), 4, 4))
+    T[..., :3, :3], T[..., :3, 3], T[..., 3, 3] = R, p, 1.0
+    return T
 
 
 def turn_to(a: Array, d: Array) -> Array:
