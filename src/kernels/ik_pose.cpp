@@ -6,7 +6,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 template bool make_plan(Plan&, const Chain&);
 template bool find_self_motion(const Chain&, const Posed&, double, const double*, const PoseSvd&, double*);
-template void accept_solution(Solutions&, const Chain&, const Posed&, double, double*, int, int);
+template int accept_solution(Solutions&, const Chain&, const Posed&, double, double*, int, int);
 template Arm make_arm(const Chain&, bool);
 template Solutions solve_pose(const Arm&, const Posed&, const double*);
 

@@ -16,7 +16,7 @@ extern template bool renumber_general_arm(const GeneralArm&, const Chain&, Gener
 extern template bool make_plan(Plan&, const Chain&);
 extern template bool find_self_motion(const Chain&, const Posed&, double, const double*, const PoseSvd&,
                                       double*);
-extern template void accept_solution(Solutions&, const Chain&, const Posed&, double, double*, int, int);
+extern template int accept_solution(Solutions&, const Chain&, const Posed&, double, double*, int, int);
 extern template Arm make_arm(const Chain&, bool);
 extern template Solutions solve_pose(const Arm&, const Posed&, const double*);
 // ik_locked.cpp

@@ -52,7 +52,8 @@ SelfMotionCurve follow_self_motion(const BuiltArm& built, const double* q, const
         curve.tangents.insert(curve.tangents.end(), t, t + chain.n);
         scale_prismatic(chain, locked_joint.length, curve.tangents.data() + curve.tangents.size() - chain.n);
     };
-    curve.end = int(follow_curve(chain, locked_joint, q, along, visit));
+    constexpr double between_samples = 0.05;  // [rad, arm's lengths] close enough to draw
+    curve.end = int(follow_curve(chain, locked_joint, q, along, visit, most_curve_steps, between_samples));
     return curve;
 }
 

@@ -18,6 +18,7 @@ inline int append_solution(const Chain& chain, const double* q, int branch, Solu
     for (int i = 0; i < chain.n; ++i) out.q[n][i] = wrap_joint(chain, i, q[i]);
     out.branch[n] = static_cast<signed char>(branch);
     out.self_motion[n] = false;
+    out.conditioning[n] = 0;
     if (out.status == Status::unreachable) out.status = Status::exact;
     return n;
 }
@@ -31,12 +32,6 @@ inline double joint_distance(const Chain& chain, const double* a, const double* 
         worst = max(worst, std::fabs(chain.prismatic[i] ? d / max(1.0, std::fabs(a[i])) : short_way(d)));
     }
     return worst;
-}
-
-inline double miss_of(const Chain& chain, const Posed& goal, double length, const double* q) {
-    PoseError error;
-    measure_error(chain, goal, length, q, error);
-    return size_of_error(error);
 }
 
 // The error between two configurations: at their midpoint, on the floor of the valley between them. Between
@@ -67,23 +62,39 @@ inline bool are_one(const Chain& chain, const Posed& goal, double length, const 
            max(left, gap < near ? tolerance::halfway : tolerance::last_digits);
 }
 
-// Adds q to the solutions unless it is not a solution or is already listed.
-CSPACE_ONCE void accept_solution(Solutions& out, const Chain& chain, const Posed& goal, double length,
-                                 double* q, int branch, int most_steps) {
+// The row of a regular solution to which Newton's method converges from q, or −1. The second derivatives of
+// the pose are at most 6 [1/rad], so that no other solution lies within a third of the smallest singular
+// value (Kantorovich's theorem: Ortega & Rheinboldt 1970, section 12.6).
+inline int listed_beside(const Solutions& out, const Chain& chain, const double* q) {
+    constexpr double alone = 0.05;  // in the largest joint difference
+    for (int k = 0; k < out.count; ++k) {
+        const double near = alone * out.conditioning[k];
+        if (near > 0 && joint_distance(chain, out.q[k], q, near) < near) return k;
+    }
+    return -1;
+}
+
+// Adds q to the solutions unless it is not a solution or is already listed. Returns its row, or −1.
+CSPACE_ONCE int accept_solution(Solutions& out, const Chain& chain, const Posed& goal, double length,
+                                double* q, int branch, int most_steps) {
+    const int beside = listed_beside(out, chain, q);
+    if (beside >= 0) return beside;
     PoseError error;
     const double size = refine_solution(chain, goal, length, q, error, most_steps);
-    if (!(size <= tolerance::reached) || out.count == max_solutions) return;
+    if (!(size <= tolerance::reached) || out.count == max_solutions) return -1;
     const int weak = weakest_direction(error.jacobian);
     const double conditioning = max(error.jacobian.sigma[weak], tolerance::always_singular);
     const double near = 10 * max(size, tolerance::last_digits) / conditioning;
     for (int k = 0; k < out.count; ++k) {
         const double gap = joint_distance(chain, out.q[k], q);
-        if (gap < tolerance::same_solution) return;
-        if (are_one(chain, goal, length, out.q[k], q, gap, near, size)) return;
+        if (gap < tolerance::same_solution) return k;
+        if (are_one(chain, goal, length, out.q[k], q, gap, near, size)) return k;
     }
     const int n = append_solution(chain, q, branch, out);
+    out.conditioning[n] = error.jacobian.sigma[weak];
     out.self_motion[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
     if (out.self_motion[n]) out.status = Status::singular;
+    return n;
 }
 
 // Value of a virtual joint [rad] up to which it counts as zero near a singularity, on an exact form.
@@ -272,7 +283,7 @@ inline Posed perturbed_goal(const Posed& goal, double length, int k) {
 // the goal does not count.
 inline void descend_to_solution(const Chain& chain, const Posed& goal, double length, double* q, int steps,
                                 Solutions& out) {
-    if (out.count == max_solutions) return;
+    if (out.count == max_solutions || listed_beside(out, chain, q) >= 0) return;
     PoseError error;
     const double left = refine_solution(chain, goal, length, q, error, steps);
     if (left <= (out.count ? tolerance::exact : tolerance::reached))

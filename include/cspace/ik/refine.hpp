@@ -46,6 +46,13 @@ inline void measure_error(const Chain& chain, const Posed& goal, double length, 
                     out.jacobian.us[i]);
 }
 
+// The size of the error of a configuration, the rotation to first order.
+inline double miss_of(const Chain& chain, const Posed& goal, double length, const double* q) {
+    double e[6];
+    tip_error(forward(chain, q), goal, length, e);
+    return std::sqrt(dot_n(e, e, 6));
+}
+
 inline double size_of_error(const PoseError& error) { return std::sqrt(dot_n(error.e, error.e, 6)); }
 
 // The damped least-squares step from a decomposed Jacobian. The step has no component in the null space: the
@@ -56,6 +63,34 @@ inline void damped_pose_step(const PoseError& error, double damping, double* dq)
 // Newton's step without its component along the weakest direction: to the floor of the valley, not along it.
 inline void step_to_floor(const PoseError& error, int weak, double* dq) {
     least_norm_step(error.jacobian, error.e, 0, tolerance::free_joint, weak, dq);
+}
+
+// Newton's step by QR decomposition, from a Jacobian that is not decomposed; by its singular values if it is
+// nearly singular or has more columns than rows.
+inline void newton_pose_step(PoseError& error, double* dq) {
+    constexpr double regular = 1e-6;  // of the diagonal of R
+    const int n = error.jacobian.columns;
+    double A[6][6], diagonal[6], factor[6], b[6], least = 1e300, largest = 0;
+    for (int i = 0; i < 6 && n <= 6; ++i) {
+        for (int j = 0; j < n; ++j) A[i][j] = error.jacobian.us[j][i];
+        b[i] = error.e[i];
+    }
+    for (int k = 0; k < n && n <= 6; ++k) {
+        linear::reduce_column(A, 6, n, k, diagonal[k], factor[k]);
+        linear::reflect(A, 6, k, factor[k], b);
+        least = min(least, std::fabs(diagonal[k]));
+        largest = max(largest, std::fabs(diagonal[k]));
+    }
+    if (n > 6 || !(least > regular * largest)) {
+        decompose(error.jacobian);
+        damped_pose_step(error, 0, dq);
+        return;
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        dq[k] = b[k];
+        for (int j = k + 1; j < n; ++j) dq[k] -= A[k][j] * dq[j];
+        dq[k] /= diagonal[k];
+    }
 }
 
 // Applies a step, shortened to a stride; returns the remaining error.
@@ -81,8 +116,7 @@ inline bool solve_by_newton(const Chain& chain, const Posed& goal, double length
     double least = min(size_of_error(error), 1.0);
     for (int step = 0; step < most_steps && least >= settled; ++step) {
         double dq[max_joints];
-        decompose(error.jacobian);
-        damped_pose_step(error, 0, dq);
+        newton_pose_step(error, dq);
         const double size = take_step(chain, goal, length, at, dq, at, error);
         const bool better = size < least;
         if (better) {
@@ -130,8 +164,8 @@ inline bool follow_valley(const Chain& chain, const Posed& goal, double length, 
 // damping starts at the square of the smallest singular value, where it begins to restrain the weakest
 // direction.
 inline double descend_to_goal(const Chain& chain, const Posed& goal, double length, double* q,
-                              PoseError& error, int most_steps) {
-    constexpr double settled = tolerance::last_digits, noise = 1e-13;
+                              PoseError& error, int most_steps, double settled = tolerance::last_digits) {
+    constexpr double noise = 1e-13;
     constexpr double least_damping = 1e-20;  // rises to one within thirty steps
     constexpr double growth = 4;
     double damping = 0, grow = growth;
@@ -171,7 +205,8 @@ inline double refine_solution(const Chain& chain, const Posed& goal, double leng
                               PoseError& error, int most_steps = 60) {
     const bool arrived = solve_by_newton(chain, goal, length, q, error) ||
                          (chain.n == 6 && follow_valley(chain, goal, length, q, error));
-    return descend_to_goal(chain, goal, length, q, error, arrived ? 2 : most_steps);
+    return arrived ? descend_to_goal(chain, goal, length, q, error, 2, tolerance::rounding)
+                   : descend_to_goal(chain, goal, length, q, error, most_steps);
 }
 
 // Two Newton steps on the true chain, on lanes. They remove the error of a closed form for an idealised or

@@ -32,6 +32,7 @@ struct Solutions {
     signed char branch[max_solutions];         // which of the closed form's branches
     bool self_motion[max_solutions];           // stands for a one-parameter family
     double direction[max_solutions][max_arm];  // of the family at q, unit; undefined where not a family
+    double conditioning[max_solutions] = {};   // smallest singular value of the Jacobian; 0: not known
 };
 
 // The configuration that comes nearest to a goal out of reach, and what is missing there.

@@ -73,16 +73,37 @@ inline void offer_next(const Chain& chain, const TipConstraint& constraint, Repr
     for (int i = 0; i < chain.n; ++i) r.before[i] = q[i];
 }
 
-// Whether a solution lies on the piece of the curve around q, of about a step's length.
-inline bool lies_near(const Chain& chain, double length, const double* q, const double* t,
+// Whether a solution lies on the curve within a step of its point q: the point of the curve beside it is the
+// solution.
+inline bool lies_near(const Chain& chain, const TipConstraint& constraint, const double* q, const double* t,
                       const double* other) {
-    constexpr double reach = 0.06, narrow = 0.05;
+    constexpr double reach = 1.2 * longest_step, narrow = 0.05;
     constexpr double rounding2 = 1e-12;  // square of what a solution itself may be off [rad]
-    double gap[max_joints];
-    for (int i = 0; i < chain.n; ++i)
-        gap[i] = chain.prismatic[i] ? (other[i] - q[i]) / length : short_way(other[i] - q[i]);
-    const double along = dot_n(gap, t, chain.n), size2 = dot_n(gap, gap, chain.n);
-    return size2 < reach * reach && size2 - along * along < narrow * narrow * size2 + rounding2;
+    double at[max_joints], tangent[max_joints], next[max_joints];
+    for (int i = 0; i < chain.n; ++i) at[i] = q[i], tangent[i] = t[i];
+    for (int step = 0;; ++step) {
+        double gap[max_joints];
+        for (int i = 0; i < chain.n; ++i)
+            gap[i] = joint_difference(chain, i, other[i] - at[i]) / unit_of(chain, i, constraint.length);
+        const double along = dot_n(gap, tangent, chain.n), size2 = dot_n(gap, gap, chain.n);
+        const double aside2 = size2 - along * along;
+        if (!(size2 < reach * reach && aside2 < narrow * narrow * size2 + rounding2)) return false;
+        if (step > 0 && aside2 < rounding2) return true;
+        if (step == 4) return false;
+        PoseError there;
+        for (int i = 0; i < chain.n; ++i)
+            next[i] = at[i] + along * unit_of(chain, i, constraint.length) * tangent[i];
+        if (!onto_curve(chain, constraint, next, there) || !tangent_at(chain, there.jacobian, t, tangent))
+            return false;
+        for (int i = 0; i < chain.n; ++i) at[i] = next[i];
+    }
+}
+
+// Marks the listed self-motions from row `first` on whose solution lies near the point q of a curve.
+inline void mark_passed(const Chain& chain, const TipConstraint& constraint, const double* q, const double* t,
+                        const Solutions& list, int first, bool* passed) {
+    for (int m = first; m < list.count; ++m)
+        passed[m] = passed[m] || (list.self_motion[m] && lies_near(chain, constraint, q, t, list.q[m]));
 }
 
 // Whether families cross at q: there it has more directions than one.
@@ -109,14 +130,11 @@ inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, cons
         r.value = unconstrained ? unconstrained[r.joint] : 0;
         double start[max_joints], along[max_joints];
         for (int i = 0; i < chain.n; ++i) start[i] = out.q[k][i], along[i] = out.direction[k][i];
-        follow_self_motion(
-            chain, constraint, start, along, steps_left,
-            [&](int way, const double* q, const double* t, double) {
-                offer_next(chain, constraint, r, way, q, t);
-                for (int m = k + 1; m < out.count; ++m)
-                    dropped[m] = dropped[m] ||
-                                 (out.self_motion[m] && lies_near(chain, constraint.length, q, t, out.q[m]));
-            });
+        follow_self_motion(chain, constraint, start, along, steps_left,
+                           [&](int way, const double* q, const double* t, double) {
+                               offer_next(chain, constraint, r, way, q, t);
+                               mark_passed(chain, constraint, q, t, out, k + 1, dropped);
+                           });
         if (is_crossing(chain, constraint, r.q) && !is_crossing(chain, constraint, start)) continue;
         for (int i = 0; i < chain.n; ++i) {
             out.q[k][i] = wrap_joint(chain, i, r.q[i]);
@@ -130,6 +148,7 @@ inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, cons
             out.q[kept][i] = out.q[k][i];
             out.direction[kept][i] = out.direction[k][i];
         }
+        out.conditioning[kept] = out.conditioning[k];
         out.branch[kept] = static_cast<signed char>(kept);
         out.self_motion[kept++] = out.self_motion[k];
     }

@@ -58,6 +58,12 @@ inline void look_at_perturbed_goals(const GeneralArm& arm, const Chain& chain, c
                                     bool certain, Solutions& out) {
     constexpr double hardly_off = 0.2;
     int there = 0;
+    for (int k = 0; k < out.count; ++k) {
+        PoseError error;
+        measure_error(chain, goal, 1, out.q[k], error);
+        if (out.conditioning[k] == 0 && chain.n == 6)
+            out.conditioning[k] = weak_direction(error.jacobian).sigma;
+    }
     const auto propose = [&](const Posed& beside, const auto& add_candidate) {
         Solutions six;
         arm.solve(arm, beside, six);

@@ -7,6 +7,7 @@
 #include "cspace/ik/near_singular.hpp"
 #include "cspace/ik/self_motion/continuation.hpp"
 #include "cspace/ik/self_motion/self_motion.hpp"
+#include "cspace/ik/self_motion/valleys.hpp"
 
 namespace cspace::ik {
 
@@ -51,9 +52,21 @@ inline bool only_rolls(const Chain& chain, const TipConstraint& constraint, cons
            std::fabs(volume) > firm * constraint.length * constraint.length * constraint.length;
 }
 
-// Follows the self-motion through q and records where other curves cross it.
-inline CurveMargin follow_margin(const Chain& chain, const TipConstraint& constraint, const double* q,
-                                 const double* direction, int& steps_left) {
+// Whether such a roll meets the goal all the way round: it is worst after quarter turns.
+inline bool rolls_round(const Chain& chain, const TipConstraint& constraint, const double* q,
+                        const double* direction) {
+    for (const double way : {0.5 * pi, -0.5 * pi}) {
+        double turned[max_joints];
+        for (int i = 0; i < chain.n; ++i) turned[i] = q[i] + std::sqrt(2.0) * way * direction[i];
+        if (miss_of(chain, constraint.goal, constraint.length, turned) > constraint.most) return false;
+    }
+    return true;
+}
+
+// Follows the self-motion of solution k, records where other curves cross it, and marks in `passed` the
+// later solutions that it passes.
+inline CurveMargin follow_margin(const Chain& chain, const TipConstraint& constraint, const Solutions& list,
+                                 int k, const double* direction, int& steps_left, bool* passed) {
     constexpr double crossed = 1e-3, free = 1e-6, far_enough = 0.3;
     CurveMargin out;
     double before[max_joints] = {}, along[max_joints] = {}, margin[2] = {0, 0};
@@ -76,21 +89,11 @@ inline CurveMargin follow_margin(const Chain& chain, const TipConstraint& constr
         margin[0] = margin[1], margin[1] = here;
         last_way = way;
         ++seen;
+        mark_passed(chain, constraint, at, t, list, k + 1, passed);
     };
-    out.whole = follow_self_motion(chain, constraint, q, direction, steps_left, visit) && fits;
+    out.whole = follow_self_motion(chain, constraint, list.q[k], direction, steps_left, visit) && fits;
     out.wide = loose > far_enough;
     return out;
-}
-
-// Converts directions of joints to the curve's own coordinates, prismatic joints over the size of the arm,
-// and back.
-inline void in_lengths(const Chain& chain, double length, const double* direction, double* out) {
-    double size2 = 0;
-    for (int i = 0; i < chain.n; ++i) {
-        out[i] = direction[i] / unit_of(chain, i, length);
-        size2 += out[i] * out[i];
-    }
-    for (int i = 0; i < chain.n; ++i) out[i] /= std::sqrt(size2);
 }
 
 // Adds the self-motion through q unless it passes a listed one. It is represented by the member whose leading
@@ -99,16 +102,16 @@ inline void in_lengths(const Chain& chain, double length, const double* directio
 inline void add_self_motion(const Chain& chain, const TipConstraint& constraint, const double* q,
                             const double* direction, const double* unconstrained, int room, int& steps_left,
                             Solutions& out) {
-    bool met = false;
+    bool passed[max_solutions] = {};
     Representative r;
     r.joint = leading_joint(direction, chain.n);
     r.value = unconstrained ? unconstrained[r.joint] : 0;
     const auto visit = [&](int way, const double* at, const double* t, double) {
         offer_next(chain, constraint, r, way, at, t);
-        for (int m = 0; m < out.count; ++m)
-            met = met || (out.self_motion[m] && lies_near(chain, constraint.length, at, t, out.q[m]));
+        mark_passed(chain, constraint, at, t, out, 0, passed);
     };
     const bool whole = follow_self_motion(chain, constraint, q, direction, steps_left, visit);
+    const bool met = std::any_of(passed, passed + out.count, [](bool is) { return is; });
     out.complete = out.complete && (met || (whole && out.count < room));
     if (met || out.count >= room) return;
     const bool crosses = is_crossing(chain, constraint, r.q);
@@ -173,15 +176,23 @@ inline void leave_crossing(const Chain& chain, const TipConstraint& constraint, 
 // Adds the self-motions that cross those listed, while rows are free. If a self-motion has more than one
 // dimension throughout, a curve does not cover it, and the list is not certified.
 inline void add_bifurcations(const Chain& chain, const Posed& goal, double length,
-                             const double* unconstrained, int room, Solutions& out) {
+                             const double* unconstrained, int room, bool* listed, Solutions& out) {
     const TipConstraint constraint = {goal, true, length};
     int steps_left = 8000;  // of all curves together: some 50 ms
+    bool passed[max_solutions] = {};
     for (int k = 0; k < out.count; ++k) {
-        if (!out.self_motion[k] || only_rolls(chain, constraint, out.q[k], out.direction[k])) continue;
+        if (!out.self_motion[k] || passed[k]) continue;
+        if (only_rolls(chain, constraint, out.q[k], out.direction[k])) {
+            if (!rolls_round(chain, constraint, out.q[k], out.direction[k]))
+                turn_into_valley(chain, goal, length, k, room, listed, out);
+            continue;
+        }
         double q[max_joints], direction[max_joints];
         for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i];
         in_lengths(chain, length, out.direction[k], direction);
-        const CurveMargin seen = follow_margin(chain, constraint, q, direction, steps_left);
+        const CurveMargin seen = follow_margin(chain, constraint, out, k, direction, steps_left, passed);
+        if (!seen.whole) std::fill(passed + k, passed + max_solutions, false);
+        if (!seen.whole && turn_into_valley(chain, goal, length, k, room, listed, out)) continue;
         out.complete = out.complete && seen.whole && !seen.wide;
         if (seen.wide) continue;
         if (is_crossing(chain, constraint, q))
@@ -195,9 +206,13 @@ inline void add_bifurcations(const Chain& chain, const Posed& goal, double lengt
 // Completes the solutions of a goal: self-motions that cross, and valleys caused by rounding.
 inline void look_along(const Chain& chain, const Posed& goal, double length, const double* unconstrained,
                        int room, Solutions& out) {
-    if (out.status == Status::singular) add_bifurcations(chain, goal, length, unconstrained, room, out);
+    bool listed[max_solutions] = {};  // by the search of a valley
+    if (out.status == Status::singular)
+        add_bifurcations(chain, goal, length, unconstrained, room, listed, out);
+    double direction[max_joints];
     for (int k = 0; k < out.count && out.crowded && out.complete; ++k)
-        out.complete = out.self_motion[k] || !lies_in_valley(chain, goal, length, out.q[k]);
+        if (!out.self_motion[k] && !listed[k] && lies_in_valley(chain, goal, length, out.q[k], direction))
+            out.complete = search_valley(chain, goal, length, out.q[k], direction, room, listed, out).whole;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

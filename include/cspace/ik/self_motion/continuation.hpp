@@ -14,7 +14,8 @@ namespace cspace::ik {
 struct TipConstraint {
     Posed goal;
     bool whole_pose;
-    double length;  // of the arm [m], the unit of prismatic joints
+    double length;                     // of the arm [m], the unit of prismatic joints
+    double most = tolerance::reached;  // error of a point of the curve
 };
 
 enum class CurveEnd {
@@ -25,12 +26,24 @@ enum class CurveEnd {
 
 inline constexpr double endless_slide = 1000;
 inline constexpr int most_curve_steps = 4000;
+inline constexpr double longest_step = 0.2;  // along a curve [rad, arm's lengths]
 
 }  // namespace cspace::ik
 
 namespace cspace::ik::inline CSPACE_ISA {
 
 inline double unit_of(const Chain& chain, int i, double length) { return chain.prismatic[i] ? length : 1; }
+
+// Converts directions of joints to the curve's own coordinates, prismatic joints over the size of the arm,
+// and back.
+inline void in_lengths(const Chain& chain, double length, const double* direction, double* out) {
+    double size2 = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        out[i] = direction[i] / unit_of(chain, i, length);
+        size2 += out[i] * out[i];
+    }
+    for (int i = 0; i < chain.n; ++i) out[i] /= std::sqrt(size2);
+}
 
 // The size of the error e at q alone, the rotation to first order.
 inline double constrained_error(const Chain& chain, const TipConstraint& constraint, const double* q,
@@ -106,17 +119,19 @@ struct Room {
 
 // Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q.
 // Newton's step is followed by others with the same Jacobian while each divides the error by ten. near_by: on
-// entry `at` belongs to a configuration nearby.
+// entry `at` belongs to a configuration nearby, whose Jacobian serves the first steps.
 inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q, PoseError& at,
                        bool near_by = false) {
     constexpr int most_steps = 12;
     constexpr double settled = tolerance::last_digits, fast = 0.1;
-    double size = measure_constrained(chain, constraint, q, at, near_by);
-    for (int step = 0; step < most_steps && size > settled; ++step) {
+    bool measured = !near_by;
+    double size = near_by ? constrained_error(chain, constraint, q, at.e)
+                          : measure_constrained(chain, constraint, q, at);
+    for (int step = 0; step < most_steps && (size > settled || !measured); ++step) {
         double e[6], next[max_joints], dq[max_joints], best = size;
         for (int k = 0; k < 6; ++k) e[k] = at.e[k];
         for (int i = 0; i < chain.n; ++i) next[i] = q[i];
-        for (bool again = true; again;) {
+        for (bool again = size > settled; again;) {
             least_norm_step(at.jacobian, e, 0, still, -1, dq);
             for (int i = 0; i < chain.n; ++i) next[i] += unit_of(chain, i, constraint.length) * dq[i];
             const double left = constrained_error(chain, constraint, next, e);
@@ -124,11 +139,12 @@ inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, doub
             for (int i = 0; i < chain.n && left < best; ++i) q[i] = next[i];
             best = min(best, left);
         }
-        if (!(best < size)) break;
+        if (measured && !(best < size)) break;
         size = measure_constrained(chain, constraint, q, at, true);
+        measured = true;
     }
     // An arm whose axes are parallel to ten digits only has its families to ten digits only.
-    return size <= tolerance::reached;
+    return size <= constraint.most;
 }
 
 // One step of length h from q along its tangent; `at` belongs to q, then to the end. False if the curve bends
@@ -213,8 +229,9 @@ inline bool start_direction(const Chain& chain, const TipConstraint& constraint,
 // last, with its angles unwrapped.
 template <class Visit>
 CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const double* start,
-                      const double* direction, Visit&& visit, int most_steps = most_curve_steps) {
-    constexpr double longest = 0.05, shortest = 1e-7;
+                      const double* direction, Visit&& visit, int most_steps = most_curve_steps,
+                      double longest = longest_step) {
+    constexpr double shortest = 1e-7;
     const int n = chain.n;
     double q[max_joints] = {}, t[max_joints] = {}, first[max_joints] = {};
     PoseError at;
@@ -261,7 +278,8 @@ CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const
 // curve was lost, or the steps were used up, before its end.
 template <class Visit>
 bool follow_self_motion(const Chain& chain, const TipConstraint& constraint, const double* q,
-                        const double* direction, int& steps_left, Visit&& visit) {
+                        const double* direction, int& steps_left, Visit&& visit,
+                        double longest = longest_step) {
     constexpr int most_steps = 1000;
     bool whole = true;
     for (int way = 0; way < 2; ++way) {
@@ -272,7 +290,7 @@ bool follow_self_motion(const Chain& chain, const TipConstraint& constraint, con
             visit(way, at, tangent, margin);
         };
         const int most = std::clamp(steps_left, 0, most_steps);
-        const CurveEnd end = follow_curve(chain, constraint, q, along, count, most);
+        const CurveEnd end = follow_curve(chain, constraint, q, along, count, most, longest);
         if (end == CurveEnd::closed) return true;
         whole = whole && end == CurveEnd::far;
     }

@@ -67,22 +67,30 @@ inline bool runs_round(const Chain& chain, const Posed& goal, double length, con
            farthest > least;
 }
 
-// Whether q lies in a valley along which the goal counts as reached throughout, without a self-motion.
-// Rounded axes cause such valleys, and any configuration in them may be the intended one.
-inline bool lies_in_valley(const Chain& chain, const Posed& goal, double length, const double* q) {
-    constexpr double hardly = 1e-7, stride = 0.02, next_to_nothing = 1e-10;
-    PoseError at;
-    measure_error(chain, goal, length, q, at);
-    if (chain.n == 6 && weak_direction(at.jacobian).sigma > hardly) return false;
-    decompose(at.jacobian);
-    const int weak = weakest_direction(at.jacobian);
-    if (at.jacobian.sigma[weak] > hardly) return false;
+// Whether a stride both ways along the weakest direction of J, the decomposed Jacobian at q, misses the goal
+// by more than `most`: then q lies on no self-motion. The steps back across that direction keep J (chord
+// steps) and converge only where no other direction is weak; false says nothing.
+inline bool leaves_goal(const Chain& chain, const Posed& goal, double length, const double* q,
+                        const PoseSvd& J, double most) {
+    constexpr double stride = 0.05, firm = 0.05, all_along = 1.0001;
+    constexpr int most_steps = 12;
+    const int weak = weakest_direction(J);
+    for (int j = 0; j < J.columns; ++j)
+        if (j != weak && J.sigma[j] < firm) return false;
     for (const double way : {stride, -stride}) {
-        const double* const v = at.jacobian.v[weak];
-        const double kept = kept_of_stride(chain, goal, length, q, v, way, true, next_to_nothing);
-        if (0.8 < kept && kept < 1.25) return true;
+        double moved[max_joints], e[6], dq[max_joints];
+        bool left = false;
+        for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + way * J.v[weak][i];
+        for (int step = 0; step < most_steps && !left; ++step) {
+            tip_error(forward(chain, moved), goal, length, e);
+            const double along = dot_n(J.us[weak], e, 6) / J.sigma[weak];
+            left = std::fabs(along) > most && dot_n(e, e, 6) < all_along * along * along;
+            least_norm_step(J, e, 0, 0, weak, dq);
+            for (int i = 0; i < chain.n; ++i) moved[i] += dq[i];
+        }
+        if (!left) return false;
     }
-    return false;
+    return true;
 }
 
 // The direction in the null space to which a stride along `trial` leads; false if it leads back.
@@ -137,14 +145,19 @@ inline SparseDirections sparse_directions(const double* const* basis, int k, int
 // spread over it.
 CSPACE_ONCE bool find_self_motion(const Chain& chain, const Posed& goal, double length, const double* q,
                                   const PoseSvd& J, double* direction) {
-    constexpr double lost = 1e-7;
+    constexpr double lost = 1e-7, firm = 0.1;
+    constexpr double off_curve = 2e-11;  // more than a rounded self-motion may miss
     const double* basis[max_joints];
     int k = 0;
     for (int j = 0; j < J.columns; ++j)
         if (J.sigma[j] < lost) basis[k++] = J.v[j];
     if (k == 0) return false;
+    const double left = miss_of(chain, goal, length, q);
+    if (k == 1 && leaves_goal(chain, goal, length, q, J, max(off_curve, 3 * left))) return false;
+    bool bends = false;  // so much that a self-motion may be smaller than the strides
+    for (int j = 0; j < J.columns; ++j) bends = bends || (k == 1 && J.sigma[j] >= lost && J.sigma[j] < firm);
     const auto accept = [&](const double* d) {
-        if (!moves_freely(chain, goal, length, q, d) && !(k == 1 && runs_round(chain, goal, length, q, d)))
+        if (!moves_freely(chain, goal, length, q, d) && !(bends && runs_round(chain, goal, length, q, d)))
             return false;
         for (int i = 0; i < chain.n; ++i) direction[i] = d[i];
         return true;
