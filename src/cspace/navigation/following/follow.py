@@ -116,8 +116,8 @@ def tune_controller(
     seconds, far = 0.0, 2 * wheelbase
     if "lookahead" in given and given["lookahead"] is None:
         seconds = 1.5 if controller == "dynamic_window" else 1.0 if wheelbase else 0.5
-        given["lookahead"] = max(1.5 * wheelbase, 0.3)
-        far = max(seconds * speed, given["lookahead"])
+        given["lookahead"] = least = max(1.5 * wheelbase, 0.3)
+        far = max(seconds * speed, least)
     elif "lookahead" in given:
         far = positive_number(given["lookahead"], "lookahead")
     weights = as_floats(given.pop("weights", (1.0, 1.0, 1.0)), "weights")
