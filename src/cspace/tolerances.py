@@ -163,6 +163,15 @@ XACRO_SECONDS: Final = 60.0
 XACRO_ELEMENTS: Final = 200_000
 """Most steps and elements of the expansion of a xacro file: the largest robots take ten thousand."""
 
+XACRO_BITS: Final = 4096
+"""Most bits of a whole number in an expression of xacro: no double has more than 1024 before the point."""
+
+XACRO_ITEMS: Final = 1_000_000
+"""Most characters or items of a repeated text or list in an expression of xacro."""
+
+TOML_KEY_PARTS: Final = 100
+"""Most parts of a dotted key of TOML: a robot's have two, and the reader's time grows with their square."""
+
 HALF_TURN: Final = 1e-12
 """1 + trace R (unitless, the square of the angle that is missing) below which neighbouring poses of a path
 are half a turn apart: the axis of such a turn carries the rounding of the poses, a million times larger."""

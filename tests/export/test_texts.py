@@ -81,7 +81,14 @@ def test_names_become_identifiers(name, expected):
     assert robot.export().name == expected
 
 
-@pytest.mark.parametrize("name", ["", "1a", "a-b", "a b", "int", "a__b", "std", "ä", "a;b"])
+WORDS = (
+    "co_await co_yield concept requires char8_t and_eq not thread_local static_assert true false constinit"
+)
+MACROS = "NULL EOF NAN INFINITY errno assert offsetof stdin INT_MAX DBL_EPSILON UINT64_C M_PI SIGINT PRId64 I"
+BAD = ["", "1a", "a-b", "a b", "int", "a__b", "std", "ä", "a;b"]
+
+
+@pytest.mark.parametrize("name", [*BAD, *WORDS.split(), *MACROS.split()])
 def test_names_that_are_none_are_refused(name):
     with pytest.raises(InputError, match="name is"):
         cs.load_robot("ur5e").export(name=name)

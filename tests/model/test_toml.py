@@ -223,6 +223,9 @@ def test_screws_and_tables_survive_as_trees():
         (DH, '"two"', '"two', "malformed TOML", None),
         ("x = 1\n", "x", "y", "must contain one of", None),
         ("x = 1\n", "1", "[" * 100_000, "malformed TOML", None),
+        ("x = 1\n", "x", ".".join("a" * 20_000), "a key has more than 100 parts", None),
+        ("x = 1\n", "x = 1", f"[{'a . ' * 200}b]", "a key has more than 100 parts", None),
+        ("x = 1\n", "1", "{" + "'a'." * 5000 + "b = 1}", "a key has more than 100 parts", None),
     ],
 )
 def test_a_fault_is_told_with_file_and_place(text, old, new, says, header, tmp_path):

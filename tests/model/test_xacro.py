@@ -249,7 +249,7 @@ def test_a_fault_in_an_included_file_is_told_there(arm):
 def test_a_file_that_computes_for_ever_is_stopped(tmp_path, monkeypatch):
     monkeypatch.setattr(cspace.model.xacro, "XACRO_SECONDS", 2.0)
     path = tmp_path / "slow.xacro"
-    path.write_text(HEAD + '<link name="${10**10**9 % 7}"/></robot>')
+    path.write_text(HEAD + '<link name="${max(k for k in range(10**12))}"/></robot>')
     with pytest.raises(DescriptionError, match="longer than 2 s"):
         load_description(path)
 
@@ -273,3 +273,41 @@ def test_damaged_files_end_in_an_error_of_ours_or_in_a_robot(arm):
         exercise_file(lambda path: from_xacro(path, package_paths=package_paths), arm)
     arm.write_text(ARM)
     assert exercise_file(lambda path: from_xacro(path, package_paths=package_paths), arm)
+
+
+SIZES = {
+    "9**9**9": "bits",
+    "(9**9)**(9**9)": "bits",
+    "-(2**(2**40))": "bits",
+    "1 &lt;&lt; 10**9": "bits",
+    "max([9**9**9])": "bits",
+    "'a' * 10**10": "items",
+    "10**10 * [0]": "items",
+    "(('a'*1000)*1000)*1000": "items",
+}
+
+
+@needs_xacro
+@pytest.mark.parametrize("expression", SIZES)
+def test_a_value_that_is_too_large_is_refused_at_once(expression, tmp_path):
+    path = tmp_path / "robot.xacro"
+    path.write_text(
+        f'{HEAD}<xacro:property name="x" value="${{{expression}}}"/><link name="${{x}}"/></robot>'
+    )
+    with pytest.raises(DescriptionError, match=f"more than .* {SIZES[expression]}"):
+        load_description(path)
+
+
+@needs_xacro
+@pytest.mark.parametrize(
+    ("expression", "value"), [("3**-2 + 2**3", 3**-2 + 8), ("1 &lt;&lt; 3", 8), ("2*3.5", 7), ("2*'1'", 11)]
+)
+def test_operators_keep_their_meaning(expression, value, tmp_path):
+    path = tmp_path / "robot.xacro"
+    origin = f'<origin xyz="${{{expression}}} 0 0"/>'
+    ends = f'<parent link="b"/><child link="t"/>{origin}'
+    path.write_text(
+        f'{HEAD}<link name="b"/><link name="t"/><joint name="j" type="fixed">{ends}</joint></robot>'
+    )
+    (joint,) = load_description(path).joints
+    np.testing.assert_allclose(joint.[0, 3], value, rtol=1e-12)

@@ -27,8 +27,27 @@ TAKEN = frozenset(
         *("noexcept", "nullptr", "operator", "private", "protected", "public", "register", "short", "signed"),
         *("sizeof", "static", "std", "struct", "switch", "template", "this", "throw", "typedef", "typeid"),
         *("typename", "union", "unsigned", "using", "virtual", "void", "volatile", "xor"),
+        *("and_eq", "bitand", "bitor", "char8_t", "char16_t", "char32_t", "co_await", "co_return"),
+        *("co_yield", "compl", "concept", "const_cast", "consteval", "constinit", "dynamic_cast", "false"),
+        *("friend", "mutable", "not_eq", "or_eq", "reinterpret_cast", "requires", "restrict"),
+        *("static_assert", "static_cast", "thread_local", "true", "typeof", "wchar_t", "xor_eq"),
     ]
 )
+# Macros of the standard headers of C and C++, and of compilers.
+MACROS = frozenset(
+    [
+        *("assert", "complex", "errno", "i386", "imaginary", "linux", "math_errhandling", "noreturn"),
+        *("offsetof", "setjmp", "signals", "slots", "stderr", "stdin", "stdout", "unix"),
+        *("BUFSIZ", "DOMAIN", "EDOM", "EILSEQ", "EOF", "ERANGE", "FALSE", "I", "INFINITY", "NAN", "NDEBUG"),
+        *("NULL", "OVERFLOW", "SING", "TRUE", "UNDERFLOW"),
+    ]
+)
+MACRO_FAMILIES = re.compile(
+    "(CHAR|CLOCKS|DBL|DECIMAL|EXIT|FE|FILENAME|FLT|FOPEN|FP|HUGE|INT|INTMAX|INTPTR|L|LC|LDBL|LLONG|LONG|M|MATH|"
+    "MB|PTRDIFF|RAND|SCHAR|SEEK|SHRT|SIG|SIZE|TMP|U|UCHAR|UINT|UINTMAX|UINTPTR|ULLONG|ULONG|USHRT|WCHAR|WINT)"
+    "_[A-Z0-9_]+|U?INT(_LEAST|_FAST)?(8|16|32|64)_(MIN|MAX|C)|SIG[A-Z]+|(PRI|SCN)[diouxX][A-Z0-9]+"
+)
+"""INT_MAX, M_PI, UINT64_C, SIGINT, PRId64 and the like."""
 
 METHODS = {
     "closed": "solved in closed form",
@@ -151,7 +170,7 @@ def check_name(name: str) -> str:
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or is_taken(name):
         raise InputError(
             f"name is {shown(name)}, expected a letter, then letters, digits and single underscores, "
-            "and no keyword of C++ or Python"
+            "and no keyword of C++ or Python or macro of their headers"
         )
     return name
 
@@ -165,4 +184,5 @@ def identifier_from(name: str) -> str:
 
 
 def is_taken(word: str) -> bool:
-    return word in TAKEN or keyword.iskeyword(word) or "__" in word
+    is_macro = word in MACROS or MACRO_FAMILIES.fullmatch(word) is not None
+    return word in TAKEN or is_macro or keyword.iskeyword(word) or "__" in word

@@ -8,6 +8,7 @@ from collections.abc import Collection
 from typing import Any
 
 from cspace.errors import DescriptionError, suggest
+from cspace.tolerances import TOML_KEY_PARTS
 
 
 class Document:
@@ -31,12 +32,20 @@ class Document:
         return DescriptionError(message, path=self.path, line=line)
 
 
+PART = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
+DOTTED = re.compile(rf"(?<![\w-]){PART}(?:[ \t]*\.[ \t]*{PART}){{{TOML_KEY_PARTS}}}")
+"""More parts of a dotted key than any robot has."""
+
+
 def parse_toml(document: Document) -> Table:
     """The top table of a document, or DescriptionError with file and line."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
         import tomli as tomllib
+    if (long := DOTTED.search(document.text)) is not None:
+        line = document.text.count("\n", 0, long.start()) + 1
+        raise document.fault(f"malformed TOML: a key has more than {TOML_KEY_PARTS} parts", line)
     try:
         values = tomllib.loads(document.text)
     except tomllib.TOMLDecodeError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import builtins
 import json
 import os
 import sys
@@ -11,6 +12,7 @@ from typing import Any
 from xml.dom import expatbuilder, minidom
 
 from cspace.errors import CspaceError, DescriptionError, suggest
+from cspace.model.expressions import BOUNDED, compile_bounded, evaluate
 from cspace.model.files import locate_package, read_bytes
 from cspace.model.xml import parse_document
 from cspace.tolerances import XACRO_ELEMENTS
@@ -98,6 +100,8 @@ class Expansion:
         substitution_args._eval_dict["find"] = self.find
         self.parse_original = xacro.parse
         self.xacro = xacro
+        xacro.safe_eval = evaluate
+        substitution_args.eval = evaluate_argument
         xacro.parse = self.parse
         for name in WATCHED:
             if hasattr(xacro, name):
@@ -141,6 +145,11 @@ class Expansion:
 
         wrapper.__name__ = function.__name__
         return wrapper
+
+
+def evaluate_argument(text: str, _: Any, names: Any) -> Any:
+    """The value of $(eval …): names is a mapping that finds the arguments of the file."""
+    return eval(compile_bounded(text), {"__builtins__": vars(builtins) | dict(BOUNDED.values())}, names)
 
 
 class Placed(expatbuilder.ExpatBuilderNS):
