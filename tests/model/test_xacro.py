@@ -310,4 +310,4 @@ def test_operators_keep_their_meaning(expression, value, tmp_path):
         f'{HEAD}<link name="b"/><link name="t"/><joint name="j" type="fixed">{ends}</joint></robot>'
     )
     (joint,) = load_description(path).joints
-    np.testing.assert_allclose(joint.[0, 3], value, rtol=1e-12)
+    np.testing.assert_allclose(joint.origin[0, 3], value, rtol=1e-12)

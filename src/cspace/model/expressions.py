@@ -10,19 +10,19 @@ from typing import Any
 from cspace.tolerances import XACRO_BITS, XACRO_ITEMS
 
 
-def power(base: Any, exponent: Any) -> Any:
+def raise_power(base: Any, exponent: Any) -> Any:
     if isinstance(base, int) and isinstance(exponent, int) and exponent > 0:
         check_bits(abs(base).bit_length() * exponent if abs(base) > 1 else 1)
     return base**exponent
 
 
-def shift_left(value: Any, bits: Any) -> Any:
+def shift_bits(value: Any, bits: Any) -> Any:
     if isinstance(value, int) and isinstance(bits, int):
         check_bits(value.bit_length() + bits)
     return value << bits
 
 
-def multiply(a: Any, b: Any) -> Any:
+def multiply_values(a: Any, b: Any) -> Any:
     if isinstance(a, int) and isinstance(b, int):
         check_bits(a.bit_length() + b.bit_length())
     for items, count in ((a, b), (b, a)):
@@ -37,9 +37,9 @@ def check_bits(bits: int) -> None:
 
 
 BOUNDED: dict[type[ast.operator], tuple[str, Callable[[Any, Any], Any]]] = {
-    ast.Pow: ("bounded_power", power),
-    ast.LShift: ("bounded_shift", shift_left),
-    ast.Mult: ("bounded_product", multiply),
+    ast.Pow: ("bounded_power", raise_power),
+    ast.LShift: ("bounded_shift", shift_bits),
+    ast.Mult: ("bounded_product", multiply_values),
 }
 """The operators whose values may be long, and the functions that stand for them."""
 
@@ -59,7 +59,7 @@ def compile_bounded(text: str) -> CodeType:
     return compile(ast.fix_missing_locations(tree), "<expression>", "eval")
 
 
-def evaluate(text: str, names: dict[str, Any], local: Any = None) -> Any:
+def evaluate_bounded(text: str, names: dict[str, Any], local: Any = None) -> Any:
     """The value of an expression in which only these names are known; dunder names are refused."""
     code = compile_bounded(text)
     if bad := [name for name in code.co_names if name.startswith("__")]:

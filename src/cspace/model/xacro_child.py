@@ -12,7 +12,7 @@ from typing import Any
 from xml.dom import expatbuilder, minidom
 
 from cspace.errors import CspaceError, DescriptionError, suggest
-from cspace.model.expressions import BOUNDED, compile_bounded, evaluate
+from cspace.model.expressions import BOUNDED, compile_bounded, evaluate_bounded
 from cspace.model.files import locate_package, read_bytes
 from cspace.model.xml import parse_document
 from cspace.tolerances import XACRO_ELEMENTS
@@ -100,7 +100,7 @@ class Expansion:
         substitution_args._eval_dict["find"] = self.find
         self.parse_original = xacro.parse
         self.xacro = xacro
-        xacro.safe_eval = evaluate
+        xacro.safe_eval = evaluate_bounded
         substitution_args.eval = evaluate_argument
         xacro.parse = self.parse
         for name in WATCHED:
