@@ -16,6 +16,7 @@ RESULTS = HERE / "results"
 PAGE = HERE.parent / "docs/benchmarks.md"
 sys.path.insert(0, str(HERE))
 
+import age  # noqa: E402
 import arms  # noqa: E402
 import completeness_table  # noqa: E402
 import further_tables  # noqa: E402
@@ -36,6 +37,12 @@ NAVIGATION = ["grid", "any_angle", "polygons", "fields", "sampling", "bugs", "la
 NAVIGATION += ["degenerate"]
 
 
+def measured_names() -> list[str]:
+    """The results that the page shows."""
+    names = [*arms.SETS, "cpp", "recorded", "install", "derived", "completeness", "seven", "following"]
+    return [*names, "building", "soundness", *(f"navigation_{part}" for part in NAVIGATION)]
+
+
 def load() -> dict[str, Any]:
     """Everything measured, by the name of its file; what was not measured is empty."""
 
@@ -43,9 +50,8 @@ def load() -> dict[str, Any]:
         path = RESULTS / f"{name}.json"
         return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
 
-    names = [*arms.SETS, "cpp", "recorded", "install", "derived", "completeness", "seven", "following"]
-    names += ["building", "soundness", *(f"navigation_{part}" for part in NAVIGATION)]
-    results = {name: read(name) for name in names}
+    results = {name: read(name) for name in measured_names()}
+    results["older"] = age.older(measured_names())
     results["measurements"] = results["measurements"] or {"machine": {}, "imports": {}, "rows": []}
     return results
 
@@ -207,6 +213,8 @@ the cases in which cspace is slower or misses a target.
 
 Machine: {machine}.
 
+{age.section(results["older"])}
+
 ## Requirements
 
 {numbers_section(results)}
@@ -332,6 +340,8 @@ def plot(results: dict[str, Any], path: Path) -> None:
 
 
 def main() -> int:
+    if "--check" not in sys.argv[1:]:
+        age.record(measured_names())
     results = load()
     text = page(results)
     if "--check" in sys.argv[1:]:

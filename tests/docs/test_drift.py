@@ -79,6 +79,27 @@ def test_the_benchmark_page_is_what_the_results_say(monkeypatch):
     assert page == report.page(report.load()), "run benchmarks/report.py"
 
 
+def test_results_older_than_their_sources_are_named(monkeypatch, tmp_path):
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import age
+
+    source, result = tmp_path / "code.hpp", tmp_path / "grid.json"
+    for name, value in {"ROOT": tmp_path, "RESULTS": tmp_path, "RECORDS": tmp_path / "sources.json"}.items():
+        monkeypatch.setattr(age, name, value)
+    monkeypatch.setattr(age, "SOURCES", {"": ["code.hpp"]})
+    source.write_text("1")
+    result.write_text("{}")
+    age.record(["grid", "absent"])
+    assert age.older(["grid", "absent"]) == ["grid"]  # nobody knows with which sources it was measured
+    result.write_text('{"new": 1}')
+    age.record(["grid"])
+    assert age.older(["grid"]) == []
+    source.write_text("2")
+    age.record(["grid"])
+    assert age.older(["grid"]) == ["grid"]
+    assert "grid" in age.section(["grid"])
+
+
 def test_the_page_of_claims_is_what_the_results_say(monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
     import claims_page
