@@ -145,9 +145,10 @@ bool is_ruled_out(const BuiltArm& built, const double* goal) {
     return exceeds_reach(built.arm->plan.chain, *built.reach, read_goal(goal).T);
 }
 
-void turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper, const double* seed,
-                  double* q) {
+double turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper,
+                    const double* seed, double* q) {
     constexpr double turn = 6.283185307179586, on_limit = 1e-9;
+    double excess = 0;
     for (int i = 0; i < n; ++i) {
         const double least = std::ceil((lower[i] - on_limit - q[i]) / turn);
         const double most = std::floor((upper[i] + on_limit - q[i]) / turn);
@@ -155,21 +156,16 @@ void turn_to_seed(const bool* prismatic, int n, const double* lower, const doubl
         const double allowed = least <= most ? std::fmin(std::fmax(wanted, least), most) : wanted;
         const double turns = prismatic[i] ? 0 : allowed;
         const double moved = q[i] + turn * turns, inside = std::fmin(std::fmax(moved, lower[i]), upper[i]);
-        q[i] = std::fabs(moved - inside) <= on_limit ? inside : moved;
+        const double over = std::fabs(moved - inside);
+        q[i] = over <= on_limit ? inside : moved;
+        excess = std::fmax(excess, over);
     }
-}
-
-// Whether a configuration keeps the limits; beyond them by what a double solution may be off is undecided.
-enum class Kept { no, undecided, yes };
-static Kept keeps_limits(const double* lower, const double* upper, int n, const double* q) {
-    constexpr double double_solution = 3e-7;  // [rad, m] DOUBLE_SOLUTION of cspace.tolerances
-    double excess = 0;
-    for (int i = 0; i < n; ++i) excess = std::fmax(excess, std::fmax(lower[i] - q[i], q[i] - upper[i]));
-    return excess > double_solution ? Kept::no : excess > 0 ? Kept::undecided : Kept::yes;
+    return excess <= on_limit ? 0 : excess;
 }
 
 bool nearest_listed(const BuiltArm& built, const double* lower, const double* upper, const double* goal,
                     const double* seed, double* q, std::int8_t* branch) {
+    constexpr double double_solution = 3e-7;  // [rad, m] DOUBLE_SOLUTION of cspace.tolerances
     const Chain& chain = built.arm->plan.chain;
     SolutionStore store;
     SolutionRows rows;
@@ -179,12 +175,11 @@ bool nearest_listed(const BuiltArm& built, const double* lower, const double* up
     for (int k = 0; k < rows.count; ++k) {
         double turned[max_joints], sum = 0;
         std::copy_n(rows.q + k * rows.stride, chain.n, turned);
-        turn_to_seed(chain.prismatic, chain.n, lower, upper, seed, turned);
-        const Kept kept = keeps_limits(lower, upper, chain.n, turned);
-        if (kept == Kept::undecided) return false;
-        if (kept == Kept::no) continue;
+        const double excess = turn_to_seed(chain.prismatic, chain.n, lower, upper, seed, turned);
+        if (excess > double_solution) continue;
         for (int i = 0; i < chain.n; ++i) sum += (turned[i] - seed[i]) * (turned[i] - seed[i]);
         if (!(sum < least)) continue;
+        if (excess > 0) return false;  // a double solution may stand on the limit
         least = sum;
         std::copy(turned, turned + chain.n, q);
         *branch = rows.branch[k];

@@ -82,8 +82,9 @@ bool nearest_listed(const BuiltArm& built, const double* lower, const double* up
                     const double* seed, double* q, std::int8_t* branch);
 
 // Moves the revolute joints of q by multiples of 2π as close to the seed as the limits allow, if they allow
-// any; any joint onto a limit that rounding takes it past.
-void turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper, const double* seed,
-                  double* q);
+// any; any joint onto a limit that rounding takes it past. Returns the largest
+// distance from the limits that is left.
+double turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper,
+                    const double* seed, double* q);
 
 }  // namespace cspace::ik
