@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from functools import wraps
 from types import MappingProxyType
@@ -19,6 +20,7 @@ __all__ = [
     "attribute_error",
     "keyword_error",
     "name_new_keywords",
+    "shorten",
     "shown",
     "suggest",
 ]
@@ -29,29 +31,50 @@ Answer = TypeVar("Answer")
 SHOWN: Final = (str, int, float)
 """What reads well in a message, whatever it is."""
 
+SHORT: Final = 80
+"""The most characters of a value that a message shows."""
+LONGEST: Final = 200
+"""The most characters of a name or a path that a message shows."""
+LONG: Final = re.compile(rf"(?<!\w)'[^']{{{LONGEST},}}'|(?<!\w)\"[^\"]{{{LONGEST},}}\"|\S{{{LONGEST},}}")
+"""What no message repeats whole: a quoted name, or a path."""
 
 RENAMED: Final = MappingProxyType(
     {
+        "IK": "ik",
+        "IK_batched": "ik",
+        "Q": "q",
         "asked": "goal_parts",
+        "computeCartesianPath": "track",
+        "configs": "named_poses",
         "families": "self_motions",
         "fixed": "locked",
         "fkine": "fk",
         "fkine_all": "fk_all",
+        "fwdKin": "fk",
+        "getGlobalLinkTransform": "fk",
+        "getJacobian": "jacobian",
+        "getKinematicFamily": "ik_plan",
+        "hasKnownDecomposition": "ik_plan",
         "ikine": "ik",
         "ikine_LM": "ik",
         "ikine_a": "ik",
+        "is_LS": "status",
         "jacob0": "jacobian",
         "jacobe": "jacobian",
         "line": "summary",
         "missing": "out_of_reach",
         "n": "dof",
+        "names": "joint_names",
         "nq": "dof",
         "price": "stats",
         "q0": "near",
         "qlim": "limits",
+        "qr": "named_poses",
+        "qz": "named_poses",
         "robot": "solver",
         "seed": "near= or rng",
         "sees": "sensing",
+        "setFromIK": "ik",
         "why": "cause",
     }
 )
@@ -73,8 +96,9 @@ class CspaceError(Exception):
     """The root of every error that cspace raises on purpose."""
 
     def __str__(self) -> str:
-        """The message as written, without the quotes that KeyError would put around it."""
-        return str(self.args[0]) if self.args else type(self).__name__
+        """The message without the quotes that KeyError puts around it; long names and paths are shortened."""
+        text = str(self.args[0]) if self.args else type(self).__name__
+        return LONG.sub(lambda found: shorten(found[0]), text)
 
 
 class InputError(CspaceError, ValueError):
@@ -93,7 +117,7 @@ class _FileError(CspaceError, ValueError):
     """A file that cannot be read; contains the file and, if known, the line."""
 
     def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
-        where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "
+        where = "" if path is None else shorten(path) + (": " if line is None else f":{line}: ")
         super().__init__(where + message)
         self.path = path
         self.line = line
@@ -124,7 +148,7 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     """The error for an unknown name: the name, the most similar known names, and the list if it is short."""
     import difflib  # costs a millisecond, which `import cspace` does not pay
 
-    names, asked = sorted(known), _short(str(name))
+    names, asked = sorted(known), shorten(str(name), SHORT)
     near = [repr(n) for n in difflib.get_close_matches(asked, names, n=3, cutoff=0.5)]
     if (ours := FOREIGN_WORDS.get(asked.lower())) in names:
         near = [repr(ours)]
@@ -189,7 +213,13 @@ class Renamed:
 
 def shown(value: object) -> str:
     """A value for a message: texts and numbers as they are, and the type of anything else."""
-    return _short(repr(value)) if isinstance(value, SHOWN) else f"an object of type {type(value).__name__}"
+    text = repr(value) if isinstance(value, SHOWN) else f"an object of type {type(value).__name__}"
+    return shorten(text, SHORT)
+
+
+def shorten(text: str, most: int = LONGEST) -> str:
+    """A text shortened in the middle to fit into a message."""
+    return text if len(text) <= most else text[: most - most // 2] + "…" + text[1 - most // 2 :]
 
 
 def _plural(noun: str) -> str:
@@ -198,8 +228,3 @@ def _plural(noun: str) -> str:
     if noun.endswith("y") and noun[-2:-1] not in "aeiou":
         return noun[:-1] + "ies"
     return noun + ("es" if noun.endswith(("s", "x", "ch", "sh")) else "s")
-
-
-def _short(text: str, most: int = 80) -> str:
-    """A text shortened to fit into a message."""
-    return text if len(text) <= most else text[: most - 1] + "…"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -11,9 +12,18 @@ from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
-from cspace.errors import DescriptionError, InputError, InputTypeError, MapError
+from cspace.errors import DescriptionError, InputError, InputTypeError, MapError, shorten
 
-__all__ = ["YamlLine", "path_of", "read_regular", "read_text", "unquote", "whole_file", "write_text"]
+__all__ = [
+    "YamlLine",
+    "check_target",
+    "path_of",
+    "read_regular",
+    "read_text",
+    "unquote",
+    "whole_file",
+    "write_text",
+]
 __all__ += ["yaml_lines"]
 
 DRAFTS: Final = count()
@@ -75,27 +85,50 @@ def read_text(
         raise error(text, path=os.fspath(path), line=line) from None
 
 
+def check_target(path: str | os.PathLike[str]) -> Path:
+    """The absolute path of a file to be written.
+
+    Raises InputError for one that cannot be: a folder, a device, a name that is too long or contains a null
+    character.
+    """
+    name = path_of(path)
+    if "\0" in name:
+        raise InputError(f"{shorten(repr(name))} cannot be written: a path must not contain a null character")
+    target = Path(os.path.abspath(name))
+    try:
+        if stat.S_ISREG(os.stat(target).st_mode):
+            return target
+    except (FileNotFoundError, NotADirectoryError):
+        return target
+    except OSError as error:  # a name that is too long, a folder that may not be entered
+        raise _not_written(target, error) from None
+    raise InputError(
+        f"{shorten(str(target))} cannot be written: it is not a regular file; choose another path"
+    )
+
+
 @contextmanager
 def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
     """A temporary file in the folder of `path`, renamed to `path` if the block succeeds, else removed.
 
     So the file is either complete or untouched. Raises InputError where writing is impossible.
     """
-    name = path_of(path)
-    if "\0" in name:
-        raise InputError(f"{name!r} cannot be written: a path must not contain a null character")
-    target = Path(os.path.abspath(name))
-    if target.exists() and not target.is_file():
-        raise InputError(f"{target} cannot be written: it is not a regular file; choose another path")
+    target = check_target(path)
     draft = target.with_name(f".{target.stem[:STEM]}.{os.getpid()}.{next(DRAFTS)}{target.suffix}")
     try:
         yield draft
         os.replace(draft, target)
     except OSError as error:
-        raise InputError(f"{target} cannot be written: {error.strerror or error}") from None
+        raise _not_written(target, error) from None
     finally:
         with suppress(OSError):
             draft.unlink()
+
+
+def _not_written(target: Path, error: OSError) -> InputError:
+    return InputError(
+        f"{shorten(str(target))} cannot be written: {error.strerror or error}; choose another path"
+    )
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:

@@ -172,6 +172,9 @@ XACRO_ITEMS: Final = 1_000_000
 TOML_KEY_PARTS: Final = 100
 """Most parts of a dotted key of TOML: a robot's have two, and the reader's time grows with their square."""
 
+GEOJSON_DEPTH: Final = 100
+"""Most levels of collections and features of GeoJSON: files have three, Python allows a thousand."""
+
 HALF_TURN: Final = 1e-12
 """1 + trace R (unitless, the square of the angle that is missing) below which neighbouring poses of a path
 are half a turn apart: the axis of such a turn carries the rounding of the poses, a million times larger."""

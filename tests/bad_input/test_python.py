@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import pytest
@@ -134,6 +136,26 @@ CALLS = [
         InputTypeError,
         "^size is an object of type object; it must be",
     ),
+    (
+        lambda: cs.OccupancyGrid([[1, 0], [1]]),
+        InputError,
+        "^blocked has rows of different lengths; all rows need",
+    ),
+    (lambda: cs.OccupancyGrid([[[1], [2]], [[1]]]), InputError, "^blocked has rows of different lengths"),
+    (lambda: cs.OccupancyGrid("map.png"), InputTypeError, "^blocked is 'map.png', .*from_image, from_ros or"),
+    (
+        lambda: cs.OccupancyGrid(Path("map.png")),
+        InputTypeError,
+        "type PosixPath, expected an array .*from_im",
+    ),
+    (lambda: cs.OccupancyGrid(b"map.png"), InputTypeError, "from_image"),
+    (
+        lambda: cs.PolygonWorld([(2, 2), (5, 2), (5, 5)]),
+        InputError,
+        "^obstacles is a list of 3 points, expected a list of polygons .*: .polygon.$",
+    ),
+    (lambda: cs.PolygonWorld(np.eye(2)), InputError, "^obstacles is a list of 2 points"),
+    (lambda: cs.PolygonWorld(iter([(2, 2), [5, 2]])), InputError, "^obstacles is a list of 2 points"),
     (lambda: cs.robots.find(5), InputTypeError, "must be a string, got int"),
     (lambda: cs.robots.search(None), InputTypeError, "must be a string, got NoneType"),
 ]
@@ -143,6 +165,71 @@ CALLS = [
 def test_wrong_arguments_are_refused_in_words(call, error, words):
     with pytest.raises(error, match=words):
         call()
+
+
+@pytest.mark.parametrize("open_axis", [[None] * 3, [None, None, 1.0], (None, 0, 1)])
+@pytest.mark.parametrize(
+    ("named", "goal"),
+    [
+        ("direction", lambda a: {"direction": a}),
+        ("tool_axis", lambda a: {"direction": (0, 0, 1), "tool_axis": a}),
+        ("tool_axis", lambda a: {"position": (0.3, 0.3, 0.3), "direction": (0, 0, 1), "tool_axis": a}),
+        (r"ray\[0\]", lambda a: {"ray": (a, (0, 0, 1))}),
+        (r"ray\[1\]", lambda a: {"ray": ((0.3, 0.3, 0.3), a)}),
+        (r"angle_to\[0\]", lambda a: {"position": (0.3, 0.3, 0.3), "angle_to": (a, 0.3)}),
+    ],
+)
+def test_only_points_have_open_coordinates(named, goal, open_axis):
+    with pytest.raises(InputTypeError, match=f"^{named} contains None.*position= and look_at="):
+        ARM.ik(**goal(open_axis))
+
+
+@pytest.mark.parametrize("name", ["position", "look_at"])
+def test_a_point_without_any_coordinate_is_named(name):
+    with pytest.raises(InputError, match=f"^{name} has None for all three coordinates"):
+        ARM.ik(**{name: [None] * 3})
+
+
+ENDS = "<link name='a'/><link name='b'/>"
+JOINT = "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>"
+
+
+def urdf(name, text):
+    return f"<robot name='r'>{text.format(quoteattr(name))}</robot>"
+
+
+def mjcf(name, text):
+    return f"<mujoco><worldbody><body name='a'>{text.format(quoteattr(name))}</body></worldbody></mujoco>"
+
+
+@pytest.mark.parametrize("name", ["x" * 5000, "long " * 1000, '"quoted" ' * 600, "x'" * 2500])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda n: cs.load_robot(n),
+        lambda n: cs.load_robot("/tmp/" + n + ".urdf"),
+        lambda n: cs.load_robot("ur5e", tip=n),
+        lambda n: ARM.fk(np.zeros(6), n),
+        lambda n: ARM.export(name="-" + n),
+        lambda n: ARM.export("cpp", n + ".hpp"),
+        lambda n: ARM.ik(GOAL, locked={n: 0.0}),
+        lambda n: cs.Robot.from_urdf(urdf(n, "<link name={0}/><link name={0}/>")),
+        lambda n: cs.Robot.from_urdf(urdf(n, "<link name={}/><link name='b'/>")),
+        lambda n: cs.Robot.from_urdf(urdf(n, ENDS + JOINT.replace("'j'", "{}").replace("'a'", "'c'"))),
+        lambda n: cs.Robot.from_urdf(urdf(n, ENDS + JOINT.replace("'a'", "{}"))),
+        lambda n: cs.Robot.from_urdf(urdf(n, ENDS + JOINT.replace("'fixed'", "{}"))),
+        lambda n: cs.Robot.from_mjcf(mjcf(n, "<joint name={} type='hinge' axis='0 0 0'/>")),
+        lambda n: cs.Robot.from_mjcf(mjcf(n, "<joint name='j' class={}/>")),
+        lambda n: cs.Robot.from_mjcf(mjcf(n, "<body name={0}/><body name={0}/>")),
+        lambda n: cs.OccupancyGrid.from_image("/tmp/" + n),
+        lambda n: cs.PolygonWorld.from_geojson({"type": n}),
+        lambda n: cs.navigate(cs.OccupancyGrid([[0, 0]]), (0.5, 0.5), (1.5, 0.5), n),
+    ],
+)
+def test_long_names_are_shortened(name, call):
+    with pytest.raises(CspaceError) as caught:
+        call(name)
+    assert len(str(caught.value)) < 1000
 
 
 @pytest.mark.parametrize("name", ["../x", "..", "ur5e/../kuka", "", "/dev/zero", "/", "x" * 10**5])

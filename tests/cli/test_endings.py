@@ -27,6 +27,8 @@ BAD_LINES = [
     ("--json fk", "the verb comes first"),
     ("fk", "required: ROBOT"),
     ("fk ur5f 0 0 0 0 0 0", "'ur5e'"),
+    ("ik zzz --xyz 1 2 3", "cspace robots lists all"),
+    ("info zzz", "cspace robots WORD searches them"),
     ("fk ur5e 0 0 0", "has 6 joints, q has 3 values"),
     ("fk ur5e 0 0 0 0 0 nan", "'nan' is not a finite number"),
     ("fk ur5e 0 0 0 0 0 -inf", "'-inf' is not a finite number"),
@@ -121,6 +123,16 @@ def test_a_bad_line_is_refused_with_code_2(line, message):
     assert result.out == ""
     assert result.err.startswith("cspace: ")
     assert "Traceback" not in result.err
+
+
+@pytest.mark.parametrize(
+    "line", ["info {}", "info {}.urdf", "nav {}.png", "{}", "fk ur5e 0 0 0 0 0 0 --frame {}", "fk ur5e {}"]
+)
+def test_long_words_are_not_repeated_whole(line):
+    result = cspace(line.format("x" * 5000))
+    assert result.code in (Exit.USAGE, Exit.BAD_FILE)
+    assert len(result.err) < 1000
+    assert "cs.robots" not in result.err
 
 
 BAD_FILES = [

@@ -42,8 +42,8 @@ OWNERS: dict[str, Any] = {
     "self_motion": cs.ik.SelfMotion,
     "planner": cs.navigation.PlanePlanner,
 }
-NOT_PYTHON = {"fk", "into_limits", "yam", "cspace"}
-"""Functions of exported files, which have names of their own, a robot of a test, and the command."""
+NOT_PYTHON = {"fk", "into_limits", "yam", "cspace", "co_await", "NULL", "INT_MAX"}
+"""Functions of exported files, which have names of their own, a robot of a test, the command, words of C."""
 
 
 def members(owner: Any) -> set[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import pickle
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -101,6 +102,55 @@ def test_names_with_quotes_and_accents_stay_literals():
     for lang in LANGUAGES:
         text = robot.export(lang).text
         assert "\n // é" not in text
+
+
+NAMES = [
+    '"""',
+    "\0",
+    "a\0b",
+    "\\",
+    'a"',
+    '"a',
+    'x"""+"',
+    "a\nb",
+    "a\rb",
+    "*/",
+    "**//",
+    '*"/',
+    "/*",
+    "'''",
+    "\x1b[2J",
+]
+NAMES += ["$name", "${name}", "\\N{x}", "\\x", "\\u12", "a\u2028b", "\ud800", "??/", "{q}", "%s", "é", "\x7f"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_name_of_a_robot_ends_its_comment(name):
+    robot = cs.Robot.from_screws([[0, 0, 1]], [[0, 0, 0]], np.eye(4), name=name)
+    plain = cs.Robot.from_screws([[0, 0, 1]], [[0, 0, 0]], np.eye(4), name="plain")
+    for lang in LANGUAGES:
+        made, twin = robot.export(lang, name="arm"), plain.export(lang, name="arm")
+        for text, other in zip(
+            [*made.files.values(), made.example], [*twin.files.values(), twin.example], strict=True
+        ):
+            assert re.fullmatch(r"[ -~\n]*", text)
+            assert text.count("\n") == other.count("\n")
+            assert text.count("*/") == other.count("*/")
+            if lang == "python":
+                with warnings.catch_warnings():
+                    warnings.simplefilter("error")
+                    compile(text, "arm.py", "exec")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_names_of_joints_stay_literals(name):
+    robot = cs.Robot.from_screws([[0, 0, 1]], [[0, 0, 0]], np.eye(4), name="arm", joint_names=[name])
+    plain = cs.Robot.from_screws([[0, 0, 1]], [[0, 0, 0]], np.eye(4), name="arm", joint_names=["j"])
+    for lang in LANGUAGES:
+        made, twin = robot.export(lang), plain.export(lang)
+        assert made.text.count("\n") == twin.text.count("\n")
+        assert "\0" not in made.text
+    assert compile(robot.export("python").text, "arm.py", "exec")
 
 
 def test_the_language_follows_the_ending(tmp_path):

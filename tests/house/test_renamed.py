@@ -9,6 +9,7 @@ import pytest
 
 import cspace as cs
 from cspace import errors
+from house.tree import ROOT
 
 
 def test_an_old_keyword_names_the_new_one():
@@ -70,13 +71,41 @@ def test_an_old_attribute_names_the_new_one():
 
 @pytest.mark.parametrize(
     ("theirs", "ours"),
-    [("fkine", "fk"), ("ikine_LM", "ik"), ("jacob0", "jacobian"), ("qlim", "limits"), ("n", "dof")],
+    [
+        *(("fkine", "fk"), ("ikine_LM", "ik"), ("jacob0", "jacobian"), ("qlim", "limits"), ("n", "dof")),
+        *(("names", "joint_names"), ("qr", "named_poses"), ("setFromIK", "ik"), ("getJacobian", "jacobian")),
+        *(
+            ("getGlobalLinkTransform", "fk"),
+            ("computeCartesianPath", "track"),
+            ("fwdKin", "fk"),
+            ("IK", "ik"),
+        ),
+    ],
 )
 def test_an_attribute_of_another_library_names_ours(theirs, ours):
     robot = cs.load_robot("ur5e")
     getattr(robot, ours)
     with pytest.raises(AttributeError, match=f"'Robot' object has no attribute '{theirs}': use {ours}$"):
         getattr(robot, theirs)
+
+
+OTHER_WAYS = {"tool", "createData"}  # one is assigned there, the other has no counterpart
+
+
+def test_members_that_the_page_for_users_of_other_libraries_translates_name_ours():
+    page = (ROOT / "docs/coming-from.md").read_text(encoding="utf-8")
+    robot, rows = cs.load_robot("ur5e"), re.findall(r"^\| (`.*?) \| (.*) \|$", page, re.M)
+    solutions, found = robot.ik(robot.fk(np.zeros(6))), 0
+    for theirs, ours in rows:
+        for owner, name in re.findall(r"\b(robot|state|bot|model|solution)\.([A-Za-z_]\w*)", theirs):
+            ours_owner = solutions if owner == "solution" else robot
+            if name in OTHER_WAYS or hasattr(ours_owner, name):
+                continue
+            with pytest.raises(AttributeError, match=": use ") as caught:
+                getattr(ours_owner, name)
+            assert str(caught.value).rpartition(": use ")[2] in ours
+            found += 1
+    assert found >= 15
 
 
 def test_a_keyword_of_another_library_names_ours():

@@ -42,6 +42,22 @@ def test_a_seed_that_is_a_solution_is_the_answer(name, q5):
         assert gap(robot, found.q, q).min() < 1e-6
 
 
+@pytest.mark.parametrize("name", ["puma560", "ur5e", "irb120", "kr6_r900", "crx10ia", "scara"])
+def test_a_batch_at_singular_poses_answers_as_single_calls(name):
+    robot, rng = cs.load_robot(name), np.random.default_rng(13)
+    q = random_configurations(robot, rng, 40)
+    q[np.arange(40), rng.integers(robot.dof, size=40)] = 0.0
+    q[::2, max(robot.dof - 2, 0)] = 0.0  # of a wrist, the joint that makes it singular
+    T = robot.fk(q)
+    for goals in (T, T[:2], T[:1], np.repeat(T[:1], 9, axis=0)):
+        seeds = q[: len(goals)] if len(goals) != 9 else q[0]
+        batch = robot.ik(goals, near=seeds)
+        for k, goal in enumerate(goals):
+            single = robot.ik(goal, near=seeds if seeds.ndim == 1 else seeds[k])
+            assert len(batch[k]) == len(single)
+            np.testing.assert_allclose(batch[k].q, single.q, atol=1e-9)
+
+
 @pytest.mark.parametrize("end", [np.pi, -np.pi])
 def test_a_whole_turn_may_end_on_a_limit(end):
     """Not a whole turn away from the seed because rounding takes the joint past its limit of half a turn."""

@@ -46,6 +46,22 @@ def test_singular_values_are_those_of_lapack(joint_types, rows):
         np.testing.assert_allclose(robot.manipulability(q, rows=rows), volume, atol=1e-7)
 
 
+@pytest.mark.parametrize("fixed", [0, 1, 3])
+@pytest.mark.parametrize("rows", ["auto", "all", "linear", "angular", "vx"])
+def test_a_robot_without_moving_joints_has_no_singular_values(fixed, rows):
+    links = "".join(f"<link name='l{i}'/>" for i in range(fixed + 1))
+    ends = "<parent link='l{}'/><child link='l{}'/>"
+    joints = "".join(f"<joint name='j{i}' type='fixed'>{ends.format(i, i + 1)}</joint>" for i in range(fixed))
+    robot = Robot.from_urdf(f"<robot name='post'>{links}{joints}</robot>")
+    for q in ([], np.zeros((3, 0)), np.zeros((2, 3, 0))):
+        shape = np.shape(q)[:-1]
+        assert robot.singular_values(q, rows=rows).shape == (*shape, 0)
+        np.testing.assert_array_equal(robot.manipulability(q, rows=rows), np.ones(shape))
+        np.testing.assert_array_equal(robot.distance_to_singularity(q, rows=rows), np.full(shape, np.inf))
+    with pytest.raises(InputError, match="no joint of post moves this frame"):
+        robot.singularity([], rows=rows)
+
+
 def test_small_singular_values_keep_their_digits():
     """Where q5 = ε the smallest singular value is proportional to ε, down to where a float ends."""
     robot = spherical_wrist_arm()

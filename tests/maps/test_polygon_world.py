@@ -309,6 +309,39 @@ def test_polygons_from_text(tmp_path):
         cs.PolygonWorld.from_text(tmp_path / "none.txt")
 
 
+def nested(levels, kind, inside):
+    geometry = {"type": "Point", "coordinates": [0, 0]}
+    for _ in range(levels):
+        geometry = {"type": kind, inside: geometry if inside == "geometry" else [geometry]}
+    return geometry
+
+
+@pytest.mark.parametrize(
+    ("kind", "inside"),
+    [("GeometryCollection", "geometries"), ("FeatureCollection", "features"), ("Feature", "geometry")],
+)
+def test_geojson_is_nested_within_reason(kind, inside, tmp_path):
+    assert cs.PolygonWorld.from_geojson(nested(50, kind, inside), bounds=(0, 0, 1, 1)).obstacles == []
+    itself = {"type": kind}
+    itself[inside] = itself if inside == "geometry" else [itself]
+    for wrong in (nested(5000, kind, inside), nested(101, kind, inside), itself):
+        with pytest.raises(MapError, match="nested more than 100 levels deep, or contains itself"):
+            cs.PolygonWorld.from_geojson(wrong)
+    path = tmp_path / "deep.json"
+    path.write_text(json.dumps(nested(200, kind, inside)))
+    with pytest.raises(MapError, match=r"deep.json: .*nested more than 100"):
+        cs.PolygonWorld.from_geojson(path)
+
+
+@pytest.mark.parametrize("kind", [{}, [], [["Point"]], 5, None, True, "point", 2.5])
+def test_the_type_of_geojson_is_one_of_its_words(kind, tmp_path):
+    path = tmp_path / "map.json"
+    path.write_text(json.dumps({"type": kind}))
+    for source in ({"type": kind}, {"type": "Feature", "geometry": {"type": kind}}, path):
+        with pytest.raises(MapError, match='the "type" of the object is '):
+            cs.PolygonWorld.from_geojson(source)
+
+
 @pytest.mark.parametrize("form", ["text", "geojson"])
 def test_a_written_world_is_the_same_to_the_last_bit(tmp_path, form):
     hole = [(4, 4), (6, 4), (6, 6), (4 + 1 / 3, 6)]

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import cspace as cs
 from cspace.errors import DescriptionError, InputError, InputTypeError
 from cspace.model import (
     Description,
@@ -225,6 +226,35 @@ FAULTS = {
         "load_robot and model.from_xacro expand",
     ),
 }
+
+
+def in_a_row(multipliers, offset=0.0):
+    """A robot whose joint k mimics joint k + 1."""
+    n = len(multipliers)
+    text = "".join(f"<link name='l{k}'/>" for k in range(n + 2))
+    for k in range(n + 1):
+        follows = (
+            f"<mimic joint='j{k + 1}' multiplier='{multipliers[k]}' offset='{offset}'/>" if k < n else ""
+        )
+        ends = f"<parent link='l{k}'/><child link='l{k + 1}'/>{follows}"
+        text += f"<joint name='j{k}' type='continuous'>{ends}</joint>"
+    return f"<robot name='row'>{text}</robot>"
+
+
+@pytest.mark.parametrize(
+    "multipliers", [[1e12] * 39, [1e12, 1e-9, 1e10, 1e3], [1e7, 1e7], [-1e7, 1e6], [1e6, 1e6, 10.0]]
+)
+@pytest.mark.parametrize("turned", [False, True])
+def test_multipliers_in_a_row_are_bounded_as_one_is(multipliers, turned):
+    row = multipliers[::-1] if turned else multipliers
+    with pytest.raises(
+        DescriptionError, match=r"joint 'j\d+' mimics joints that mimic .*no robot has numbers"
+    ):
+        from_urdf(in_a_row(row))
+    with pytest.raises(DescriptionError, match="combine to"):
+        from_urdf(in_a_row([1e7, 1.0], offset=1e7))
+    q = from_urdf(in_a_row([1e-12] * 300 + [1e6, 1e-6, 1e12]))
+    assert np.isfinite(cs.Robot(q).fk([0.3])).all()
 
 
 @pytest.mark.parametrize("fault", FAULTS)

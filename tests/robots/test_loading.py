@@ -5,7 +5,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+import cspace as cs
 from cspace.errors import CspaceError, DescriptionError, InputError, InputTypeError, UnknownNameError
+from cspace.export.languages import SUFFIXES
 from cspace.files import write_text
 from cspace.model import to_toml, to_urdf
 from cspace.robot import Robot
@@ -64,6 +66,34 @@ def test_a_robot_is_written_to_a_path_whole_or_not_at_all(name, tmp_path):
     with pytest.raises(InputTypeError, match="given by its path"):
         write(3.5)
     assert [entry.name for entry in tmp_path.iterdir()] == [name]
+
+
+@pytest.mark.parametrize("ending", ["x" * 300, "x" * 300 + "/a", "a\0b", "y/" * 3000 + "a"])
+def test_a_path_that_no_folder_allows_is_named(ending, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    robot, grid = load_robot("planar_2r"), cs.OccupancyGrid([[0, 1]])
+    world, made = cs.PolygonWorld([], (0, 0, 1, 1)), robot.export("c")
+    for write, suffix in [
+        *((lambda p, lang=lang: robot.export(lang, p), ending) for lang, ending in SUFFIXES.items()),
+        (robot.to_urdf, ".urdf"),
+        (robot.to_toml, ".toml"),
+        (grid.save_ros, ".yaml"),
+        (world.save_geojson, ".json"),
+        (world.save_text, ".txt"),
+        (made.write_example, ".c"),
+        (made.write, ""),
+    ]:
+        with pytest.raises(InputError) as caught:
+            write(ending + suffix)
+        assert len(str(caught.value)) < 500
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_of_two_files_with_one_name_too_long_none_is_written(tmp_path):
+    longest = os.pathconf(tmp_path, "PC_NAME_MAX")
+    with pytest.raises(InputError, match=r"cpp cannot be written: .*; choose another path"):
+        load_robot("planar_2r").export("c", tmp_path / ("x" * (longest - 2) + ".h"))
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_name_may_be_as_long_as_the_folder_allows(tmp_path):

@@ -74,7 +74,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except CspaceError as error:
         if debug:
             raise
-        print_message(str(error))
+        print_message(in_words_of_shell(str(error)))
         return exit_of(error)
     except Exception as error:
         if debug:
@@ -137,6 +137,13 @@ def write_overview() -> str:
         "cspace VERB --help    the arguments of a verb, with examples\n"
         "cspace --version      the version\n\n"
         "A robot is a name of the catalogue (cspace robots) or a file. Every verb takes --json."
+    )
+
+
+def in_words_of_shell(message: str) -> str:
+    """The message of an error with the verbs that list robots instead of the functions."""
+    return message.replace("cs.robots.names()", "cspace robots").replace(
+        "cs.robots.search()", "cspace robots WORD"
     )
 
 

@@ -85,7 +85,8 @@ class ExportedArm:
     @property
     def title(self) -> str:
         """Its name, for comments of any language."""
-        return in_ascii(" ".join(str(self.solver.name).split()).replace("*/", "")) or "arm"
+        printed = re.sub(r'[^ -~]|["\\*]', "", in_ascii(" ".join(str(self.solver.name).split())))
+        return " ".join(printed.split()) or "arm"
 
     @property
     def words(self) -> dict[str, Any]:

@@ -194,7 +194,13 @@ def write_bounds(values: Iterable[float]) -> str:
 def quote_text(text: str) -> str:
     """A string literal in plain ASCII: everything else as the octal numbers of its UTF-8."""
     plain = {c: c for c in map(chr, range(32, 127)) if c not in '"\\?'}
-    return '"' + "".join(plain.get(c) or "".join(f"\\{b:03o}" for b in c.encode()) for c in text) + '"'
+    return (
+        '"'
+        + "".join(
+            plain.get(c) or "".join(f"\\{b:03o}" for b in c.encode(errors="backslashreplace")) for c in text
+        )
+        + '"'
+    )
 
 
 # --- the headers of the core as one text ----------------------------------------------------------------

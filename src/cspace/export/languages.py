@@ -15,7 +15,7 @@ from cspace.export.arm import ExportedArm, exported_arm
 from cspace.export.cpp import c_files, cpp_header, words_of
 from cspace.export.python_file import python_file, python_method
 from cspace.export.texts import fill_template
-from cspace.files import path_of, write_text
+from cspace.files import check_target, path_of, write_text
 from cspace.tables import html_table, one_line
 
 LANGUAGES = MappingProxyType(
@@ -70,8 +70,7 @@ class Export:
         """
         paths = [Path(path_of(folder)) / name for name in self.files]
         for path in paths:  # before the first of them is written
-            if path.is_dir():
-                raise InputError(f"{path} cannot be written: it is a folder")
+            check_target(path)
         for path, text in zip(paths, self.files.values(), strict=True):
             write_text(path, text)
         return paths

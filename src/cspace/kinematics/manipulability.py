@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
@@ -111,7 +112,7 @@ def _sample_jacobians(robot: KinematicModel, frame: str | None, point: ArrayLike
     batch = rows_of(robot, q, point=point, threads=1)
     J = np.empty((*batch.shape, 6, robot.dof))
     compute_chain(robot, number, batch, J=J)
-    return J[..., robot.dof - n :].reshape(-1, 6, n)
+    return J[..., robot.dof - n :].reshape(math.prod(batch.shape), 6, n)  # n may be zero
 
 
 def _rank(J: Array, chosen: list[int]) -> int:

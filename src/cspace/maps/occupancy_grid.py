@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, one_number, positive_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, shown, suggest
 from cspace.maps.points import as_path, as_point, check_inflation
 from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CELLS
 
@@ -211,7 +211,15 @@ class OccupancyGrid(_core.GridBase):
 
 def _read_cells(blocked: Any) -> npt.NDArray[np.uint8]:
     """The cells as bytes 0 and 1, (rows, columns)."""
-    cells = np.asarray(blocked)
+    if isinstance(blocked, (str, bytes, os.PathLike)):
+        raise InputTypeError(
+            f"blocked is {shown(blocked)}, expected an array of cells (rows, columns); to read a file, use"
+            " OccupancyGrid.from_image, from_ros or from_movingai"
+        )
+    try:
+        cells = np.asarray(blocked)
+    except ValueError:
+        raise InputError("blocked has rows of different lengths; all rows need as many cells") from None
     if cells.dtype != np.bool_:
         if cells.dtype.kind not in "iuf":
             raise InputTypeError(f"blocked must be boolean, got {type(blocked).__name__} of {cells.dtype}")

@@ -22,7 +22,21 @@ def read_outlines(obstacles: Iterable[Any]) -> list[Outline]:
         raise InputTypeError(
             f"obstacles must be a list of (n, 2) arrays, got an object of type {type(obstacles).__name__}"
         )
-    return [_read_rings(obstacle, f"obstacle {k}") for k, obstacle in enumerate(obstacles)]
+    listed = list(obstacles)
+    if listed and all(map(_is_point, listed)):
+        raise InputError(
+            f"obstacles is a list of {len(listed)} points, expected a list of polygons (n, 2); put a single"
+            " polygon into a list: [polygon]"
+        )
+    return [_read_rings(obstacle, f"obstacle {k}") for k, obstacle in enumerate(listed)]
+
+
+def _is_point(obstacle: Any) -> bool:
+    """Whether it is two numbers."""
+    try:
+        return bool(np.shape(obstacle) == (2,))
+    except ValueError:
+        return False
 
 
 def _read_rings(obstacle: Any, subject: str) -> Outline:

@@ -9,11 +9,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from cspace.arrays import Array
-from cspace.errors import MapError
+from cspace.errors import MapError, shown
 from cspace.files import write_text
 from cspace.maps.files import check_map_path, read_map_text
+from cspace.tolerances import GEOJSON_DEPTH
 
-_SKIPPED = {"Point", "MultiPoint", "LineString", "MultiLineString"}
+_SKIPPED = ("Point", "MultiPoint", "LineString", "MultiLineString")
 
 
 def read_geojson(source: str | os.PathLike[str] | dict[str, Any]) -> tuple[list[Any], list[float] | None]:
@@ -23,7 +24,7 @@ def read_geojson(source: str | os.PathLike[str] | dict[str, Any]) -> tuple[list[
     else:
         path = check_map_path(source)
         found = _parse_file(path)
-    obstacles = list(_find_polygons(found, path, "the object"))
+    obstacles = list(_find_polygons(found, path, "the object", GEOJSON_DEPTH))
     box = found.get("bbox")
     return obstacles, box if isinstance(box, list) and len(box) == 4 else None
 
@@ -50,25 +51,35 @@ def _parse_file(path: str) -> dict[str, Any]:
     return found
 
 
-def _find_polygons(thing: Any, path: str | None, where: str) -> Iterator[list[Any]]:
-    """The rings of each polygon in a GeoJSON object; geometries without area are skipped."""
+def _find_polygons(thing: Any, path: str | None, where: str, depth: int) -> Iterator[list[Any]]:
+    """The rings of each polygon in a GeoJSON object; geometries without area are skipped.
+
+    depth: how many levels of objects may follow.
+    """
+    if depth == 0:
+        raise MapError(
+            f"the object is nested more than {GEOJSON_DEPTH} levels deep, or contains itself; list its"
+            " geometries in one collection",
+            path=path,
+        )
     kind = thing.get("type") if isinstance(thing, dict) else None
     if kind == "FeatureCollection":
         for i, feature in enumerate(_get_list(thing, "features", path, where)):
-            yield from _find_polygons(feature, path, f"feature {i}")
+            yield from _find_polygons(feature, path, f"feature {i}", depth - 1)
     elif kind == "GeometryCollection":
         for i, geometry in enumerate(_get_list(thing, "geometries", path, where)):
-            yield from _find_polygons(geometry, path, f"{where}, geometry {i}")
+            yield from _find_polygons(geometry, path, f"{where}, geometry {i}", depth - 1)
     elif kind == "Feature":
         if thing.get("geometry") is not None:
-            yield from _find_polygons(thing["geometry"], path, where)
+            yield from _find_polygons(thing["geometry"], path, where, depth - 1)
     elif kind == "Polygon":
         yield _drop_heights(_get_list(thing, "coordinates", path, where), path, where)
     elif kind == "MultiPolygon":
         for i, rings in enumerate(_get_list(thing, "coordinates", path, where)):
             yield _drop_heights(rings, path, f"{where}, polygon {i}")
     elif kind not in _SKIPPED:
-        raise MapError(f"{where} has the type {kind!r}, which is not a GeoJSON type", path=path)
+        given = "missing" if kind is None else f"{shown(kind)}, which is not a GeoJSON type"
+        raise MapError(f'the "type" of {where} is {given}', path=path)
 
 
 def _get_list(thing: dict[str, Any], name: str, path: str | None, where: str) -> list[Any]:

@@ -8,6 +8,8 @@ from typing import Protocol
 from cspace.errors import DescriptionError, suggest
 from cspace.model.joint import Joint
 from cspace.model.link import Link
+from cspace.model.values import BEYOND
+from cspace.tolerances import LARGEST_NUMBER
 
 
 class Named(Protocol):
@@ -109,24 +111,35 @@ def _cycle(start: str, carried_by: dict[str, Joint]) -> ElementError:
 def check_mimics(robot: str, joints: Sequence[Joint]) -> None:
     """Raise ElementError where a joint follows itself, an unknown joint or one without a single value."""
     by_name = {joint.name: joint for joint in joints}
-    sound: set[str] = set()
+    sound: dict[str, tuple[float, float]] = {}  # the multiplier and the offset, combined along the leaders
     for joint in joints:
         if joint.mimic is None:
             continue
         if joint.type not in ("revolute", "continuous", "prismatic"):
             raise ElementError(f"joint {joint.name!r} is {joint.type} and cannot mimic", joint)
-        seen = {joint.name}
+        row: dict[str, Joint] = {}
         follower = joint
         while follower.mimic is not None and follower.name not in sound:
             leader = by_name.get(follower.mimic.joint)
             if leader is None:
                 error = suggest("joint", follower.mimic.joint, by_name, owner=f"robot {robot!r}")
                 raise ElementError(f"joint {follower.name!r} mimics: {error}", follower)
-            if leader.name in seen:
+            row[follower.name] = follower
+            if leader.name in row:
                 raise ElementError(f"joint {joint.name!r} mimics itself through a cycle of joints", joint)
             if leader.type not in ("revolute", "continuous", "prismatic"):
                 message = f"joint {follower.name!r} mimics {leader.name!r}, which is {leader.type}"
                 raise ElementError(message, follower)
-            seen.add(leader.name)
             follower = leader
-        sound |= seen
+        factor, shift = sound.get(follower.name, (1.0, 0.0))
+        for follower in reversed(row.values()):
+            if (mimic := follower.mimic) is None:
+                continue
+            factor, shift = mimic.multiplier * factor, mimic.multiplier * shift + mimic.offset
+            if abs(largest := max(factor, shift, key=abs)) > LARGEST_NUMBER:
+                raise ElementError(
+                    f"joint {follower.name!r} mimics joints that mimic others, and their multipliers and "
+                    f"offsets combine to {largest:g}; {BEYOND}; use smaller ones",
+                    follower,
+                )
+            sound[follower.name] = factor, shift

@@ -18,6 +18,8 @@ from cspace.tolerances import FARTHEST
 POINTED = ("direction", "look_at", "ray", "angle_to")
 """The keywords that involve the tool axis."""
 DIRECTIONS = ("direction", "ray[1]", "angle_to[0]", "tool_axis")
+MAY_BE_OPEN = ("position", "look_at")
+"""The points of which some coordinates may be None, where any value will do."""
 ONE_FOR_ALL = {
     "tool_axis": "(3,): one axis for all goals",
     "angle_to[0]": "(3,): one axis for all goals",
@@ -84,6 +86,12 @@ def read_values(given: dict[str, Any], tool_axis: Any) -> dict[str, Any]:
     named = [name for name in ("tool_axis", "angle_to[0]") if isinstance(values.get(name), str)]
     for name in named:
         values[name] = axis_named(values[name])
+    for name in (name for name in values if name not in MAY_BE_OPEN):
+        if is_open(values[name]):
+            raise InputTypeError(
+                f"{name} contains None, expected numbers; only coordinates of "
+                f"{' and '.join(point + '=' for point in MAY_BE_OPEN)} may be None"
+            )
     read = [name for name, v in values.items() if name not in named and name != "rotation" and not is_open(v)]
     if read:
         shapes = {name: (values[name], () if name == "angle_to[1]" else (3,)) for name in read}
@@ -144,7 +152,7 @@ def assemble_goal(kind: str, values: dict[str, Any]) -> PartialGoal:
                     f"angle_to[1] is {tilt:g}, expected 0 to π rad, the angle between two directions"
                 )
         elif is_open(values[name]):
-            p, before = open_point(values[name])
+            p, before = open_point(values[name], name)
         else:  # position, look_at
             p = values[name]
     if pointing is not None:
@@ -155,14 +163,14 @@ def assemble_goal(kind: str, values: dict[str, Any]) -> PartialGoal:
     return PartialGoal(kind, assemble(R, p), behind, value, axis, before, tilt)
 
 
-def open_point(value: Any) -> tuple[Array, tuple[tuple[str, Array], ...]]:
+def open_point(value: Any, name: str) -> tuple[Array, tuple[tuple[str, Array], ...]]:
     """A point of which some coordinates are None, these at zero, and a prismatic joint along each of them."""
     if len(value) != 3:
-        raise InputError(f"position has {len(value)} coordinates, expected 3 (None where any value will do)")
+        raise InputError(f"{name} has {len(value)} coordinates, expected 3 (None where any value will do)")
     free = [i for i in range(3) if value[i] is None]
     if len(free) == 3:
-        raise InputError("position has None for all three coordinates; give at least one of them")
-    p = one_array([0.0 if v is None else v for v in value], "position", (3,), largest=FARTHEST)
+        raise InputError(f"{name} has None for all three coordinates; give at least one of them")
+    p = one_array([0.0 if v is None else v for v in value], name, (3,), largest=FARTHEST)
     return p, tuple(("P", np.eye(3)[i]) for i in free)
 
 
