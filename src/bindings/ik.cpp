@@ -30,15 +30,15 @@ the tool axis, through p along d. tool_axis: in the tip, "x", "-z" or any (3,).
 
 near (dof,) or (..., dof) [rad, m]: the answer is the one solution within limits that is nearest to it, or none, with
 the reason, if none is within limits. Joints that a singular pose leaves free take its values. limits: those that near=
-keeps; the arm's own unless given, False for none, or Limits. locked: values of locked joints by name or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel
-[rad]: the arm angle of an arm with two spherical joints (see cs.ik.swivel). samples: the number of values of a
+keeps; the arm's own unless given, False for none, or Limits. locked: values of locked joints by name or number,
+{"joint7": 0.3}; arrays of values are solved together with the goals. swivel [rad]: the arm angle of an arm with two spherical joints (see cs.ik.swivel). samples: the number of values of a
 redundant joint at which branches are listed, 16 unless given. least_squares: for an unreachable goal, answer with
 the configuration of least error (a radian weighs like the characteristic length of the arm). threads: for a batch,
 all cores unless given; the answer does not depend on it.
 
 An arm with more than six joints, or with dependent joints, leaves freedom, which s.freedom names. With locked= for
-all redundant joints the answer lists every solution of the others; with near= it is the nearest of all within limits. Otherwise,
-with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
+all redundant joints the answer lists every solution of the others; with near= it is the nearest of all within
+limits. Otherwise, with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
 it is the configuration nearest to the middle of the limits.
 
 Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,

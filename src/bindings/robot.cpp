@@ -1,4 +1,7 @@
 // The type behind cspace.Robot: its kinematics, and the solver that its `ik` asks.
+#include <cstring>
+#include <string>
+
 #include "bindings.hpp"
 #include "ik.hpp"
 
@@ -37,7 +40,10 @@ int set_solver(PyObject* self, PyObject* value, void*) {
     return 0;
 }
 
-PyMethodDef robot_methods[] = {{"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, solve_doc},
+// A signature begins with the name of its method.
+const std::string ik_doc = "ik" + std::string(solve_doc).substr(std::strlen("solve"));
+
+PyMethodDef robot_methods[] = {{"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, ik_doc.c_str()},
                                {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef robot_attributes[] = {
     {"_solver", &get_solver, &set_solver, "The solver, None before it is built; set once.", nullptr},

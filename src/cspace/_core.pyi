@@ -135,15 +135,15 @@ class SolverBase(KinematicsBase):
 
         near (dof,) or (..., dof) [rad, m]: the answer is the one solution within limits that is nearest to it, or none, with
         the reason, if none is within limits. Joints that a singular pose leaves free take its values. limits: those that near=
-        keeps; the arm's own unless given, False for none, or Limits. locked: values of locked joints by name or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel
-        [rad]: the arm angle of an arm with two spherical joints (see cs.ik.swivel). samples: the number of values of a
+        keeps; the arm's own unless given, False for none, or Limits. locked: values of locked joints by name or number,
+        {"joint7": 0.3}; arrays of values are solved together with the goals. swivel [rad]: the arm angle of an arm with two spherical joints (see cs.ik.swivel). samples: the number of values of a
         redundant joint at which branches are listed, 16 unless given. least_squares: for an unreachable goal, answer with
         the configuration of least error (a radian weighs like the characteristic length of the arm). threads: for a batch,
         all cores unless given; the answer does not depend on it.
 
         An arm with more than six joints, or with dependent joints, leaves freedom, which s.freedom names. With locked= for
-        all redundant joints the answer lists every solution of the others; with near= it is the nearest of all within limits. Otherwise,
-        with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
+        all redundant joints the answer lists every solution of the others; with near= it is the nearest of all within
+        limits. Otherwise, with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
         it is the configuration nearest to the middle of the limits.
 
         Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,
@@ -157,9 +157,6 @@ class RobotBase(KinematicsBase):
 
     def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Any = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
-        solve($self, goal=None, *, position=None, rotation=None, direction=None, look_at=None, ray=None, angle_to=None, tool_axis='z', angle=None, near=None, limits=None, locked=None, swivel=None, samples=None, least_squares=False, threads=None)
-        --
-
         Every configuration q with fk(q) = goal.
 
         goal: T_base_tip (4, 4) or (..., 4, 4), or anything that as_pose takes. A partial goal gives parts of a pose by
@@ -171,15 +168,15 @@ class RobotBase(KinematicsBase):
 
         near (dof,) or (..., dof) [rad, m]: the answer is the one solution within limits that is nearest to it, or none, with
         the reason, if none is within limits. Joints that a singular pose leaves free take its values. limits: those that near=
-        keeps; the arm's own unless given, False for none, or Limits. locked: values of locked joints by name or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel
-        [rad]: the arm angle of an arm with two spherical joints (see cs.ik.swivel). samples: the number of values of a
+        keeps; the arm's own unless given, False for none, or Limits. locked: values of locked joints by name or number,
+        {"joint7": 0.3}; arrays of values are solved together with the goals. swivel [rad]: the arm angle of an arm with two spherical joints (see cs.ik.swivel). samples: the number of values of a
         redundant joint at which branches are listed, 16 unless given. least_squares: for an unreachable goal, answer with
         the configuration of least error (a radian weighs like the characteristic length of the arm). threads: for a batch,
         all cores unless given; the answer does not depend on it.
 
         An arm with more than six joints, or with dependent joints, leaves freedom, which s.freedom names. With locked= for
-        all redundant joints the answer lists every solution of the others; with near= it is the nearest of all within limits. Otherwise,
-        with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
+        all redundant joints the answer lists every solution of the others; with near= it is the nearest of all within
+        limits. Otherwise, with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
         it is the configuration nearest to the middle of the limits.
 
         Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,

@@ -55,6 +55,7 @@ RENAMED: Final = MappingProxyType(
         "getJacobian": "jacobian",
         "getKinematicFamily": "ik_plan",
         "hasKnownDecomposition": "ik_plan",
+        "ik_LM": "ik",
         "ikine": "ik",
         "ikine_LM": "ik",
         "ikine_a": "ik",
@@ -75,6 +76,7 @@ RENAMED: Final = MappingProxyType(
         "seed": "near= or rng",
         "sees": "sensing",
         "setFromIK": "ik",
+        "tool": "with_tool",
         "why": "cause",
     }
 )

@@ -82,8 +82,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
             kinematics.mount(assembly, description.name, self._T_world_base)
         if self._T_tip_tool is not None:
             kinematics.add_tool(assembly, description.name, self._T_tip_tool)
-        super().__init__(assembly, description.name)
         self.description = description
+        super().__init__(assembly, description.name)
 
     @classmethod
     def from_urdf(

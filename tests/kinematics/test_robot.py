@@ -246,6 +246,6 @@ def test_what_describes_a_model_is_not_replaced(name, kind):
     robot = cs.load_robot("ur5e")
     model = robot if kind == "robot" else robot.solver
     before = getattr(model, name)
-    with pytest.raises(AttributeError, match=f"{name} of .* cannot be replaced; build another one"):
+    with pytest.raises(AttributeError, match=f"{name} of .* cannot be set; build another one"):
         setattr(model, name, before)
     assert getattr(model, name) is before

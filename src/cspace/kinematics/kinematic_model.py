@@ -32,11 +32,9 @@ class KinematicModel(KinematicsBase):
         self._auto_rows: dict[int, tuple[list[int], int]] = {}  # per frame: rows that count, generic rank
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Refuses to replace what describes the model: its compiled kinematics would not change with it."""
-        if name in self.__dict__ and not name.startswith("_"):
-            text = (
-                f"{name} of {type(self).__name__} {self.name} cannot be replaced; build another one instead"
-            )
+        """Refuses to set what describes the model: its compiled kinematics would not change with it."""
+        if "_auto_rows" in self.__dict__ and not name.startswith("_"):
+            text = f"{name} of {type(self).__name__} {self.name} cannot be set; build another one instead"
             raise AttributeError(text, name=name, obj=self)
         super().__setattr__(name, value)
 

@@ -3,6 +3,8 @@
 // 1e-9 rad does. Along the curve the error has one direction only, and vanishes where its sign changes.
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/ik/near_singular.hpp"
 #include "cspace/ik/self_motion/continuation.hpp"
 #include "cspace/ik/self_motion/self_motion.hpp"
@@ -49,7 +51,7 @@ inline Valley search_valley(const Chain& chain, const Posed& goal, double length
         for (int i = 0; i < chain.n; ++i) between[i] = from[i] + part * (to[i] - from[i]);
         const int row = accept_solution(out, chain, goal, length, between, max_branches + out.count, 20);
         if (out.count > room || out.count == max_solutions) alone = false;
-        out.count = min(out.count, room);
+        out.count = std::min(out.count, room);
         if (row >= 0 && row < room) listed[row] = true;
     };
     const auto visit = [&](int way, const double* at, const double*, double margin) {
