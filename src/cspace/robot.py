@@ -59,6 +59,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
     possible tip.
     """
 
+    description: Description
+
     def __init__(
         self,
         description: Description,
@@ -82,8 +84,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
             kinematics.mount(assembly, description.name, self._T_world_base)
         if self._T_tip_tool is not None:
             kinematics.add_tool(assembly, description.name, self._T_tip_tool)
-        self.description = description
         super().__init__(assembly, description.name)
+        self.__dict__["description"] = description  # all else is set; see __setattr__
 
     @classmethod
     def from_urdf(

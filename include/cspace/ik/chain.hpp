@@ -103,17 +103,20 @@ inline Chain reversed(const Chain& chain) {
     return back;
 }
 
-// The largest distance between consecutive axes, or from an axis to the next point, or 1 if all intersect.
+// The largest distance between consecutive axes, or from an axis to the next point. Where that is only
+// rounding, the largest distance between consecutive points; 1 if there is none.
 // axis(i) (i < n) and point(i) (i ≤ n; the last is the tip) of joints of which slides(i) are prismatic.
 template <class AxisOf, class PointOf, class Slides>
 double largest_offset(int n, const AxisOf& axis, const PointOf& point, const Slides& slides) {
-    double longest = 0;
+    constexpr double meeting = 1e-6;  // of the distance between points
+    double longest = 0, farthest = 0;
     for (int i = 0; i < n; ++i) {
         const Vec3d step = point(i + 1) - point(i);
+        farthest = max(farthest, norm(step));
         longest = max(longest, norm(cross(step, axis(i))));
         if (i + 1 < n && !slides(i + 1)) longest = max(longest, norm(cross(step, axis(i + 1))));
     }
-    return longest > 0 ? longest : 1.0;
+    return longest > meeting * farthest ? longest : farthest > 0 ? farthest : 1.0;
 }
 // A characteristic length of the arm [m].
 inline double characteristic_length(const Chain& chain) {

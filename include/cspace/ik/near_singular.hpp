@@ -205,6 +205,19 @@ inline void turn_free_wrist(const Plan& plan, const Posed& goal_form, Care care,
     }
 }
 
+// A wrist of three parallel axes that is almost free passes its rounding on to the elbow, and may move it
+// past a fold. There the branches within a wider band are candidates too.
+inline void widen_fold_band(const Plan& plan, const Posed& goal_form, Care care, Solutions& out,
+                            const Posed& goal) {
+    constexpr double almost_free = 1e-5;  // sine of the wrist's angle
+    constexpr double wide = 1e-6;
+    const Branches<double> b = solve_closed_form(plan, goal_form, care);
+    bool widen = false;
+    for (const auto& t : b.t) widen = widen || std::fabs(std::sin(t[4])) < almost_free;
+    care.band = max(care.band, wide);
+    if (widen) closed_form_candidates(plan, goal_form, care, out, goal);
+}
+
 // Solutions found by other methods get the number of the nearest branch. Each branch is used once, the
 // nearest pairs first. The others get numbers beyond the branches.
 inline void number_by_branches(const Plan& plan, const Posed& goal, Solutions& out) {
@@ -255,7 +268,10 @@ inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const doub
     if (plan.idealised && plan.virtual_joints && out.count == 0)
         try_perturbed_goals(plan, goal_form, care, out, goal);
     if (plan.idealised || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
-    if (plan.family == Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
+    if (plan.family == Family::three_parallel) {
+        widen_fold_band(plan, goal_form, care, out, goal);
+        turn_free_wrist(plan, goal_form, care, t[3], out, goal);
+    }
     out.crowded = plan.virtual_joints == 0;  // most goals are settled before they come here
     // Merging pairs of the true arm may lie where the form has none.
     if (plan.form.deviation > tolerance::visible_deviation &&

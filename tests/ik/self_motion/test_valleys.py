@@ -55,3 +55,16 @@ def test_counts_do_not_depend_on_how_a_curve_is_followed(pairs):
     for T, other in zip(robot.fk(q), robot.fk(turned), strict=True):
         s, t = robot.ik(T), robot.ik(other)
         assert (len(s.q), len(s.self_motions), s.complete) == (len(t.q), len(t.self_motions), t.complete)
+
+
+@pytest.mark.parametrize("off", [1e-9, 1e-8, 1e-7, 1e-6])
+@pytest.mark.parametrize("name", ["ur3e", "ur5e", "ur10"])
+def test_a_certified_list_near_two_folds_has_what_made_the_pose(name, off):
+    """Elbow and wrist are folded to `off`: rounding of the wrist moves the elbow past its fold."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(12)
+    for q in robot.random_configuration(25, rng=rng):
+        q[[2, 4]] = np.pi * rng.integers(0, 2, 2) + off * rng.choice([-1, 1], 2)
+        s = robot.ik(robot.fk(q))
+        if s.complete and not s.self_motions:
+            assert angle_gap(s.q, q).min() < 1e-3

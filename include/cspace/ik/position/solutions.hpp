@@ -54,9 +54,10 @@ bool surely_regular(const double (*a)[n], double largest) {
 }
 
 // Whether the solution q belongs to a self-motion. Its unit direction is written to `along`. close: whether
-// some motion there changes the residual by rounding only.
+// some motion there changes the residual by rounding only. wide: whether the self-motion has more than one
+// dimension; where two curves cross, no direction between theirs belongs to one.
 template <class System>
-bool is_free(const System& g, const double* q, double* along, bool& close) {
+bool is_free(const System& g, const double* q, double* along, bool& close, bool& wide) {
     constexpr int n = System::angles;
     constexpr double merged = 1e-7;  // rounding parts a double root by its square root
     Linearised<System> at;
@@ -66,7 +67,7 @@ bool is_free(const System& g, const double* q, double* along, bool& close) {
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < i; ++j) normal[i][j] = normal[j][i];
     for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
-    close = false;
+    close = wide = false;
     if (surely_regular<n>(normal, largest)) return false;
     SmallSvd<System::equations, n> J{System::equations, n, {}, {}, {}};
     for (int j = 0; j < n; ++j)
@@ -74,13 +75,21 @@ bool is_free(const System& g, const double* q, double* along, bool& close) {
     decompose(J);
     largest = largest_of(J.sigma, n);
     const double floor = std::fmax(tolerance::degenerate_pair * largest, tolerance::rounding);
-    for (int i = 0; i < n; ++i) {
+    bool free = false;
+    for (int i = 0; i < n && !wide; ++i) {
         if (J.sigma[i] > floor) continue;
         close = close || J.sigma[i] <= merged * largest;
+        if (!continues_along(g, q, J.v[i], g.reached)) continue;
+        if (free) {
+            double between[n];
+            for (int j = 0; j < n; ++j) between[j] = std::sqrt(0.5) * (along[j] + J.v[i][j]);
+            wide = continues_along(g, q, between, g.reached);
+            continue;
+        }
         for (int j = 0; j < n; ++j) along[j] = J.v[i][j];
-        if (continues_along(g, q, along, g.reached)) return true;
+        free = true;
     }
-    return false;
+    return free;
 }
 
 // Appends the refined solution q of a system if it is new.
@@ -95,7 +104,9 @@ void keep_distinct(const System& g, double* q, PositionSolutions& found) {
     for (int i = 0; i < n; ++i) found.q[found.count][i] = q[i];
     const int k = found.count++;
     found.branch[k] = static_cast<signed char>(k);
-    found.self_motion[k] = is_free(g, q, found.direction[k], found.close[k]);
+    bool wide = false;
+    found.self_motion[k] = is_free(g, q, found.direction[k], found.close[k], wide);
+    found.complete = found.complete && !wide;
     if (found.self_motion[k] || k == 0)
         found.status = found.self_motion[k] ? Status::singular : Status::exact;
 }

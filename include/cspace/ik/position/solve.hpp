@@ -37,6 +37,10 @@ void keep_refined(const TipGap<n>& g, double* q, PositionSolutions& found) {
     if (refine_angles(g, q) <= g.reached) keep_distinct(g, q, found);
 }
 
+// Distance of a point from the axis of a revolute joint, over the size of the arm, below which rounding
+// decides about the angle that moves it.
+inline constexpr double close_to_axis = 1e-5;
+
 inline void add_candidates(const TipGap<1>& g, PositionSolutions& found) {
     double q[1] = {joint_between(g, 0, g.tip, g.goal)};
     keep_refined(g, q, found);
@@ -48,8 +52,16 @@ inline void add_candidates(const TipGap<2>& g, PositionSolutions& found) {
     invariants(g, 0, curve, f);
     invariants(g, 0, goal, target);
     const auto complete = [&](double last) {
-        double q[2] = {joint_between(g, 0, at(curve, last), g.goal), last};
+        const Vec3d x = at(curve, last);
+        const double first = joint_between(g, 0, x, g.goal);
+        double q[2] = {first, last};
         keep_refined(g, q, found);
+        const bool free = found.count > 0 && found.self_motion[found.count - 1];
+        if (g.prismatic[0] || free || norm(cross(g.axis[0], x - g.point[0])) > close_to_axis) return;
+        for (const double turn : {0.5 * pi, pi, -0.5 * pi}) {
+            double turned[2] = {first + turn, last};
+            keep_refined(g, turned, found);
+        }
     };
     bool unconstrained = true;
     for (int i = 0; i < 2; ++i) {
