@@ -139,7 +139,7 @@ def test_threads_that_ask_first_at_once_share_one_solver():
 
 def test_the_cycle_of_a_robot_and_its_answer_is_collected():
     robot = cs.load_robot("ur5e")
-    robot.last = robot.ik(GOAL)
+    robot._last = robot.ik(GOAL)
     gone = weakref.ref(robot)
     del robot
     gc.collect()

@@ -359,7 +359,10 @@ def parts_of_example_robots():
 @pytest.mark.oracle
 @pytest.mark.parametrize(("name", "path"), parts_of_example_robots())
 def test_a_part_of_a_robot_of_example_robot_data_has_its_names_and_numbers(name, path):
-    files = metadata.files("example-robot-data")
+    try:
+        files = metadata.files("example-robot-data")
+    except metadata.PackageNotFoundError:
+        pytest.skip("needs example-robot-data")
     whole = from_urdf(next(file.locate() for file in files if str(file).endswith(f"robots/{path}")))
     for joint in load_description(name).joints:
         published = whole.joint(joint.name)

@@ -33,10 +33,10 @@ struct Plan {
     ThreeParallel parallel;
     Posed to_form_left, to_form_right;  // goal in the form: left · T (or T⁻¹) · right
     int virtual_joints = 0;
-    Chain completed;         // the arm with its virtual joints; empty without
     bool on_lanes = false;   // the family has a kernel; the others are solved one goal at a time
     bool idealised = false;  // the form differs from the true geometry
     bool polish = false;     // its angles are corrected on the true chain
+    Chain completed = {};    // the arm with its virtual joints; empty without
 };
 
 }  // namespace cspace::ik
