@@ -183,8 +183,8 @@ inline void add_bifurcations(const Chain& chain, const Posed& goal, double lengt
     for (int k = 0; k < out.count; ++k) {
         if (!out.self_motion[k] || passed[k]) continue;
         if (only_rolls(chain, constraint, out.q[k], out.direction[k])) {
-            if (!rolls_round(chain, constraint, out.q[k], out.direction[k]))
-                turn_into_valley(chain, goal, length, k, room, listed, out);
+            out.complete = out.complete && (rolls_round(chain, constraint, out.q[k], out.direction[k]) ||
+                                            turn_into_valley(chain, goal, length, k, room, listed, out));
             continue;
         }
         double q[max_joints], direction[max_joints];

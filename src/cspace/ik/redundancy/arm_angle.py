@@ -79,9 +79,9 @@ class Sphere:
 def swivel_intervals(solver: Solver, T: Array) -> Redundancy:
     """The intervals of the swivel in which a branch keeps all limits, for one goal T (4, 4).
 
-    The rotation of three joints that meet is affine in cos ψ and sin ψ, and each of them stands at a value L
-    where one entry of it does: hᵦ · (e^{−L hₐ} M hᵨ) = hᵦ · hᵨ for the first, alike for the others. Between
-    two neighbours of all those roots one swivel decides. M. Shimizu et al. 2008, section IV.
+    The rotation M of three joints whose axes intersect is affine in cos ψ and sin ψ. The first of them is at
+    its limit L where hᵦ · (e^{−L hₐ} M hᵨ) = hᵦ · hᵨ; the others have similar conditions. These roots divide
+    the circle, and one swivel decides for each part. M. Shimizu et al. 2008, section IV.
     """
     places = critical_swivels(solver, T)
     if not len(places):
