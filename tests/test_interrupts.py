@@ -93,6 +93,18 @@ def to_grid() -> Call:
 
 
 @call
+def from_grid() -> Call:
+    world = blocks(2500)[0]
+    return lambda: cs.PolygonWorld.from_grid(world)
+
+
+@call
+def from_free_grid() -> Call:
+    world = cs.OccupancyGrid(np.zeros((200, 300_000)))
+    return lambda: [cs.PolygonWorld.from_grid(world) for _ in range(10)]
+
+
+@call
 def coverage() -> Call:
     world, start, _ = blocks(3000, 0.1)
     return lambda: cs.navigation.coverage(world, start)

@@ -259,6 +259,13 @@ FINE_SIDES: Final = 1024
 """Sides of the polygons around corners where 32 sides have closed the path of a disc or stopped its descent:
 they exceed the disc by 5e-6 of the radius."""
 
+CHORD_OF_CLEARANCE: Final = 0.01
+"""Share of the clearance by which a polyline on a Voronoi diagram may be nearer to walls than its curves."""
+
+TINY_DISC: Final = 1e-6
+"""Radius of a disc, in sides of the world, below which the sides of the polygons around corners are too short
+for a Voronoi diagram: the disc follows that of the world that is not grown."""
+
 DISC_FITS: Final = 1e-9
 """Share of a radius by which the clearance of a path must exceed it to show that a disc fits: clearances
 carry some roundings of the coordinates."""

@@ -32,7 +32,7 @@ Outlines outlines_from(std::span<const Point> points, std::span<const std::int32
 Outlines outlines_from(const BitGrid& grid, double side, Point origin) {
     Outlines world = outlines_of(grid);
     const auto moved = [&](Point p) { return origin + side * p; };
-    for (Point& p : world.points) p = moved(p);
+    visit_range(0, world.points.size(), [&](std::size_t i) { world.points[i] = moved(world.points[i]); });
     world.low = moved(world.low), world.high = moved(world.high);
     return world;
 }

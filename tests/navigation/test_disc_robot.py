@@ -117,3 +117,25 @@ def test_a_descent_rests_at_no_side_of_a_polygon_around_an_arc(radius):
     assert cs.navigate(shed, (1, 1), (9, 9), "potential_field", radius=radius)
     flat = cs.PolygonWorld([[(2, -3), (5, -3), (5, 5), (2, 5)]], (0, -4, 10, 10))
     assert cs.navigate(flat, (1, 1), (9, 1), "potential_field", radius=radius).status == "local_minimum"
+
+
+@pytest.mark.parametrize("prefer", ["clearance", "length"])
+@pytest.mark.parametrize("share", 10.0 ** np.arange(-13, -4))
+def test_a_tiny_disc_takes_about_the_way_of_a_point_on_the_voronoi_diagram(share, prefer):
+    corners = np.array([(0.3, 0.3), (0.7, 0.35), (0.7, 0.7), (0.3, 0.7)])
+    world = cs.PolygonWorld([corners + np.array([i, j]) for i in range(5) for j in range(5)], (-1, -1, 6, 6))
+    radius, ends = 7 * share, [(-0.5, -0.5), (5.5, 5.5)]
+    point, disc = (cs.navigate(world, *ends, "voronoi", prefer=prefer, radius=r) for r in (0, radius))
+    assert disc.status == "found"
+    assert disc.length == pytest.approx(point.length, rel=1e-3)
+    assert disc.clearance > radius
+    lost = point.evidence.least_clearance - disc.evidence.least_clearance
+    assert lost == pytest.approx(radius, rel=0.02, abs=1e-11)
+
+
+@pytest.mark.parametrize("share", [1e-7, 1e-9])
+def test_a_tiny_disc_is_stopped_by_a_gap_as_tiny(share):
+    for excess, status in ((0.1, "found"), (-0.1, "unreachable")):
+        world, aside = gate(24 * share * (1 + excess), 0.777)
+        route = cs.navigate(world, aside, -aside, "voronoi", radius=12 * share)
+        assert route.status in (status, "undetermined")

@@ -166,3 +166,34 @@ def test_one_cell_more_opens_nothing_and_shortens_nothing(planner):
             assert route or not other
             if other and planner in OPTIMAL:
                 assert other.length >= route.length * (1 - 1e-12)
+
+
+@pytest.mark.parametrize("far", [1e3, 1e6, -3e6])
+@pytest.mark.parametrize("side", [1e-3, 0.05, 1, 2.0**-10])
+def test_voronoi_bug_walks_the_same_way_in_a_grid_that_is_moved(side, far):
+    """Over many cells, to where coordinates tell no more than a billionth of a cell apart."""
+    for seed in range(25):
+        rng = np.random.default_rng(seed)
+        blocked = rng.random(rng.integers(4, 25, 2)) < rng.choice([0.2, 0.3, 0.4])
+        cells = rng.choice(np.argwhere(~blocked), 2) + rng.uniform(0.1, 0.9, (2, 2))
+        reach = side * rng.choice([1.5, 4, np.inf])
+        answers = []
+        for by in (0, far):
+            grid = cs.OccupancyGrid(blocked, side, (by * side, by / 2 * side))
+            ends = (np.array([by, by / 2]) + cells[:, ::-1]) * side
+            answers.append(cs.navigate(grid, *ends, "voronoi_bug", range=reach))
+        near, moved = answers
+        assert moved.status == near.status
+        assert moved.length == pytest.approx(near.length, rel=1e-5, abs=1e-6 * side)
+
+
+def test_millimetres_a_kilometre_away_are_explored_like_those_at_the_origin():
+    rng = np.random.default_rng(52)
+    rng.integers(10), rng.choice(6)
+    blocked = rng.random((20, 33)) < 0.4
+    for far in (0, 1, 1e3, 1e4):
+        grid = cs.OccupancyGrid(blocked, 1e-3, (far, far))
+        ends = far + np.array([(0.0185, 0.0085), (0.0185, 0.0185)])
+        route = cs.navigate(grid, *ends, "voronoi_bug")
+        assert route.status == "unreachable"
+        assert route.length == pytest.approx(0.37400554601, rel=1e-6)

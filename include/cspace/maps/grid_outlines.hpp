@@ -6,6 +6,7 @@
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/maps/free_space.hpp"
+#include "cspace/math/interrupts.hpp"
 
 namespace cspace::maps {
 
@@ -38,8 +39,10 @@ namespace detail {
 // the point before piece i.
 template <class Differs, class Crossed, class Visit>
 void visit_edges(int lines, int length, Differs differs, Crossed crossed, Visit visit) {
+    InterruptPoll poll(1 << 11);
     for (int k = 0; k <= lines; ++k)
         for (int i = 0; i < length;) {
+            poll.step();
             if (!differs(k, i)) {
                 ++i;
                 continue;

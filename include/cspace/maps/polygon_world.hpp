@@ -6,6 +6,7 @@
 
 #include "cspace/maps/convex_mesh.hpp"
 #include "cspace/maps/free_space.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/math/made_once.hpp"
 
 namespace cspace::maps {
@@ -24,8 +25,10 @@ class Locator {
         rows_ = 1 + Index(height / side_);
         near_.resize(std::size_t(columns_) * std::size_t(rows_));
         Index t = 0;
+        InterruptPoll poll(256);
         for (Index row = 0; row < rows_; ++row)
             for (Index k = 0; k < columns_; ++k) {
+                poll.step();
                 const Index column = row % 2 ? columns_ - 1 - k : k;
                 const Place place = mesh.locate(center(row, column), t);
                 if (place.triangle != none) t = place.triangle;

@@ -4,7 +4,9 @@ polygon.
 A world grown by a disc has polygons in place of arcs around corners. Its gaps are open exactly if the disc
 fits, so its connectivity is correct except for positions that the corners of those polygons cover: start or
 goal positions there, and nooks. The clearance in the original world decides these cases. A gradient descent
-may stop at a side of such a polygon but not at the arc; polygons with more sides decide this case.
+may stop at a side of such a polygon but not at the arc; polygons with more sides decide this case. Around a
+disc that is tiny beside the world the sides are so short that rounding hides where the Voronoi diagram goes;
+the diagram of the original world differs by no more than the radius and serves in its place.
 """
 
 from __future__ import annotations
@@ -17,8 +19,8 @@ from cspace.maps.outlines import longer_side
 from cspace.navigation.checks import check_ends
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route, new_route
-from cspace.navigation.voronoi.voronoi import Voronoi
-from cspace.tolerances import DISC_FITS, FINE_SIDES, ON_WALL
+from cspace.navigation.voronoi.voronoi import Voronoi, VoronoiEvidence
+from cspace.tolerances import CHORD_OF_CLEARANCE, DISC_FITS, FINE_SIDES, ON_WALL, TINY_DISC
 
 
 class DiscFits(NamedTuple):
@@ -62,7 +64,13 @@ def plan_disc(
     ends: tuple[Any, Any],
 ) -> Route:
     """The route of a disc among polygons; `grown` is the world grown by its radius [m]."""
-    route = planner.plan(fit_world(world, grown, radius, *ends), *ends)
+    grown = fit_world(world, grown, radius, *ends)
+    tiny = None
+    if isinstance(planner, Voronoi) and radius < TINY_DISC * longer_side(world.bounds):
+        tiny = _plan_tiny_disc(world, radius, planner, ends)
+    if tiny is not None:
+        return tiny
+    route = planner.plan(grown, *ends)
     if route.status == "local_minimum":  # at a side of the polygon, but not at the arc
         route = planner.plan(world.inflate(radius, sides=FINE_SIDES, keep=ends), *ends)
     if route.status != "unreachable":
@@ -75,3 +83,18 @@ def plan_disc(
         return fine
     ends, walked = (route.start, route.goal), (route.path, route.length, route.stats)
     return new_route(route.world, route._asked, ends, "undetermined", *walked, DiscFits(clearance, radius))
+
+
+def _plan_tiny_disc(
+    world: PolygonWorld, radius: float, planner: Voronoi, ends: tuple[Any, Any]
+) -> Route | None:
+    """The route on the diagram of the original world, if the disc fits through wherever it leads."""
+    route = planner.plan(world, *ends)
+    if not route:
+        return route if route.status == "unreachable" else None
+    found: VoronoiEvidence = route.evidence
+    if found.on_diagram * (1 - CHORD_OF_CLEARANCE) <= radius:
+        return None
+    left = VoronoiEvidence(*(max(clearance - radius, 0.0) for clearance in found))
+    walked = (route.path, route.length, route.stats)
+    return new_route(world, route._asked, (route.start, route.goal), route.status, *walked, left)

@@ -21,6 +21,7 @@ class ClearanceRobot : public RangeRobot {
         1e-11;  // so near to a wall, in sizes of the world, rounding hides the side
     // How it tells places apart, the length in sizes of the world: ten times and more what the curves lose.
     static constexpr Likeness like{1e-6, 1e-9, 1e-5, 1e-9, 2};
+    static constexpr int most_steps = 10'000;  // along one curve
     static constexpr double folded = 1e-6;     // sum of two normals that point against each other
     static constexpr double at_range = 1e-12;  // of how far it keeps: what rounding makes of reaching it
     static constexpr double touches2 = 1e-9;   // of a square: a curve that touches the goal's circle meets it
@@ -30,7 +31,7 @@ class ClearanceRobot : public RangeRobot {
                    voronoi::Grain grain)
         : RangeRobot(walls, start, range),
           s_(sites),
-          grain_{grain.fine * sites.extent, grain.share},
+          grain_(voronoi::grain_in(sites, grain)),
           contacts_(sites, grain_),
           keeps_(kept_share * range) {}
 
@@ -272,7 +273,7 @@ class ClearanceRobot : public RangeRobot {
         for (double t = t0; t < t1;) {
             const double r = std::max(curve.radius(t), like.fine * s_.extent);
             double step = 0.25 * r / norm(curve.velocity(t));
-            if (!bends) step = std::max(step, (t1 - t0) / 32);
+            step = std::max(step, (t1 - t0) / (bends ? most_steps : 32));
             t = t + step < t1 ? t + step : t1;
             move_to(curve.at(t));
             if (bends || t == t1) log.note(at_);
@@ -313,7 +314,7 @@ class ClearanceRobot : public RangeRobot {
             way.length(std::abs(nearest - low)) <= near && dot(goal - there, s_.towards(a, there)) < 0;
         const double far = distance(there, goal);
         if (is_low && far < aim.nearer) stop = low, cause = Halt::low;
-        const int steps = std::clamp(int(std::ceil(way.length(stop) / (0.25 * keeps_))), 1, 10'000);
+        const int steps = std::clamp(int(std::ceil(way.length(stop) / (0.25 * keeps_))), 1, most_steps);
         bool low_noted = !is_low || cause == Halt::low;
         for (int i = 1; i <= steps; ++i) {
             const double t = i == steps ? stop : stop * i / steps;

@@ -19,10 +19,10 @@ inline Gate backward_gate(const Sites& sites, Index b) {
     return {sites.begin(e), -1.0 * sites.direction(sites.is_edge(b) ? e : sites.previous(e))};
 }
 // The first parameter from begin on at which a foot leaves its site.
-inline double leaves(const Bisector& curve, double begin, Gate gate, Grain grain) {
+inline double leaves(const Sites& sites, const Bisector& curve, double begin, Gate gate, Grain grain) {
     const Quadratic g = curve.along(gate.s, gate.q);
     constexpr double begins = 1e-3;  // of the grain: a foot that a step put on the end is on it
-    const double slack = grain.at(curve.radius(begin)) * begins;
+    const double slack = std::max(grain.at(curve.radius(begin)) * begins, 2 * sites.spacing);
     if (std::abs(g.at(begin)) <= slack && g.slope(begin) > 0) return begin;
     double first = std::numeric_limits<double>::infinity();
     for (const double t : g.zeros())
@@ -70,8 +70,8 @@ ArcPiece next_piece(const Sites& s, Grain grain, Index a, Index b, Point from, c
     arc.curve = bisector_of(s, a, b, from);
     arc.begin = arc.end = arc.curve.parameter(from);
     if (!std::isfinite(arc.begin) || !std::isfinite(squared_norm(arc.curve.p2))) return arc;
-    const double end_a = leaves(arc.curve, arc.begin, forward_gate(s, a), grain),
-                 end_b = leaves(arc.curve, arc.begin, backward_gate(s, b), grain);
+    const double end_a = leaves(s, arc.curve, arc.begin, forward_gate(s, a), grain),
+                 end_b = leaves(s, arc.curve, arc.begin, backward_gate(s, b), grain);
     const double own = std::min({end_a, end_b, arc.begin + 4 * s.extent}), end = std::min(own, bound(arc));
     FirstTouch touch(s, grain, arc.curve, a, b, arc.begin, end);
     touch.find();

@@ -15,6 +15,11 @@ struct Grain {
 // the finer or the coarser one.
 inline constexpr Grain grains[] = {{1e-13, 1e-9}, {1e-15, 1e-12}, {1e-11, 1e-7}};
 
+// The grain of shares of the extent in the lengths of a world; none is finer than its coordinates.
+inline Grain grain_in(const Sites& sites, Grain shares) {
+    return {std::max(shares.fine * sites.extent, 2 * sites.spacing), shares.share};
+}
+
 class FirstTouch {
   public:
     FirstTouch(const Sites& sites, Grain grain, const Bisector& curve, Index a, Index b, double begin,

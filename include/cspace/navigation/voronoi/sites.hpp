@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "cspace/maps/boundary.hpp"
 #include "cspace/math/predicates.hpp"
@@ -27,6 +28,7 @@ inline Turn turn_between(Point a, Point b, Point c, Point in, Point out) {
 struct Sites {
     Point origin;               // what has been taken from all coordinates, so that they are small
     double extent = 0;          // the largest coordinate that is left
+    double spacing = 0;         // of the doubles at the largest coordinate as given
     std::vector<Point> points;  // where each edge begins
     std::vector<Point> along;   // its direction, of length one; free space lies on the left
     std::vector<double> length;
@@ -45,7 +47,10 @@ struct Sites {
             before[std::size_t(after(i))] = i;
             component.push_back(walls.component[std::size_t(walls.ring[std::size_t(i)])]);
             extent = std::max({extent, std::abs(p.x), std::abs(p.y)});
+            const Point given = walls.begin(i);
+            spacing = std::max({spacing, std::abs(given.x), std::abs(given.y)});
         }
+        spacing *= std::numeric_limits<double>::epsilon();
         for (Index i = 0; i < n; ++i) {
             const Point way = end(i) - begin(i);
             length.push_back(norm(way));
@@ -61,8 +66,9 @@ struct Sites {
         : Sites(walls, walls.size() == 0 ? Point{} : bounds_of(walls.points).middle()) {}
 
     Index size() const { return Index(points.size()); }
-    // What a distance may be off: coordinates lose some 1e-16 of the extent, a foot ten times that.
-    double rounding() const { return tolerance::exact * extent; }
+    // What a distance may be off: coordinates lose some 1e-16 of the extent, a foot ten times that; far from
+    // the origin they are given less finely.
+    double rounding() const { return std::max(tolerance::exact * extent, 2 * spacing); }
 
     // Site i < size() is an edge, site size() + i the point where edge i begins.
     bool is_edge(Index site) const { return site < size(); }

@@ -25,28 +25,32 @@ class Tracer {
           contacts_(diagram.sites, grain),
           cell_(cell_share * diagram.sites.extent) {}
 
-    // Adds the part of the component that a point lies in.
-    void trace(Point seed) {
+    // Adds the part of the component that a point lies in; false where it would have no end.
+    bool trace(Point seed) {
         const Retraction up = retract(s_, seed);
-        if (up.b == none) return;
+        if (up.b == none) return true;
         component_ = s_.component[std::size_t(s_.edge_of(up.a))];
-        if (!start(up)) return;
+        const std::size_t arcs = d_.arcs.size();
+        if (!start(up)) return true;
         while (!open_.empty()) {
             const auto [vertex, gap] = open_.back();
             open_.pop_back();
             if (taken_[std::size_t(gap)]) continue;
-            if (d_.arcs.size() > 40 * std::size_t(s_.size()) + 1000) break;
+            if (d_.arcs.size() - arcs > most_arcs * std::size_t(s_.size()) + 64) return false;
             taken_[std::size_t(gap)] = 1;
             const Fan& fan = fans_.at(vertex);
             const Index k = gap - fan.first;
             follow(vertex, touches_[std::size_t(gap)].site,
                    touches_[std::size_t(fan.first + (k + 1) % fan.count)].site);
         }
-        open_.clear();
+        return true;
     }
 
   private:
-    static constexpr double cell_share = 1e-4;      // of the extent: few vertices share a cell
+    static constexpr double cell_share = 1e-4;  // of the extent: few vertices share a cell
+    // Per edge of the walls, of which each may bring a point as a second site: a plane graph with faces for
+    // its n sites has less than 3 n edges (Euler), and rounding may divide some of them.
+    static constexpr std::size_t most_arcs = 8;
     static constexpr double same_direction = 1e-5;  // [rad] sum of two, between arcs of one gap
     struct Fan {
         Index first, count;  // of touches_; gap k lies between touch k and the one after it
@@ -176,7 +180,7 @@ inline bool trace_component(Diagram& d, Point seed, std::int64_t rings) {
     for (const Grain& grain : grains) {
         d.vertices.resize(vertices);
         d.arcs.resize(arcs);
-        Tracer(d, {grain.fine * d.sites.extent, grain.share}).trace(seed);
+        if (!Tracer(d, grain_in(d.sites, grain)).trace(seed)) continue;
         const auto added = std::int64_t(d.vertices.size() - vertices) - std::int64_t(d.arcs.size() - arcs);
         if (added == 2 - rings) return true;
     }
