@@ -138,8 +138,8 @@ SAME_TIP: Final = 1e-12
 what the core accepts as an exact solution."""
 
 FARTHEST: Final = 1e100
-"""Largest number in a goal, a seed or a geometric subproblem, and largest sum of a goal's coordinates
-(m, rad): their squares still fit a double."""
+"""Largest number in a configuration, a goal, a seed or a geometric subproblem, and largest sum of a goal's
+coordinates (m, rad): their squares still fit a double."""
 
 NUMERIC_TOLERANCE: Final = 1e-9
 """Error of a descent (m of the position, rad of the rotation) that counts as reached unless given: far above
@@ -167,7 +167,7 @@ XACRO_BITS: Final = 4096
 """Most bits of a whole number in an expression of xacro: no double has more than 1024 before the point."""
 
 XACRO_ITEMS: Final = 1_000_000
-"""Most characters or items of a repeated text or list in an expression of xacro."""
+"""Most characters and items that an expression of xacro repeats, pads with or walks over, all together."""
 
 TOML_KEY_PARTS: Final = 100
 """Most parts of a dotted key of TOML: a robot's have two, and the reader's time grows with their square."""
@@ -188,6 +188,10 @@ MAP_CELLS: Final = 1 << 30
 
 MAP_BYTES: Final = 1 << 31
 """Most bytes of a map file: two for each cell of the largest grid."""
+
+PNG_PIXELS: Final = 1 << 27
+"""Most pixels of a PNG image that is decompressed, for a file of a hundred kilobytes may hold them all: maps
+of 11,000 × 11,000 pixels pass, in a few seconds and two gigabytes."""
 
 MESHED_CORNERS: Final = 50_000
 """Most corners of a grid for which the any-angle search prepares polygons whatever the size: it takes a tenth

@@ -22,11 +22,14 @@ T* take_array(Scratch& scratch, int n) {
     return array;
 }
 
+// Whether all are finite, and so small that the values of joints that follow them are finite too: up to
+// 1e100, which is FARTHEST in Python.
 template <class V>
 bool all_finite(const V* values, int n) {
+    constexpr double headroom = 1e208;  // 1e100 times that is just below the largest double
     V sum = fill<V>(0.0);
-    for (int i = 0; i < n; ++i) sum = sum + 0.0 * values[i];
-    return all(sum == 0.0);
+    for (int i = 0; i < n; ++i) sum = sum + headroom * values[i];
+    return all(0.0 * sum == 0.0);
 }
 
 template <class V>

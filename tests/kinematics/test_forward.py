@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cspace.errors import CspaceError
+from cspace.errors import CspaceError, InputError
 from cspace.model import Description, Joint, Link, Mimic, chain, from_screws
 from cspace.robot import Robot
 from kinematics import robots
@@ -195,3 +195,35 @@ def test_a_joint_that_mimics_follows_even_a_leader_outside_the_chain():
     angle = -2.0 * 0.3 + 0.5
     np.testing.assert_allclose(robot.fk([0.3])[:2, 0], [np.cos(angle), np.sin(angle)], atol=1e-15)
     np.testing.assert_allclose(robot.jacobian(np.array([0.3]))[5], [-2.0], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    "kinds", [("revolute", "revolute"), ("prismatic", "prismatic"), ("revolute", "prismatic")]
+)
+@pytest.mark.parametrize("multiplier", [1.0, -1e12])
+def test_joints_that_follow_enormous_values_have_poses_without_nan(kinds, multiplier, tmp_path):
+    links = '<robot name="a"><link name="b"/><link name="c"/><link name="d"/>'
+    joint = '<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/><axis xyz="0 1 1"/>{}{}</joint>'
+    limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+    mimic = f'<mimic joint="one" multiplier="{multiplier}"/>'
+    parts = (
+        joint.format("one", kinds[0], "b", "c", limit, ""),
+        joint.format("two", kinds[1], "c", "d", limit, mimic),
+    )
+    (tmp_path / "a.urdf").write_text(links + "".join(parts) + "</robot>")
+    robot = Robot.from_urdf(tmp_path / "a.urdf")
+    for q in (1e10, 1e99, -1e100):
+        rows = np.full((5, 1), q)
+        for result in (
+            robot.fk([q]),
+            robot.jacobian([q]),
+            robot.fk(rows),
+            robot.fk_all(rows),
+            robot.manipulability(rows),
+        ):
+            assert np.isfinite(result).all()
+    for q in (2e100, 1e208, -1e300):
+        for call in (robot.fk, robot.jacobian, robot.fk_jacobian, robot.fk_all, robot.manipulability):
+            for given in ([q], np.full((5, 1), q)):
+                with pytest.raises(InputError, match=r"the largest allowed value is ±1e\+100"):
+                    call(given)

@@ -277,6 +277,16 @@ def test_images_are_dark_where_blocked(tmp_path):
     assert np.array_equal(lighter.blocked, [[1, 1], [1, 0]])
 
 
+@pytest.mark.parametrize(("rows", "columns"), [(1 << 14, (1 << 13) + 1), (1 << 28, 1), (1, 1 << 30)])
+@pytest.mark.parametrize(("colour", "depth"), [(0, 1), (0, 8), (2, 8), (6, 16)])
+def test_the_pixels_of_a_png_are_counted_before_they_are_decompressed(tmp_path, rows, columns, colour, depth):
+    from cspace.maps.images import read_image
+
+    path = write(tmp_path, "a.png", png((rows, columns, np.zeros((1, 1), np.uint8)), colour, depth))
+    with pytest.raises(MapError, match=f"{rows * columns} pixels; at most 134217728"):
+        read_image(path)
+
+
 def test_png_that_cannot_be_read(tmp_path):
     good = png((1, 2, packed(np.array([[[1], [2]]]), 8)), 0, 8)
     for data in (good[:20], good[:45], good[:30] + b"x" + good[31:], good.replace(b"IDAT", b"IDAX")):

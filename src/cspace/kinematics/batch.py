@@ -15,6 +15,7 @@ from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.spatial import as_pose
+from cspace.tolerances import FARTHEST
 
 MOST_THREADS = 1024
 
@@ -83,8 +84,8 @@ def broadcast_rows(
 
 
 def refuse_infinite(batch: Batch) -> None:
-    """Raise the InputError that names the value of q which is not finite."""
-    as_floats(batch.q.reshape((*batch.shape, batch.q.shape[1])), "q")
+    """Raise the InputError that names the value of q which is not finite, or too large."""
+    as_floats(batch.q.reshape((*batch.shape, batch.q.shape[1])), "q", largest=FARTHEST)
 
 
 def check_robot(robot: object) -> None:

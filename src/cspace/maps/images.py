@@ -13,7 +13,7 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.errors import MapError, MissingExtraError
 from cspace.maps.files import check_map_path, read_map_bytes
-from cspace.tolerances import MAP_CELLS
+from cspace.tolerances import MAP_CELLS, PNG_PIXELS
 
 PNG_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 
@@ -22,7 +22,7 @@ def read_image(path: str | os.PathLike[str]) -> Array:
     """The grey values of an image, (rows, columns) from 0 (black) to 1 (white), top row first.
 
     Colours are averaged; fully transparent pixels are NaN. Raises MapError for a file that cannot be read,
-    MissingExtraError for PNG without pillow.
+    or one of PNG with more than tolerances.PNG_PIXELS pixels, and MissingExtraError for PNG without pillow.
     """
     name, data = check_map_path(path), read_map_bytes(path)
     if data.startswith(PNG_SIGNATURE):
@@ -90,6 +90,10 @@ def _read_png(data: bytes, name: str) -> Array:
     try:
         with PngImageFile(io.BytesIO(data)) as image:
             _check_size(*image.size, name)
+            if (pixels := image.size[0] * image.size[1]) > PNG_PIXELS:
+                size = f"{image.size[0]} × {image.size[1]} = {pixels} pixels"
+                remedy = f"at most {PNG_PIXELS} are decompressed: make the image smaller, or save it as PGM"
+                raise MapError(f"the PNG image has {size}; {remedy}", path=name)
             return _average_colours(image)
     except MapError:
         raise
@@ -103,5 +107,12 @@ def _average_colours(image: Any) -> Array:
         deep = np.asarray(image, dtype=float)
         clear = deep == image.info.get("transparency", -1)
         return np.where(clear, np.nan, deep / 65535)
-    colours = np.asarray(image.convert("RGBA"), dtype=float)
-    return np.where(colours[:, :, 3] == 0, np.nan, colours[:, :, :3].mean(axis=2) / 255)
+    if image.mode in ("1", "L") and "transparency" not in image.info:
+        return np.asarray(image.convert("L"), dtype=float) / 255
+    colours = np.asarray(image.convert("RGBA"))
+    total = np.add(colours[:, :, 0], colours[:, :, 1], dtype=np.uint16)
+    total += colours[:, :, 2]
+    grey = total / 3
+    grey /= 255
+    grey[colours[:, :, 3] == 0] = np.nan
+    return grey

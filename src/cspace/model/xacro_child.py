@@ -12,7 +12,7 @@ from typing import Any
 from xml.dom import expatbuilder, minidom
 
 from cspace.errors import CspaceError, DescriptionError, suggest
-from cspace.model.expressions import BOUNDED, compile_bounded, evaluate_bounded
+from cspace.model.expressions import Budget, compile_bounded, evaluate_bounded
 from cspace.model.files import locate_package, read_bytes
 from cspace.model.xml import parse_document
 from cspace.tolerances import XACRO_ELEMENTS
@@ -149,7 +149,7 @@ class Expansion:
 
 def evaluate_argument(text: str, _: Any, names: Any) -> Any:
     """The value of $(eval …): names is a mapping that finds the arguments of the file."""
-    return eval(compile_bounded(text), {"__builtins__": vars(builtins) | dict(BOUNDED.values())}, names)
+    return eval(compile_bounded(text), {"__builtins__": vars(builtins) | Budget().functions()}, names)
 
 
 class Placed(expatbuilder.ExpatBuilderNS):
