@@ -58,12 +58,18 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
     const int n = arm.chain.n, p = tracer.parameter;
     const CurvePoint origin = at;
     double stride = 0.02, inside[max_joints];
-    const auto add = [&](const Critical& turn) { return add_turn(tracer, turns, turn, inside); };
+    Ahead ahead;
+    const auto add = [&](const Critical& turn) {
+        CurvePoint there;
+        for (int i = 0; i < n; ++i) there.q[i] = inside[i];
+        put_on_curve(tracer, there);
+        return add_turn(tracer, turns, turn, there.q);
+    };
     for (int i = 0; i < n; ++i) inside[i] = at.q[i];
     record_point(tracer, at.q, true);
     for (int k = 0; k < most_steps; ++k) {
         CurvePoint next;
-        if (!step_along(tracer, at, stride, next)) return ArcEnd::lost;
+        if (!step_along(tracer, at, ahead, stride, next)) return ArcEnd::lost;
         int side = 0, stop = stop_at_limit(tracer, at, next, side);
         if (stop_between_turns(tracer, at, next)) stop = -1;
         if (at.tangent[p] * next.tangent[p] < 0 &&
@@ -256,16 +262,14 @@ inline void spread_evenly(int k, int n, double* q) {
 // Finds small loops by Newton's method. Sampled values may miss a small loop, but its basin of attraction is
 // large.
 inline void trace_loops_by_descent(Tracer& tracer) {
-    constexpr int starts = 48, most_steps = 60;
+    constexpr int starts = 48;
     const Redundant& arm = *tracer.arm;
-    for (int k = 0; k < starts; ++k) {
-        CurvePoint at;
-        spread_evenly(k, arm.chain.n, at.q);
-        at.error = 1;
-        for (int step = 0; step < most_steps && at.error > tolerance::reached; ++step)
-            onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, at);
-        if (at.error <= tolerance::reached) trace_loop(tracer, at.q);
-    }
+    double q[starts][max_joints];
+    for (int k = 0; k < starts; ++k) spread_evenly(k, arm.chain.n, q[k]);
+    bool reached[starts];
+    descend_to_manifold(arm.chain, arm.rank, tracer.goal, arm.length, q, starts, reached);
+    for (int k = 0; k < starts; ++k)
+        if (reached[k]) trace_loop(tracer, q[k]);
 }
 
 // Traces the closed arcs from the solutions at sampled values of the parameter. Other joints are sampled too,

@@ -21,6 +21,12 @@ struct Trail {
     SweptRows swept[loop_looks];
 };
 
+// The third and fourth derivative of the curve at the point that a step led to, from the tangents and bends
+// at both of its ends; zero where the step was too short to tell.
+struct Ahead {
+    double third[max_joints] = {}, fourth[max_joints] = {};
+};
+
 struct Tracer {
     const Redundant* arm;
     const LimitPoints* points;
@@ -78,24 +84,57 @@ inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
     return 1 / most;
 }
 
-// Tries a step of length `stride`. Returns true if it stayed close to the curve.
-inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride, double most_off,
-                     CurvePoint& to) {
-    const int n = tracer.arm->chain.n;
-    double guess[max_joints], off = 0;
+// The derivatives ahead of `to`, where a step from `from` ended: of the Hermite polynomial for the tangents
+// t(−h), t(0) and bends b(−h), b(0).
+inline Ahead look_ahead(const CurvePoint& from, const CurvePoint& to, int n) {
+    constexpr double shortest = 1e-3, arc = 1.0 / 24;  // arc − chord = κ² h³ / 24
+    Ahead out;
+    double chord2 = 0;
+    for (int i = 0; i < n; ++i) chord2 += (to.q[i] - from.q[i]) * (to.q[i] - from.q[i]);
+    if (!(chord2 > shortest * shortest)) return out;
+    const double h = std::sqrt(chord2) * (1 + arc * chord2 * dot_n(to.bend, to.bend, n)), per = 1 / h;
+    for (int i = 0; i < n; ++i) {
+        const double turned = per * per * (from.tangent[i] - to.tangent[i] + h * to.bend[i]);
+        const double bent = per * (from.bend[i] - to.bend[i]);
+        out.third[i] = 6 * turned + 2 * bent;
+        out.fourth[i] = 2 * per * (bent + out.third[i]);
+    }
+    return out;
+}
+
+// Tries a step of length `stride`. Returns true if it stayed close to the curve. One Newton step is enough
+// where it is so small that the next one would be rounding to what follows, unless the parameter all but
+// turns.
+inline bool try_step(const Tracer& tracer, const CurvePoint& from, const Ahead& ahead, double stride,
+                     double most_off, CurvePoint& to) {
+    constexpr double small = 1e-4, turning = 0.01, third = 1.0 / 6, fourth = 1.0 / 24;
+    const Redundant& arm = *tracer.arm;
+    const int n = arm.chain.n;
+    double guess[max_joints];
     predict_along(from.q, from.tangent, from.bend, stride, n, guess);
-    for (int i = 0; i < n; ++i) to.q[i] = guess[i];
-    put_on_curve(tracer, to);
+    const double h3 = stride * stride * stride;
+    for (int i = 0; i < n; ++i) {
+        guess[i] += h3 * (third * ahead.third[i] + fourth * stride * ahead.fourth[i]);
+        to.q[i] = guess[i];
+    }
+    const auto moved = [&] {
+        double off = 0;
+        for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - guess[i]));
+        return off;
+    };
+    onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, to);
+    const bool once = moved() < small && std::fabs(to.tangent[tracer.parameter]) > turning;
+    if (!once) put_on_curve(tracer, to);
     orient_tangent(to.tangent, from.tangent, n);
-    for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - guess[i]));
-    return to.error < tolerance::reached && off < most_off * stride &&
+    return (once || to.error < tolerance::reached) && moved() < most_off * stride &&
            dot_n(to.tangent, from.tangent, n) > 0.95;
 }
 
 // One step. It is shortened until it stays close to the curve and the Jacobian changes little, so that two
 // arcs that nearly cross are distinguished. At a crossing the step continues straight to the far side.
 // Returns false where the curve cannot be followed.
-inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& stride, CurvePoint& to) {
+inline bool step_along(const Tracer& tracer, const CurvePoint& from, Ahead& ahead, double& stride,
+                       CurvePoint& to) {
     constexpr double shortest = 1e-7, crossing = 1e-5, most_change = 0.5;
     constexpr double straight = 1e-3;  // a bend this small restrains no step
     const int n = tracer.arm->chain.n;
@@ -103,15 +142,21 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& str
     stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + straight));
     bool crosses = false;
     while (stride > shortest) {
-        if (!try_step(tracer, from, stride, most_correction, to)) {
+        if (!try_step(tracer, from, ahead, stride, most_correction, to)) {
             stride *= 0.5;
+            ahead = {};
             continue;
         }
-        const double change = min(jacobian_change(from, to, n), jacobian_change(to, from, n));
-        if (change < most_change) return true;
+        const double there = jacobian_change(from, to, n);
+        const double change = there < most_change ? there : min(there, jacobian_change(to, from, n));
+        if (change < most_change) {
+            ahead = look_ahead(from, to, n);
+            return true;
+        }
         if (!crosses && stride < crossing) {
             crosses = true;
-            if (try_step(tracer, from, 10 * crossing, 0.01, to)) {
+            ahead = {};
+            if (try_step(tracer, from, ahead, 10 * crossing, 0.01, to)) {
                 stride = 10 * crossing;
                 return true;
             }

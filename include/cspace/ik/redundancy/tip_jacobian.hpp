@@ -182,6 +182,63 @@ CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, dou
                               : step_onto_curve<0>(chain, rank, goal, length, at);
 }
 
+// Newton's method onto the manifold on lanes. A lane that has finished takes the next start.
+template <int N, class V>
+inline void descend_abreast(const Chain& chain, const Posed& goal, double length, double (*q)[max_joints],
+                            int starts, bool* reached) {
+    constexpr int most_steps = 60, lanes = Lanes<V>::count;
+    constexpr double stride = 0.3;  // [rad, m]
+    const int n = size_or<N>(chain.n);
+    const Pose<V> goals = fill_pose<V>(goal);
+    V at[max_joints], step[max_joints];
+    int start[lanes], steps[lanes] = {}, next = 0, active = 0;
+    const auto take_next = [&](int l) {
+        start[l] = next < starts ? next++ : -1;
+        steps[l] = 0;
+        active += start[l] >= 0;
+        for (int i = 0; i < n; ++i) set_lane(at[i], l, q[start[l] < 0 ? 0 : start[l]][i]);
+    };
+    for (int i = 0; i < n; ++i) at[i] = fill<V>(0.0);
+    for (int l = 0; l < lanes; ++l) take_next(l);
+    while (active > 0) {
+        TipMotion<V> motion;
+        SplitJacobian<V> split;
+        tip_motion<N>(chain, goals, length, at, motion);
+        split_jacobian<N>(motion, n, 6, split);
+        shortest_step<N>(split, n, motion.error, step);
+        const V keep = shortening(largest_of(step, n), stride);
+        for (int i = 0; i < n; ++i) at[i] = mul_add(keep, step[i], at[i]);
+        const unsigned there = bits_of(largest_of(motion.error, 6) <= tolerance::reached);
+        for (int l = 0; l < lanes; ++l) {
+            if (start[l] < 0 || !(there >> l & 1 || ++steps[l] == most_steps)) continue;
+            reached[start[l]] = there >> l & 1;
+            for (int i = 0; i < n; ++i) q[start[l]][i] = lane(at[i], l);
+            --active;
+            take_next(l);
+        }
+    }
+}
+// Moves `starts` configurations q by Newton's method onto the curve; `reached` says which of them it led
+// there.
+CSPACE_ONCE void descend_to_manifold(const Chain& chain, int rank, const Posed& goal, double length,
+                                     double (*q)[max_joints], int starts, bool* reached) {
+    if (rank == 6) {
+        (chain.n == 7 ? descend_abreast<7, Pack<4>> : descend_abreast<0, Pack<4>>)(chain, goal, length, q,
+                                                                                   starts, reached);
+        return;
+    }
+    constexpr int most_steps = 60;
+    for (int k = 0; k < starts; ++k) {
+        CurvePoint at;
+        for (int i = 0; i < chain.n; ++i) at.q[i] = q[k][i];
+        at.error = 1;
+        for (int step = 0; step < most_steps && at.error > tolerance::reached; ++step)
+            onto_curve(chain, rank, goal, length, at);
+        reached[k] = at.error <= tolerance::reached;
+        for (int i = 0; i < chain.n; ++i) q[k][i] = at.q[i];
+    }
+}
+
 // ‖J⁺ (J′ − J)‖ for the Jacobian J at `at` and J′ at `other`. If it is below 1 on a convex set, every
 // solution in that set lies on one arc. Two solutions then differ in their component along the tangent.
 inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int n) {
