@@ -41,7 +41,8 @@ all redundant joints the answer lists every solution of the others; with near= i
 limits. Otherwise, with one redundant joint, it lists all branches at values spread over the feasible intervals of that joint; with more,
 it is the configuration nearest to the middle of the limits.
 
-Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,
+Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], or as locked, or within limits where it
+is one configuration that was chosen among infinitely many; status, reason, complete, residual,
 branch, self_motions, freedom, derivative, within(), nearest(), wrapped(). It is falsy if nothing reaches the goal.
 Returns SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Raises InputError for a goal that
 is not a pose, and NoClosedFormError for mimic joints, a floating base or more than sixteen joints.)doc";

@@ -157,6 +157,10 @@ WEAK_DIRECTION: Final = 0.01
 """Singular value of a Jacobian (m or rad, per rad or m) below which a direction counts as weak in resolved
 rate: a joint would turn a hundred times faster than the frame, which no drive follows."""
 
+DEGREE_LIMITS: Final = (25.0, 720.0)
+"""Limits of revolute joints in URDF [rad], above the first and up to the second, that were probably meant in
+degrees: four turns are more than an arm's cables bear, and two turns of 360 degrees the most they do."""
+
 XACRO_SECONDS: Final = 60.0
 """Longest expansion of a xacro file [s]: the largest robots take two."""
 
@@ -178,6 +182,10 @@ GEOJSON_DEPTH: Final = 100
 HALF_TURN: Final = 1e-12
 """1 + trace R (unitless, the square of the angle that is missing) below which neighbouring poses of a path
 are half a turn apart: the axis of such a turn carries the rounding of the poses, a million times larger."""
+
+TRACK_START: Final = 1e-3
+"""Distance (rad, m) of a joint in start= from the solution that a branch begins at, above which the answer
+says so: configurations that are rounded to three digits are meant to be on the path."""
 
 TRACK_BEYOND: Final = 1e-3
 """Share of the way between two poses, beyond the place where a branch ends, at which it is asked whether
@@ -344,6 +352,10 @@ rounding leaves 1e-16, and the derivative's own digits are lost long before."""
 PRINTED_FACTOR: Final = 1e-5
 """Factor of a formula (a length: over that of the arm or of a usual link) below which its term is not
 printed: rounded right angles."""
+
+PRINTED_ROUNDING: Final = 1e-8
+"""Factor of a formula, over the largest, below which its term is a rounding and never printed: right angles
+are given with nine digits or more."""
 
 PRINTED_MISS: Final = 1e-12
 """Distance or angle [m, rad] by which axes miss a relation, below which it is not printed: rounding."""

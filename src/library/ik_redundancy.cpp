@@ -12,6 +12,7 @@
 #include "cspace/ik/redundancy/arm_angle.hpp"
 #include "cspace/math/made_once.hpp"
 #include "cspace/math/threads.hpp"
+#include "cspace/math/wrapping.hpp"
 #include "kernels/ik.hpp"
 
 namespace cspace::ik {
@@ -313,7 +314,9 @@ bool RedundantSolver::sample(const double* goal, int n, GoalAnswer& out) {
     if (found.empty()) found = state_->without_limits().intervals(parameter, goal, out.complete);
     std::vector<Span> spans;
     for (const Interval& one : found) spans.emplace_back(one.lower, one.upper);
-    const std::vector<double> values = spread_values(std::move(spans), n);
+    std::vector<double> values = spread_values(std::move(spans), n);
+    if (!chain().prismatic[parameter])
+        for (double& value : values) value = wrap_angle(value);
     const double at[max_joints] = {};
     std::vector<SweptRows> rows(values.size());
     if (!rows.empty())

@@ -72,3 +72,21 @@ def test_bad_input():
         links.values([0.1, 0.2, 0.3])
     with pytest.raises(cs.CspaceError, match="convention"):
         cs.load_robot("planar_2r").link_matrices(convention="other")
+
+
+@pytest.mark.parametrize("convention", CONVENTIONS)
+@pytest.mark.parametrize("digits", [9, 10, 12])
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_rounded_right_angles_leave_no_terms_in_print(digits, scale, convention):
+    """Rows alpha, a, d, theta; the lengths of an arm of one size or another."""
+
+    def links(angle):
+        rows = np.array([[angle, 0, 3, 0], [0, -4, 0, 0], [0, -2, 0, 0], [angle, 0, 1, 0], [-angle, 0, 1, 0]])
+        robot = cs.Robot.from_dh(rows * [1, scale, scale, 1], convention=convention)
+        return robot.link_matrices(convention=convention)
+
+    rounded, exact = links(round(np.pi / 2, digits)), links(np.pi / 2)
+    for one, other in zip(rounded.matrices + rounded.products, exact.matrices + exact.products, strict=True):
+        assert str(one) == str(other)
+        assert one.latex() == other.latex()
+        assert repr(one).count("\n") == 4

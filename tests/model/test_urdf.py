@@ -1,5 +1,6 @@
 import math
 import os
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -450,6 +451,31 @@ def test_a_slip_of_the_pen_is_named_with_its_line(case):
     assert words in str(caught.value)
     assert "'tilt'" in str(caught.value)
     assert caught.value.line == 3
+
+
+LIMITED = """<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
+<joint name="j" type="{kind}"><parent link="a"/><child link="b"/>
+<limit lower="{lower}" upper="{upper}"/></joint>
+<joint name="k" type="{kind}"><parent link="b"/><child link="c"/>
+<limit lower="-99" upper="{upper}"/></joint></robot>"""
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(-180, 180), (-90, 30), (0, 57.3), (-360, 0), (-720, 720)])
+def test_limits_in_degrees_are_told_once(lower, upper, tmp_path):
+    (tmp_path / "arm.urdf").write_text(LIMITED.format(kind="revolute", lower=lower, upper=upper))
+    said = rf"arm.urdf:2: joint 'j' has the limits {lower:g} … {upper:g} rad, .*are these degrees"
+    with pytest.warns(UserWarning, match=said) as caught:
+        robot = from_urdf(tmp_path / "arm.urdf")
+    assert len(caught) == 1
+    assert (robot.joints[0].lower, robot.joints[0].upper) == (lower, upper)
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic", "continuous"])
+def test_limits_of_some_turns_and_of_millions_are_left_alone(kind):
+    for size in (1, 6.4, 12.6, 18.9, 1e4, 1e16) if kind == "revolute" else (180, 1000):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            from_urdf(LIMITED.format(kind=kind, lower=-size, upper=size).replace("-99", f"-{size}"))
 
 
 def test_extensions_are_left_alone():

@@ -525,3 +525,16 @@ def test_search_finds_by_words():
     assert len(found("")) == len(names())
     assert found("no such robot at all") == []
     assert found("((") == []
+
+
+def test_rows_are_printed_one_a_line():
+    for text in ("", "kuka", "panda", "no such robot"):
+        found = search(text)
+        lines = str(found).splitlines()
+        assert str(found) == repr(found)
+        if not found:
+            assert lines == ["no robots"]
+            continue
+        assert [line.split()[0] for line in lines] == [row.name for row in found]
+        assert all(row.title in line and row.vendor in line for line, row in zip(lines, found, strict=True))
+        assert found == tuple(found)

@@ -39,9 +39,11 @@ UNCERTIFIED: Final = (
 class Solutions(Answers, _core.SolutionsBase):
     """Every configuration that reaches one goal.
 
-    q: (k, dof) [rad, m], revolute joints in (−π, π]. goal: T_base_tip (4, 4). Truthy if there is a
-    solution; `status` is "exact", "singular", "unreachable" or "least_squares", and `reason` states it in one
-    sentence. The filters `within`, `nearest`, `wrapped` return the same kind of object.
+    q: (k, dof) [rad, m], revolute joints in (−π, π]; locked joints have the given values, and a configuration
+    chosen by near=, or for more than one redundant joint, lies within limits. goal: T_base_tip (4, 4).
+    Truthy if there is a solution; `status` is "exact", "singular", "unreachable" or "least_squares", and
+    `reason` states it in one sentence. The filters `within`, `nearest`, `wrapped` return the same kind of
+    object.
     """
 
     __slots__ = ()

@@ -112,7 +112,7 @@ def _average_colours(image: Any) -> Array:
     colours = np.asarray(image.convert("RGBA"))
     total = np.add(colours[:, :, 0], colours[:, :, 1], dtype=np.uint16)
     total += colours[:, :, 2]
-    grey = total / 3
+    grey: Array = total / 3
     grey /= 255
     grey[colours[:, :, 3] == 0] = np.nan
     return grey

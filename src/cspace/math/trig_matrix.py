@@ -12,6 +12,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.math.trig_polynomial import Angle, TrigPolynomial, as_polynomial
+from cspace.tolerances import PRINTED_ROUNDING
 
 
 class TrigMatrix:
@@ -78,8 +79,14 @@ class TrigMatrix:
         return TrigMatrix([[entry.with_numbers(values) for entry in row] for row in self.entries])
 
     def texts(self, *, latex: bool = False, least: float = 0.0, least_shift: float = 0.0) -> list[list[str]]:
-        """The entries as texts; least, least_shift: factors of rotations and lengths below are left out."""
-        bounds = [least] * (len(self.entries) - 1) + [least_shift]
+        """The entries as texts; least, least_shift: factors of rotations and lengths below are left out.
+
+        Always left out are those below a rounding of the largest of the rotation, or of the lengths.
+        """
+        columns = list(zip(*self.entries, strict=True))
+        lengths = max(entry.largest_factor for entry in columns[-1][:-1])
+        bounds = [max(least, PRINTED_ROUNDING)] * (len(columns) - 1)
+        bounds.append(max(least_shift, PRINTED_ROUNDING * lengths))
         return [
             [
                 entry.latex(least=bound) if latex else entry.text(least=bound)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from cspace.math import typeset
-from cspace.tolerances import INTEGER_ROUNDING
+from cspace.tolerances import INTEGER_ROUNDING, PRINTED_ROUNDING
 
 Plain = tuple[tuple[str, int], ...]
 """Symbols with their powers, in the order of their names."""
@@ -127,12 +127,17 @@ class TrigPolynomial:
             f"t_{index}" for _, turns in self.terms for _, _, angle in turns for index, _ in angle
         }
 
+    @property
+    def largest_factor(self) -> float:
+        """The largest factor of a term, without its sign; 0 for no terms."""
+        return max(map(abs, self.terms.values()), default=0.0)
+
     def text(self, *, least: float = 0.0) -> str:
-        """As plain text; terms with factors below `least` are left out."""
+        """As plain text; terms with factors below `least`, or a rounding of the largest, are left out."""
         return typeset.sum_of_terms(list(self._written(least, latex=False)))
 
     def latex(self, *, least: float = 0.0) -> str:
-        """As LaTeX; terms with factors below `least` are left out."""
+        """As LaTeX; terms with factors below `least`, or a rounding of the largest, are left out."""
         return typeset.sum_of_terms(list(self._written(least, latex=True))).replace("−", "-")
 
     __str__ = text
@@ -142,7 +147,8 @@ class TrigPolynomial:
 
     def _written(self, least: float, *, latex: bool) -> Iterator[tuple[float, str]]:
         in_order = sorted(self.terms.items(), key=lambda term: [angle for _, _, angle in term[0][1]])
-        kept = [term for term in in_order if abs(term[1]) >= least]
+        bound = max(least, PRINTED_ROUNDING * self.largest_factor)
+        kept = [term for term in in_order if abs(term[1]) >= bound]
         ahead = next((k for k, (_, factor) in enumerate(kept) if factor > 0), 0)
         for (plain, turns), factor in [*kept[ahead : ahead + 1], *kept[:ahead], *kept[ahead + 1 :]]:
             lengths = [each for each in plain if not each[0].startswith(("p_", "r_"))]

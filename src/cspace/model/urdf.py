@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
 from cspace.arrays import Array
 from cspace.errors import suggest
+from cspace.math.wrapping import TURN
 from cspace.model.attributes import complain_at, fault_at, read_floats, read_number, slip_in, text_of
 from cspace.model.description import Description
 from cspace.model.files import check_folders
@@ -18,7 +20,7 @@ from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
 from cspace.model.structure import ElementError
 from cspace.model.values import IDENTITY, X_AXIS, freeze_array, from_rpy
 from cspace.model.xml import Element, parse_source
-from cspace.tolerances import UNLIMITED
+from cspace.tolerances import DEGREE_LIMITS, UNLIMITED
 
 Color = tuple[float, float, float, float]
 
@@ -69,6 +71,7 @@ class _Reader:
     """Reads one document; knows the folders for meshes."""
 
     def __init__(self, path: str | None, package_paths: Sequence[Any]) -> None:
+        self.path = path
         self.beside = None if path is None else os.path.dirname(os.path.abspath(path))
         self.package_paths = check_folders(package_paths)
         self.colors: dict[str, Color] = {}
@@ -80,6 +83,7 @@ class _Reader:
             self.color(material)
         links = [(element, self.link(element)) for element in root.all("link")]
         joints = [(element, self.joint(element)) for element in root.all("joint")]
+        self.warn_of_degrees(joints)
         unnamed = "robot" if root.path is None else Path(root.path).stem
         robot = root.attributes.get("name", "").strip() or unnamed
         try:
@@ -220,6 +224,19 @@ class _Reader:
             if name in limit.attributes:
                 found[name] = read_number(limit, name)
         return {name: math.copysign(math.inf, x) if abs(x) >= UNLIMITED else x for name, x in found.items()}
+
+    def warn_of_degrees(self, joints: Sequence[tuple[Element, Joint]]) -> None:
+        """Warn of the first revolute joint whose limits are many turns, as are those of degrees."""
+        least, most = DEGREE_LIMITS
+        for element, joint in joints:
+            largest = max(map(abs, (joint.lower, joint.upper)))
+            if joint.type != "revolute" or not least < largest <= most:
+                continue
+            place = "" if self.path is None else f"{self.path}:{element.line}: "
+            span = f"{joint.lower:g} … {joint.upper:g} rad, up to {largest / TURN:.0f} turns"
+            text = f"joint {joint.name!r} has the limits {span}: URDF takes radians, are these degrees?"
+            warnings.warn(place + text, stacklevel=2)
+            return
 
     def dynamics(self, joint: Element) -> dict[str, Any]:
         element = joint.first("dynamics")

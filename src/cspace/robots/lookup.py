@@ -39,11 +39,23 @@ class CatalogueRow:
     missing: tuple[str, ...]
 
 
+class CatalogueRows(tuple[CatalogueRow, ...]):
+    """Entries of the catalogue, printed as one line per robot: its name, joints, title and maker."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        cells = [(row.name, row.joints, row.title, row.vendor) for row in self]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = ("  ".join(map(str.ljust, row, widths)).rstrip() for row in cells)
+        return "\n".join(lines) or "no robots"
+
+
 @cache
-def rows() -> tuple[CatalogueRow, ...]:
+def rows() -> CatalogueRows:
     """Every robot of the catalogue, by name."""
     read = json.loads(INDEX.read_text(encoding="utf-8"))
-    return tuple(CatalogueRow(*row[:-2], *map(tuple, row[-2:])) for row in read)
+    return CatalogueRows(CatalogueRow(*row[:-2], *map(tuple, row[-2:])) for row in read)
 
 
 @cache
@@ -84,7 +96,7 @@ def _read(name: str) -> Description:
     return from_toml(FOLDER / f"{name}.toml")
 
 
-def search(text: str) -> tuple[CatalogueRow, ...]:
+def search(text: str) -> CatalogueRows:
     """The robots for which every word of `text` fits, the best first.
 
     A word fits where it stands in the name, an alias, the title or the vendor, or equals the number of
@@ -94,7 +106,7 @@ def search(text: str) -> tuple[CatalogueRow, ...]:
     words = re.findall(r"[^\s,;]+", text.lower())
     scored = [(min((_fit(row, word) for word in words), default=1), row) for row in rows()]
     fitting = [(score, row) for score, row in scored if score > 0]
-    return tuple(row for _, row in sorted(fitting, key=lambda pair: (-pair[0], pair[1].name)))
+    return CatalogueRows(row for _, row in sorted(fitting, key=lambda pair: (-pair[0], pair[1].name)))
 
 
 def plain_text(name: str) -> str:

@@ -185,3 +185,28 @@ def test_values_that_are_none_are_refused(value, error):
         panda.redundancy(found.goal, parameter=np.zeros(2))
     with pytest.raises(InputError, match="1 to 100000"):
         found.spread(10**9)
+
+
+REDUNDANT = [row.name for row in cs.robots.rows() if row.dof == 7 and "P" not in row.joints]
+
+
+def test_listed_configurations_of_every_redundant_arm_have_angles_within_half_a_turn():
+    """Also at sampled values of the locked joint, whose limits may reach farther."""
+    listed = 0
+    for name in REDUNDANT:
+        robot = cs.load_robot(name)
+        T = robot.fk(robot.random_configuration(3, rng=5))
+        batch = robot.ik(T)
+        for goal in T:
+            found = robot.ik(goal)
+            listed += len(found)
+            assert found.q.min(initial=0) > -np.pi, name
+            assert found.q.max(initial=0) <= np.pi, name
+            assert found.residual.max(initial=0) < 1e-9, name
+            inside = found.within()
+            assert len(inside) > 0, name
+            assert ((inside.q >= robot.limits.lower) & (inside.q <= robot.limits.upper)).all(), name
+        assert np.nanmin(batch.q) > -np.pi, name
+        assert np.nanmax(batch.q) <= np.pi, name
+    assert len(REDUNDANT) > 20
+    assert listed > 5000

@@ -344,3 +344,18 @@ def test_the_method_shows_the_keywords_of_the_function():
     own = [p.replace(annotation=p.empty) for p in signature(cs.Robot.track).parameters.values()]
     wanted = [p.replace(annotation=p.empty) for p in signature(cs.ik.track).parameters.values()]
     assert own[1:] == wanted[1:]
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda", "irb120", "stanford"])
+def test_a_start_off_the_path_is_told_with_its_distance(name):
+    robot = cs.load_robot(name)
+    q = np.clip(robot.random_configuration(rng=4), -2, 2)
+    poses = np.array([robot.fk(q)] * 3)
+    assert "from the first pose" not in robot.track(poses, start=q).reason
+    assert "from the first pose" not in robot.track(poses, start=q + 1e-6).reason
+    seed = q + 0.3
+    track = robot.track(poses, start=seed)
+    off = np.linalg.norm(robot.fk(seed)[:3, 3] - poses[0][:3, 3])
+    moved = np.abs(track.best.q[0] - seed).max()
+    assert f"start is {off:.3g} m and " in track.reason
+    assert f"up to {moved:.3g} " in track.reason

@@ -19,8 +19,8 @@ from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.wrapping import turning_joints
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_choice, limits_of
-from cspace.spatial import interpolate_decoupled
-from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND
+from cspace.spatial import interpolate_decoupled, log_so3
+from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND, TRACK_START
 
 COSTS: Final = ("length", "step", "time")
 """What a branch may cost: Σ ‖Δq‖; the largest Δq of a joint; Σ of the times that the velocity limits ask."""
@@ -51,10 +51,10 @@ def track(
     Angles are continuous from pose to pose.
 
     poses (n, 4, 4): T_base_tip. start (dof,): follow one branch alone, from the solution of the first pose
-    that is nearest to it; unless given, every solution of the first pose begins a branch, each angle with
-    the multiples of 2π that keep it within limits for longest. An arm with redundant joints is followed by
-    the least motion of its joints, from start or else from the solution nearest the middle of its limits;
-    one of fewer than six joints has to reach the poses alone, and stays as near as it can between them.
+    that is nearest to it, and `reason` says how far away that is; unless given, every solution of the first
+    pose begins a branch, each angle with the multiples of 2π that keep it within limits for longest. An arm
+    with redundant joints is followed by the least motion of its joints, from start or else from the solution
+    nearest the middle of its limits; one of fewer than six joints has to reach the poses alone, and stays as near as it can between them.
     limits: True for the robot's, False for none, or Limits. cost: of the best branch: "length" Σ‖Δq‖,
     "step" the largest change of a joint between neighbouring poses, "time" Σ max |Δq| / velocity limit, or
     a function of q (n, dof). max_step: how far a joint may turn from one pose to the next [rad], or (dof,)
@@ -126,7 +126,8 @@ def starts_of(robot: KinematicModel, question: Question, T: Array, start: Any, l
     first, n = T[0], len(robot.joint_names)
     if start is not None:
         seed = one_array(start, "start", (n,), "one configuration", largest=FARTHEST)
-        return nearest_start(robot, question, first, seed, limits)
+        q, numbers, complete, note = nearest_start(robot, question, first, seed, limits)
+        return q, numbers, complete, note or describe_start(robot, first, seed, q)
     if is_redundant(robot, question):
         seed = middle_configuration(robot, question.limits)
         q, numbers, complete, note = nearest_start(robot, question, first, seed, limits)
@@ -153,6 +154,21 @@ def nearest_start(
     if s:
         return np.ascontiguousarray(s.q.reshape(-1, len(seed))[:1]), (-1,), False, ""
     return np.empty((0, len(seed))), (), False, f"the first pose is not reached: {s.reason}"
+
+
+def describe_start(robot: KinematicModel, first: Array, seed: Array, q: Array) -> str:
+    """How far a start is from the first pose and from where the branch begins; empty if it is near."""
+    moved = np.abs(q[0] - seed)
+    joint = int(moved.argmax())
+    if moved[joint] <= TRACK_START:
+        return ""
+    unit = "rad" if robot.joint_types[joint] == "R" else "m"
+    off = robot.fk(seed)[:3, 3] - first[:3, 3]
+    turned = np.linalg.norm(log_so3(first[:3, :3].T @ robot.fk(seed)[:3, :3]))
+    return (
+        f"; start is {np.linalg.norm(off):.3g} m and {turned:.3g} rad from the first pose: the branch begins "
+        f"at the solution nearest to it, up to {moved[joint]:.3g} {unit} away ({robot.joint_names[joint]})"
+    )
 
 
 def is_out_of_reach(robot: KinematicModel, question: Question, T: Array, end: float) -> bool:
