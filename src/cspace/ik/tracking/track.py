@@ -54,7 +54,8 @@ def track(
     that is nearest to it, and `reason` says how far away that is; unless given, every solution of the first
     pose begins a branch, each angle with the multiples of 2π that keep it within limits for longest. An arm
     with redundant joints is followed by the least motion of its joints, from start or else from the solution
-    nearest the middle of its limits; one of fewer than six joints has to reach the poses alone, and stays as near as it can between them.
+    nearest the middle of its limits; one of fewer than six joints has to reach the poses alone, and stays as
+    near as it can between them.
     limits: True for the robot's, False for none, or Limits. cost: of the best branch: "length" Σ‖Δq‖,
     "step" the largest change of a joint between neighbouring poses, "time" Σ max |Δq| / velocity limit, or
     a function of q (n, dof). max_step: how far a joint may turn from one pose to the next [rad], or (dof,)
