@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-__all__ = ["align_cells", "html_table", "markdown_table", "one_line", "show_fields", "shown"]
+__all__ = ["align_cells", "html_table", "join_words", "markdown_table", "one_line", "show_fields", "shown"]
 
 Record = TypeVar("Record")
 
@@ -23,6 +23,11 @@ MOST_ROWS = 60
 def shown(value: float) -> str:
     """Six digits, nothing of the rounding around zero, and a dash for what is absent (infinite)."""
     return f"{round(float(value), 12) + 0.0:.6g}" if math.isfinite(value) else "-"
+
+
+def join_words(words: Sequence[str]) -> str:
+    """Words as a list in a sentence: a, b and c."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def one_line(kind: str, text: str) -> str:

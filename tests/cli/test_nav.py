@@ -160,3 +160,38 @@ def test_pictures(tmp_path, monkeypatch):
     import matplotlib.pyplot as plt
 
     assert not plt.get_fignums(), "pictures that are saved are closed"
+
+
+def path_lines(out):
+    return [line for line in out.splitlines() if len(line.split()) == 2 and line.startswith("  ")]
+
+
+def test_a_long_path_is_printed_by_its_ends_unless_all_of_it_is_wanted():
+    line = f"{YARD} --goal 9 9 --planner fast_marching"
+    path = cspace(f"{line} --json").json["routes"][0]["path"]
+    assert len(path) > 40
+    short, long = cspace(line).out, cspace(f"{line} --details").out
+    assert [[*map(float, row.split())] for row in path_lines(long)] == [
+        [round(x, 6), round(y, 6)] for x, y in path
+    ]
+    assert path_lines(short) == [*path_lines(long)[:10], *path_lines(long)[-10:]]
+    assert f"… {len(path) - 20} of {len(path)} points; --details prints all …" in short
+    few = f"{YARD} --goal 9 9"
+    assert path_lines(cspace(few).out) == path_lines(cspace(f"{few} --details").out)
+
+
+def test_seeds_that_were_drawn_are_printed_and_make_the_same_path():
+    line = f"{YARD} --goal 9 9 --planner rrt,a_star,prm"
+    told = dict(row.split(": --seed ") for row in cspace(line).out.splitlines() if ": --seed " in row)
+    assert list(told) == ["rrt", "prm"]
+    first = cspace(f"{YARD} --goal 9 9 --planner rrt --details").out
+    seed = first.split(": --seed ")[1].split()[0]
+    again = cspace(f"{YARD} --goal 9 9 --planner rrt --details --seed {seed}").out
+    assert path_lines(again) == path_lines(first)
+
+
+def test_an_animation_tells_whose_search_it_shows(tmp_path, monkeypatch):
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    shown = cspace(f"{YARD} --goal 9 9 --planner bug_1,any_angle --animate search.gif").out.splitlines()
+    assert shown[-2:] == ["search.gif: the search of bug_1", "wrote search.gif"]

@@ -13,7 +13,6 @@ from cspace.arrays import Array
 from cspace.cli.arguments import read_radians
 from cspace.cli.exits import UsageError
 from cspace.cli.output import tidy_number
-from cspace.errors import suggest
 from cspace.math.wrapping import TURN
 
 if TYPE_CHECKING:
@@ -106,13 +105,9 @@ def joint_headings(robot: Robot) -> list[str]:
 
 def joint_called(word: str, robot: Robot) -> str:
     """The joint of a name, or of a heading: q3 is the third. Raises UnknownNameError with similar names."""
-    names = robot.joint_names
-    if word in names:
-        return word
-    numbered = {f"q{k + 1}": name for k, name in enumerate(names)}
-    if word in numbered:
-        return numbered[word]
-    raise suggest("joint", word, names, owner=robot.name)
+    from cspace.ik.locked_joints import joint_named
+
+    return robot.joint_names[joint_named(robot, word)]
 
 
 def joint_texts(q: Array, robot: Robot, *, degrees: bool, fewer: int = 0) -> list[str]:

@@ -13,12 +13,26 @@ from cspace.kinematics import KinematicModel
 from cspace.tolerances import FARTHEST
 
 
+def headings_of(solver: KinematicModel) -> list[str]:
+    """The headings of joints in tables: q1, q2 …"""
+    return [f"q{k + 1}" for k in range(len(solver.joint_names))]
+
+
+def joint_named(solver: KinematicModel, key: str) -> int:
+    """The number of a joint by its name, or by its heading in tables: "q7" is the seventh, number 6."""
+    names = solver.joint_names
+    if key in names:
+        return int(names.index(key))
+    if key in (headings := headings_of(solver)):
+        return headings.index(key)
+    raise suggest("joint", key, names, owner=solver.name)
+
+
 def joint_number(solver: KinematicModel, key: Any, subject: str) -> int:
+    """The number of a joint by its name, its heading or its number, from the end where it is negative."""
     names = solver.joint_names
     if isinstance(key, str):
-        if key not in names:
-            raise suggest("joint", key, names, owner=solver.name)
-        return int(names.index(key))
+        return joint_named(solver, key)
     if isinstance(key, bool) or not isinstance(key, (int, np.integer)):
         raise InputTypeError(
             f"{subject} contains a {type(key).__name__}; name joints by their name or number"
@@ -43,7 +57,7 @@ def locked_values(solver: KinematicModel, locked: Any, own: KinematicModel | Non
     out: dict[int, Any] = {}
     for key, value in locked.items():
         name = key
-        if own is not None and not isinstance(key, str):
+        if own is not None and (not isinstance(key, str) or key in headings_of(own)):
             name = own.joint_names[joint_number(own, key, "locked")]
         joint = joint_number(solver, name, "locked")
         if joint in out:

@@ -16,7 +16,7 @@ from cspace.kinematics.jacobian import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.manipulability import ROWS, select_rows
 from cspace.spatial.checks import PoseLike
-from cspace.tables import one_line
+from cspace.tables import join_words, one_line
 from cspace.tolerances import SINGULAR_ROUNDING, SINGULAR_VALUE
 
 MOST_COLUMNS = 12
@@ -53,7 +53,7 @@ class Singularity:
             for value, name in zip(self.direction, ROWS, strict=True)
             if abs(value) > 0.005
         ]
-        return f"{near}: {' and '.join(self.joints)} lose {' '.join(parts)}"
+        return f"{near}: {join_words(self.joints)} lose {' '.join(parts)}"
 
 
 def singularity(

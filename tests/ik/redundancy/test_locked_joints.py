@@ -188,7 +188,8 @@ def test_one_number_answers_like_an_array_of_it(name):
         T = robot.fk(q)
         numbers = {robot.joint_names[j]: float(q[j]) for j in locked}
         long_way = robot.ik(T, locked={j: np.array(q[j]) for j in locked})
-        for given in (numbers, numbers, {j: q[j] for j in locked}, {j - robot.dof: q[j] for j in locked}):
+        headings = {f"q{j + 1}": q[j] for j in locked}
+        for given in (numbers, headings, {j: q[j] for j in locked}, {j - robot.dof: q[j] for j in locked}):
             short = robot.ik(T, locked=given)
             assert np.array_equal(short.q, long_way.q)
             for what in ("branch", "complete", "status", "reason", "freedom", "self_motions"):
@@ -202,5 +203,19 @@ def test_one_number_answers_like_an_array_of_it(name):
             robot.ik(T, locked=numbers | {robot.joint_names[locked[0]]: wrong})
     with pytest.raises(InputError, match="twice"):
         robot.ik(T, locked=numbers | {locked[0]: 0.1})
-    with pytest.raises(UnknownNameError):
-        robot.ik(T, locked={"no_such_joint": 0.1})
+    for unknown in ("no_such_joint", "q0", f"q{robot.dof + 1}", "q01", "Q1", "q"):
+        with pytest.raises(UnknownNameError):
+            robot.ik(T, locked={unknown: 0.1})
+
+
+def test_headings_of_joints_are_names_in_every_function_that_takes_joints():
+    robot = cs.load_robot("iiwa14")
+    T = robot.fk(robot.random_configuration(rng=3))
+    name = robot.joint_names[6]
+    assert robot.redundancy(T, "q7").parameter == robot.redundancy(T, name).parameter == name
+    assert str(robot.ik_plan(locked={"q7": 0.0})) == str(robot.ik_plan(locked={name: 0.0}))
+    part = {"position": T[:3, 3], "direction": T[:3, 2]}
+    short = robot.ik(**part, locked={"q7": 0.2, "q1": 0.1}, near=np.zeros(7))
+    assert np.array_equal(short.q, robot.ik(**part, locked={6: 0.2, 0: 0.1}, near=np.zeros(7)).q)
+    with pytest.raises(InputError, match="twice"):
+        robot.ik(T, locked={"q7": 0.1, name: 0.1})

@@ -35,6 +35,9 @@ NUMBERS: Final = (
 )
 """The numbers of a result: the heading of their column, their name in the document, and their form."""
 
+MOST_POINTS: Final = 20
+"""The longest path of which every point is printed without --details."""
+
 PATIENCE: Final = 5.0
 """A first call that took longer [s] is not repeated."""
 
@@ -53,6 +56,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_option(parser, "--radius RADIUS", "radius of the robot [m] (default: 0)", read_number, default=0.0)
     text = "side of a cell [m], for images and for polygons converted to cells"
     add_option(parser, "--resolution RESOLUTION", text, read_number)
+    add_option(parser, "--details", "all points of a long path")
     add_option(parser, "--plot FILE", "draw the routes side by side (.png, .svg, .pdf)", Path)
     add_option(parser, "--animate FILE.gif", "animate the search of the first planner", Path)
 
@@ -76,9 +80,11 @@ def run(args: argparse.Namespace, out: Output) -> int:
         results = {"routes": found, "refused": refused, "written": written}
         out.document({"schema": "cspace.nav/1", **asked, **results})
     else:
-        print_answers(found, out)
+        print_answers(found, out, details=args.details)
         for name, why in refused.items():
             out.line(f"{name}: {why}")
+        if args.animate:
+            out.line(f"{args.animate}: the search of {routes[0].planner}")
         for path in written:
             out.line(f"wrote {path}")
     return Exit.DONE if any(routes) else Exit.NEGATIVE
@@ -196,8 +202,11 @@ def answer_document(each: Answer, best: Route) -> dict[str, Any]:
     }
 
 
-def print_answers(found: list[dict[str, Any]], out: Output) -> None:
-    """One line a planner, and why some found nothing; of a single one, the reason and the corners too."""
+def print_answers(found: list[dict[str, Any]], out: Output, *, details: bool) -> None:
+    """One line a planner, the seeds, and why some found nothing; of a single one the reason and the path too.
+
+    details: all points of the path; else of a long one the first and the last.
+    """
     columns = ["planner", "status", *(heading for heading, _, _ in NUMBERS)]
     table = Table(columns, left=frozenset({0, 1}))
     for row in found:
@@ -211,5 +220,19 @@ def print_answers(found: list[dict[str, Any]], out: Output) -> None:
                 out.line(f"{row['planner']}: {row['reason']}")
     else:
         out.line(found[0]["reason"])
-        for x, y in found[0]["path"]:
-            out.line(f"{x:12.6f} {y:12.6f}")
+        print_path(found[0]["path"], out, MOST_POINTS if not details else len(found[0]["path"]))
+    for row in found:
+        seed = row["options"].get("rng")
+        if seed is not None and row["options"].get("noise") != 0:  # without noise nothing is drawn
+            out.line(f"{row['planner']}: --seed {seed}")
+
+
+def print_path(path: list[list[float]], out: Output, most: int) -> None:
+    """A point a line; of more than `most` the first and the last, and how many are left out between them."""
+    lines = [f"{x:12.6f} {y:12.6f}" for x, y in path]
+    if len(lines) > most:
+        half = most // 2
+        said = f"… {len(lines) - 2 * half} of {len(lines)} points; --details prints all …"
+        lines = [*lines[:half], said, *lines[-half:]]
+    for line in lines:
+        out.line(line)
