@@ -12,6 +12,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "ik.hpp"
+#include "library/ik_limits.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -118,9 +119,38 @@ Doubles find_nearest_poses(SolverArgument solver, Goals goals, double stiffness,
     return q;
 }
 
+using Numbers = Plain<std::int64_t>;
+
+Numbers keep_within(SolverArgument solver, const ConstDoubles& q, const ConstDoubles& lower,
+                    const ConstDoubles& upper, const Doubles& kept, const Numbers& count,
+                    const std::optional<Numbers>& order, double same, double close) {
+    const npy_intp n = solver.core().chain().n, rows = q.size / n;
+    require_sizes(q.ndim() == 3 && q.shape(2) == n && q.shape(0) == count.size && kept.size == q.size &&
+                  lower.size == n && upper.size == n && (!order || order->size == rows));
+    const ik::RowsWithin asked = {std::size_t(count.size),
+                                  std::size_t(q.shape(1)),
+                                  int(n),
+                                  solver.core().chain().prismatic,
+                                  lower.data,
+                                  upper.data,
+                                  q.data,
+                                  kept.data,
+                                  count.data,
+                                  order ? order->data : nullptr};
+    std::vector<std::int64_t> found;
+    {
+        const nb::gil_scoped_release release;
+        found = ik::keep_within(asked, same, close);
+    }
+    return Numbers({npy_intp(found.size())}, found.data());
+}
+
 }  // namespace
 
 void bind_ik_goals(nb::module_& m) {
+    m.def("_ik_keep_within", &keep_within, "solver"_a, "q"_a, "lower"_a, "upper"_a, "kept"_a, "count"_a,
+          "order"_a.none(), "same"_a, "close"_a,
+          "Keeps the rows inside limits; returns the numbers of those that are close to them.");
     m.def("_ik_answer", &answer_rows, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a,
           "is_partial"_a, "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a,
           "is_single"_a, "about"_a,

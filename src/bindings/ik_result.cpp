@@ -46,8 +46,7 @@ PyObject* new_solutions(PyObject* solver, const double* goal, const ik::Solution
     made->dof = dof;
     made->status = rows.status;
     made->complete = rows.complete;
-    for (int k = 0; k < rows.count; ++k)
-        std::memcpy(made->q + k * dof, rows.q + k * rows.stride, sizeof(double) * std::size_t(dof));
+    rows.copy_rows(rows.count, dof, made->q);
     std::memcpy(made->branches(), rows.branch, std::size_t(rows.count));
     if (rows.self_motion) std::memcpy(made->self_motions(), rows.self_motion, std::size_t(rows.count));
     return self;

@@ -40,13 +40,13 @@ FastPath ik_one(const Arm& arm, const double* T, double* q, std::int8_t* branch,
     return read_goal(T).is_pose ? FastPath::doubtful : FastPath::refused;
 }
 
-void ik_many(const Arm& arm, const double* T, std::size_t n, int room, double* q, std::int64_t* count,
-             FastPath* quick) {
+void ik_many(const Arm& arm, const double* T, std::size_t n, std::size_t batch, int room, double* q,
+             std::int64_t* count, FastPath* quick) {
     const Plan& plan = arm.plan;
     const Care care = care_of(plan);
     const std::size_t row = std::size_t(room) * 6;
     alignas(64) double stage[native_width * max_solutions * 6];
-    const bool past_cache = goes_past_cache(n * row) && is_aligned(q);
+    const bool past_cache = goes_past_cache(batch * row) && is_aligned(q);
     for (std::size_t first = 0; first < n; first += native_width) {
         const int lanes = int(n - first < native_width ? n - first : native_width);
         V m[16];

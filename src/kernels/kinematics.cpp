@@ -7,6 +7,7 @@
 #include "cspace/kinematics/singular_values.hpp"
 #include "cspace/math/rows.hpp"
 #include "cspace/math/stream.hpp"
+#include "cspace/math/trig.hpp"
 
 namespace cspace::kinematics::inline CSPACE_ISA {
 namespace {
@@ -106,12 +107,37 @@ void chosen_singular_values(const ChainRows& rows, const ChainWork<V>& w, std::s
     store_rows(sigma, k, rows.sigma + i * k, k, count);
 }
 
+// The larger of the distances [m] and angles [rad] between poses and goals: ‖R − R_goal‖ = 2√2 sin(angle/2)
+// keeps its digits for small angles.
+template <class V>
+void measure_miss(const ChainRows& rows, const Pose<V>& T, std::size_t i, int count) {
+    V at[16], goal[16], distance = fill<V>(0.0), gap = distance;
+    write_matrix(T, at);
+    for (int l = 0; l < Lanes<V>::count; ++l) {
+        const std::size_t row = i + std::size_t(l < count ? l : count - 1);
+        const double* numbers = rows.goals + row / rows.goal_rows * rows.goal_size;
+        for (std::size_t k = 0; k < rows.goal_size; ++k) set_lane(goal[k], l, numbers[k]);
+    }
+    const bool is_pose = rows.goal_size == 16;
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3 && is_pose; ++c) {
+            const V d = at[4 * r + c] - goal[4 * r + c];
+            gap = mul_add(d, d, gap);
+        }
+        const V d = at[4 * r + 3] - goal[is_pose ? 4 * r + 3 : r];
+        distance = mul_add(d, d, distance);
+    }
+    const V angle = 2.0 * asin(min(sqrt(0.125 * gap), fill<V>(1.0)));
+    distance = sqrt(distance);
+    store(rows.miss + i, select(angle > distance, angle, distance), count);
+}
+
 // One pack of configurations, from row i on.
 template <class V>
 CSPACE_INLINE bool chain_pack(const ChainRows& rows, const ChainWork<V>& w, std::size_t i, int count) {
     const int n = rows.chain.n_coordinates;
     load_rows(rows.q + i * n, n, count, n, w.q);
-    if (!all_finite(w.q, n)) return false;
+    if (!rows.miss && !all_finite(w.q, n)) return false;
     chain_sines(rows.chain, w.q, w.s, w.c);
     const auto T_world_base = load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
     auto start = fill_pose<V>(rows.chain.T_base_first);
@@ -123,6 +149,7 @@ CSPACE_INLINE bool chain_pack(const ChainRows& rows, const ChainWork<V>& w, std:
         write_matrix(T, matrix);
         put_rows(w, matrix, 16, rows.T, i, count);
     }
+    if (rows.miss) measure_miss(rows, T, i, count);
     if (!rows.J && !rows.J_rate && !rows.sigma) return true;
     Vec3<V> p = T.t;
     if (rows.point) {
@@ -203,7 +230,7 @@ bool chain_rows(const ChainRows& rows, std::size_t begin, std::size_t end, void*
     auto work = chain_work<Pack<width>>(rows, scratch);
     const std::size_t values = rows.J || rows.J_rate ? 6 * std::size_t(work.dof) : 16;
     work.past_cache = is_aligned(rows.T) && is_aligned(rows.J) && is_aligned(rows.J_rate) &&
-                      goes_past_cache((end - begin) * values);
+                      goes_past_cache(rows.count * values);
     const bool finite =
         over_packs(begin, end, [&](std::size_t i, int count) { return chain_pack(rows, work, i, count); });
     if (work.past_cache) finish_streams();

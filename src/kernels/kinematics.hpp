@@ -12,6 +12,7 @@ namespace cspace::kinematics {
 // is not asked for.
 struct ChainRows {
     model::Chain chain;
+    std::size_t count;           // rows of the whole batch, which the kernel may see in parts
     const double* q;             // (rows, n_coordinates)
     const double* qd;            // (rows, dof), for J_rate
     const double* T_world_base;  // 4×4, or null for the identity
@@ -25,6 +26,9 @@ struct ChainRows {
     double* J_rate;
     double* sigma;    // (rows, min(chosen, n)): singular values of the chosen rows and the joint columns of J
     unsigned chosen;  // bit r: row r of J counts for sigma
+    const double* goals;  // goals of goal_size numbers, a pose or a point, each for goal_rows rows
+    std::size_t goal_size, goal_rows;
+    double* miss;  // (rows,): how far T is from its goal [m or rad]; NaN for a row of NaN
 };
 // The same for what needs the whole tree.
 struct TreeRows {

@@ -22,8 +22,7 @@ void write_rows(const SolutionRows& found, int room, int dof, double* q, std::in
                 unsigned char* status) {
     std::fill(q, q + room * dof, none);
     *count = std::min(found.count, room);
-    for (int k = 0; k < *count; ++k)
-        std::copy(found.q + found.stride * k, found.q + found.stride * k + dof, q + k * dof);
+    found.copy_rows(int(*count), dof, q);
     *status = static_cast<unsigned char>(int(found.status) + (found.complete ? 0 : incomplete));
 }
 
@@ -35,7 +34,7 @@ std::size_t solve_slice(const BuiltArm& built, const GoalRows& rows, std::size_t
     const std::size_t row = std::size_t(built.room * built.dof);
     auto* quick = reinterpret_cast<FastPath*>(rows.status);
     if (has_kernel)
-        kernels::ik_many(arm, rows.goals + 16 * from, to - from, built.room, rows.q + row * from,
+        kernels::ik_many(arm, rows.goals + 16 * from, to - from, rows.n, built.room, rows.q + row * from,
                          rows.count + from, quick + from);
     SolutionStore store;
     SolutionRows found;
@@ -85,6 +84,14 @@ BuiltArm build_arm(const Chain& chain) {
     const bool solvable = arm->has_plan || arm->has_few_joints || arm->is_general;
     return {arm, chain.n, solvable ? room_for(*arm) : 0, arm->has_few_joints,
             std::make_shared<ReachBounds>(measure_reach(chain, arm->plan.form.length))};
+}
+
+void SolutionRows::copy_rows(int first, int dof, double* to) const {
+    if (stride == dof) {
+        std::copy_n(q, first * dof, to);
+        return;
+    }
+    for (int k = 0; k < first; ++k) std::copy_n(q + stride * k, dof, to + k * dof);
 }
 
 bool list_solutions(const BuiltArm& built, const double* goal, const double* unconstrained,

@@ -31,6 +31,8 @@ struct SolutionRows {
     const char* self_motion;  // which rows stand for a self-motion; null: none
     Status status;
     bool complete = true;
+
+    void copy_rows(int first, int dof, double* to) const;  // `first` rows of dof numbers
 };
 inline SolutionRows rows_of(const Solutions& found) {
     const auto* self_motion = reinterpret_cast<const char*>(found.self_motion);

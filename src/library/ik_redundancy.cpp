@@ -60,7 +60,7 @@ struct LaneRows {
     void solve(const LockedArm& locked, const double* goals, const double* at, std::size_t stride,
                std::size_t rows) {
         kernels::locked_goals(locked, goals, at, stride, rows, T[0]);
-        kernels::ik_many(locked.arm, T[0], rows, max_branches, q[0], count, quick);
+        kernels::ik_many(locked.arm, T[0], rows, rows, max_branches, q[0], count, quick);
     }
 };
 

@@ -65,7 +65,7 @@ CONCEPTS = [
     Concept(
         "twist of a joint",
         "include/cspace/kinematics/jacobian.hpp",
-        r"\? ([\w.]+(\[\w\])?) : cross\(\1, |\{cross\(d, p - o\), d\}",
+        r"\? ([\w.]+(\[\w\])?) : cross\(\1, |, cross\(d, p - o\)",
     ),
     Concept(
         "error of the tip to first order",

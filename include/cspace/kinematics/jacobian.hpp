@@ -30,12 +30,19 @@ CSPACE_INLINE Pose<V> place_axes(const model::Chain& chain, const Pose<V>& first
                         [&](int i, const Vec3<V>& o, const Vec3<V>& d) { axes[i] = {o, d}; });
 }
 
+// One of two vectors, number by number, which stay in registers.
+template <class V>
+CSPACE_INLINE Vec3<V> choose(bool first, const Vec3<V>& a, const Vec3<V>& b) {
+    V x = b.x, y = b.y, z = b.z;
+    if (first) x = a.x, y = a.y, z = a.z;
+    return {x, y, z};
+}
+
 // The twist of the point p per unit velocity of a joint along the direction d, or about it through o.
 template <class V>
 CSPACE_INLINE Twist<V> joint_twist(bool prismatic, const Vec3<V>& d, const Vec3<V>& o, const Vec3<V>& p) {
     const V zero = fill<V>(0.0);
-    if (prismatic) return {d, {zero, zero, zero}};
-    return {cross(d, p - o), d};
+    return {choose(prismatic, d, cross(d, p - o)), choose(prismatic, {zero, zero, zero}, d)};
 }
 
 // One column of a matrix of `columns` columns, rows first to first + 2.
@@ -59,19 +66,20 @@ CSPACE_INLINE void add_to_column(V* J, int columns, int j, int first, const Vec3
 template <class V, class TwistOf>
 CSPACE_INLINE void sum_columns(const model::Chain& chain, V* J, int columns, int first,
                                const TwistOf& twist_of) {
-    for (int r = 0; r < 6 && !chain.ordered; ++r) {
+    for (int i = 0; i < chain.n && chain.ordered; ++i) {
+        const Twist<V> twist = twist_of(i);
+        put_column(J, columns, first + i, 0, twist.v);
+        put_column(J, columns, first + i, 3, twist.w);
+    }
+    if (chain.ordered) return;
+    for (int r = 0; r < 6; ++r) {
         for (int j = first; j < columns; ++j) J[r * columns + j] = fill<V>(0.0);
     }
     for (int i = 0; i < chain.n; ++i) {
         const model::ChainJoint& joint = chain.joints[i];
         const Twist<V> twist = twist_of(i);
-        if (chain.ordered) {
-            put_column(J, columns, first + i, 0, twist.v);
-            put_column(J, columns, first + i, 3, twist.w);
-        } else {
-            add_to_column(J, columns, first + joint.coordinate, 0, joint.ratio * twist.v);
-            add_to_column(J, columns, first + joint.coordinate, 3, joint.ratio * twist.w);
-        }
+        add_to_column(J, columns, first + joint.coordinate, 0, joint.ratio * twist.v);
+        add_to_column(J, columns, first + joint.coordinate, 3, joint.ratio * twist.w);
     }
 }
 

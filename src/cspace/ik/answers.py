@@ -15,6 +15,7 @@ from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.solver import Solver
 from cspace.ik.wrapping import nearest_winding
 from cspace.kinematics.batch import check_choice
+from cspace.kinematics.forward import measure_misses
 from cspace.model import Limits
 from cspace.tolerances import NO_DERIVATIVE
 
@@ -54,6 +55,8 @@ class Answers(Renamed):
         """How far fk(q) is from the goal, (..., k): the larger of the position error [m] and the angle [rad];
         NaN where a goal of many has fewer solutions.
         """
+        if self._partial is None:
+            return measure_misses(self.solver, self.q, self.goal)
         real = self._real
         out = np.full(real.shape, np.nan)
         out[real] = self._wanted.take(np.nonzero(real)[:-1]).residual(self.solver.fk(self.q[real]))
@@ -94,7 +97,12 @@ class Answers(Renamed):
 
     def _settled(self, limits: Limits) -> Array:
         """The solutions, those that rounding takes past a limit set to it."""
-        return settle_on_limits(self.solver, self.q, limits, slice(3 if self._is_point else 6))
+        return settle_on_limits(self.solver, self.q, limits, self._constrained)
+
+    @property
+    def _constrained(self) -> slice:
+        """The rows of the Jacobian that the goals count."""
+        return slice(3 if self._is_point else 6)
 
     def _towards(self, seed: Array, metric: str, limits: Limits) -> tuple[Array, Any]:
         """The rows (..., k, dof), each revolute joint by the turn inside its limits that brings it closest to

@@ -8,7 +8,9 @@ since the error lies along a direction in which the tip does not move to first o
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
+from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.solver import Solver
 from cspace.ik.wrapping import into_limits, measure_violations
@@ -17,6 +19,32 @@ from cspace.tolerances import DOUBLE_DIRECTION, DOUBLE_SOLUTION, SAME_TIP
 
 STEPS = 4
 """Corrections of a configuration: each squares an error of 1e-7 or less, and any may add a joint."""
+
+
+def keep_within(
+    solver: Solver, q: Array, limits: Limits, rows: slice, order: npt.NDArray[np.int64] | None = None
+) -> tuple[Array, npt.NDArray[np.int64]]:
+    """Of the rows q (..., k, dof) those inside limits, moved by multiples of 2π, NaN behind them, and their
+    number (...,). order (..., k): receives the numbers of the rows kept, and of the others behind them.
+    rows: of the Jacobian that the goals count, as of settle_on_limits.
+    """
+    counts, room = q.shape[:-2], q.shape[-2]
+    given = np.ascontiguousarray(q, dtype=float).reshape(-1, room, solver.dof)
+    kept, count = np.empty(given.shape), np.empty(len(given), dtype=np.int64)
+    bounds = np.ascontiguousarray(limits.lower), np.ascontiguousarray(limits.upper)
+
+    def keep(configurations: Array) -> npt.NDArray[np.int64]:
+        arrays = configurations, *bounds, kept, count, order
+        return np.asarray(_core._ik_keep_within(solver, *arrays, SAME_TIP, DOUBLE_SOLUTION))
+
+    close = keep(given)
+    if len(close) and solver.dof <= rows.stop:
+        given = given.copy()
+        flat = given.reshape(-1, solver.dof)
+        for row in close:
+            flat[row] = settle_row(solver, flat[row], limits, rows)
+        keep(given)
+    return kept.reshape(q.shape), count.reshape(counts)
 
 
 def settle_on_limits(solver: Solver, q: Array, limits: Limits, rows: slice) -> Array:

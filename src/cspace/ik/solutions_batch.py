@@ -14,9 +14,10 @@ from cspace.errors import InputError
 from cspace.ik.answers import INCOMPLETE, METRICS, NEAREST, UNREACHABLE, VERDICTS, Answers
 from cspace.ik.context import About
 from cspace.ik.goals.given import rows_for_goals
+from cspace.ik.on_limits import keep_within
 from cspace.ik.solutions import Solutions, chosen_reason, limits_reason
 from cspace.ik.solver import Solver
-from cspace.ik.wrapping import into_limits, wrap_joints
+from cspace.ik.wrapping import wrap_joints
 from cspace.kinematics.batch import limits_of
 from cspace.model import Limits
 from cspace.tables import one_line
@@ -161,11 +162,9 @@ class SolutionsBatch(Answers):
         A joint that rounding takes past a limit is set to it, so q is inside exactly.
         """
         bounds = limits_of(self.solver.limits, limits, self.solver.name)
-        kinds = self.solver.joint_types
-        moved, fits = into_limits(self._settled(bounds), kinds, bounds.lower, bounds.upper)
-        left_out = ~(fits & self._real)
-        order = np.argsort(left_out, axis=-1, kind="stable")
-        return self._take(moved, order, np.count_nonzero(~left_out, axis=-1))
+        order = None if self._about is None else np.empty(self.q.shape[:-1], dtype=np.int64)
+        q, count = keep_within(self.solver, self.q, bounds, self._constrained, order)
+        return self._with_rows(q, order, count)
 
     def wrapped(self) -> SolutionsBatch:
         """The same solutions with revolute joints in (−π, π]."""
@@ -180,7 +179,9 @@ class SolutionsBatch(Answers):
         """The batch with the solution within limits nearest to q alone, for each goal that has one."""
         inside = self.within(limits)
         moved, row = inside._towards(self._seed(q), METRICS[0], limits)
-        found = inside._take(moved, row[..., None], inside.reachable.astype(np.int64))
+        nearest = row[..., None]
+        moved = np.take_along_axis(moved, nearest[..., None], axis=-2)
+        found = inside._with_rows(moved, nearest, inside.reachable.astype(np.int64))
         return replace(found, _left_out=LeftOut.of(self, found, limits, False))
 
     def _chosen_within(self, limits: Limits) -> SolutionsBatch:
@@ -188,21 +189,18 @@ class SolutionsBatch(Answers):
         found = self.within(limits)
         return replace(found, _left_out=LeftOut.of(self, found, limits, True))
 
-    def _take(
-        self, moved: Array, order: npt.NDArray[np.intp], count: npt.NDArray[np.int64]
+    def _with_rows(
+        self, q: Array, order: npt.NDArray[np.int64] | None, count: npt.NDArray[np.int64]
     ) -> SolutionsBatch:
-        """The first `count` of the rows `order` (..., m) of each goal; moved: what became of the rows."""
-
-        def taken(rows: Array) -> Array:
-            rows = np.take_along_axis(rows, order[..., None], axis=-2)
-            rows[np.arange(order.shape[-1]) >= count[..., None]] = np.nan
-            return rows
-
+        """The batch with other rows, `count` of each goal; order (..., m): which of this one's rows."""
         about, flags = self._about, self._self_motion
-        if about is not None:
-            about = replace(about, q=None if about.q is None else taken(about.q))
+        if about is not None and order is not None:
             flags = np.take_along_axis(flags, order, axis=-1)
-        return replace(self, q=taken(moved), count=count, _about=about, _self_motion=flags)
+            if about.q is not None:
+                whole = np.take_along_axis(about.q, order[..., None], axis=-2)
+                whole[np.arange(order.shape[-1]) >= count[..., None]] = np.nan
+                about = replace(about, q=whole)
+        return replace(self, q=q, count=count, _about=about, _self_motion=flags)
 
     def _seed(self, q: Any) -> Array:
         """One configuration per goal, (..., dof), from as many as given or one for all."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
@@ -73,3 +74,15 @@ def compute_chain(
     given = batch.q, batch.qd, batch.T_world_base, batch.point
     if not _core._chain_rows(robot, frame, *given, T, J, J_rate, sigma, chosen, in_tip, batch.threads):
         refuse_infinite(batch)
+
+
+def measure_misses(robot: KinematicModel, q: Array, goals: Array) -> Array:
+    """How far the tip is from goals (..., 4, 4) or points (..., 3) at configurations (..., k, n), (..., k).
+
+    The larger of the distance [m] and the angle [rad]; NaN for a row of NaN.
+    """
+    miss = np.empty(q.shape[:-1])
+    rows = np.ascontiguousarray(q, dtype=float).reshape(-1, q.shape[-1])
+    if miss.size:
+        _core._chain_misses(robot, frame_number(robot, None), rows, np.ascontiguousarray(goals), miss, 0)
+    return miss
