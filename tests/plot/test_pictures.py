@@ -175,6 +175,54 @@ def test_legends_name_the_branches():
     assert [text.get_text() for text in legend.get_texts()] == ["elbow down", "elbow up"]
 
 
+def legend_of(artists):
+    legend = next(artist for artist in artists if hasattr(artist, "get_texts"))
+    return [text.get_text() for text in legend.get_texts()], legend
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "planar_3r"])
+def test_configurations_of_one_branch_share_an_entry_of_the_legend_and_a_colour(name):
+    robot = cs.load_robot(name)
+    answer = robot.ik(robot.fk(np.full(robot.dof, 0.4)))
+    names = plot.arms.branch_names(answer, np.ones(len(answer), bool))
+    tints = plot.legends.tints_of(names, np.ones(len(answer), bool), 0)
+    assert len({tuple(tint) for tint in tints}) == len(set(names))
+    artists = plot.solutions(robot, answer, within=[True] * len(answer))
+    texts, legend = legend_of(artists)
+    assert len(texts) == len(set(names)) <= plot.legends.MOST_ENTRIES
+    bold = [text.get_text() for text in legend.get_texts() if text.get_fontweight() == "bold"]
+    assert len(bold) == 1
+    assert bold[0].startswith(names[0])
+
+
+def test_a_legend_is_no_longer_than_its_picture():
+    robot, q = arms.elbow_arm(), np.random.default_rng(2).uniform(-1, 1, (60, 6))
+    texts, legend = legend_of(plot.solutions(robot, q))
+    assert len(texts) == plot.legends.MOST_ENTRIES
+    assert texts[-1] == "… and 37 more"
+    figure = legend.figure
+    figure.canvas.draw()
+    box = legend.get_window_extent()
+    assert box.y0 >= 0
+    assert box.y1 <= figure.bbox.y1
+
+
+@pytest.mark.parametrize("lengths", [(1, 1), (1, 0.5, 0.4), (1, 0.5, 0.4, 0.3), (0.2, 1, 0.9, 0.5)])
+def test_workspaces_have_no_holes_between_samples(lengths):
+    robot = cs.Robot.from_dh([[0, length, 0, 0] for length in lengths], convention="standard")
+    image = plot.workspace(robot)[0]
+    shown = ~np.ma.getmaskarray(image.get_array())
+    left, right, low, high = image.get_extent()
+    rows, columns = shown.shape
+    x = left + (np.arange(columns) + 0.5) * (right - left) / columns
+    y = low + (np.arange(rows) + 0.5) * (high - low) / rows
+    far = np.hypot(*np.meshgrid(x, y))
+    reach, inner = sum(lengths), max(0, 2 * max(lengths) - sum(lengths))
+    cell = (right - left) / columns
+    assert not shown[(far > reach + 4 * cell) | (far < inner - 4 * cell)].any()
+    assert shown[(far < 0.97 * reach) & (far > inner + 0.03 * reach)].all()
+
+
 @pytest.mark.parametrize(
     ("draw", "message"),
     [

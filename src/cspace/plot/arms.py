@@ -11,6 +11,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.plot import colors, planar
 from cspace.plot.axes import space_axes
+from cspace.plot.legends import list_entries, mark_bold, tints_of
 from cspace.plot.raytrace import stage
 from cspace.plot.raytrace.scene import Group, artist_type, scene_of
 from cspace.plot.raytrace.solids import Solid, make_cylinder
@@ -77,13 +78,13 @@ def solutions(
         raise InputError(f"within has {len(inside)} entries for {len(q)} configurations; give one each")
     names = list(labels) if labels is not None else branch_names(answer, inside)
     solid = 0 if near is None else nearest_row(q, as_floats(near, "near", last=(arm.dof,)), arm)
-    tints = tints_of(inside, solid)
+    tints = tints_of(names, inside, solid)
     basis = planar_basis(arm.chain)
     if basis is not None and not hasattr(ax, "get_proj"):
         return planar.draw_configurations(
             arm, q, basis, ax=ax, solid=solid, tints=tints, names=names, goal=goal, title=title
         )
-    axes = space_axes(ax, aside=0.7 + 0.063 * max(map(len, names)))
+    axes = space_axes(ax, aside=0.7 + 0.063 * max(len(text) for _, text in list_entries(names, solid)))
     drawn = [make_skeleton(arm, each) for each in q]
     T_goal = drawn[solid].T_tip if goal is None else stage.goal_pose(goal, drawn[solid].T_tip)
     set_stage(axes, arm, drawn, T_goal)
@@ -109,16 +110,6 @@ def within_limits(arm: Any, q: Array) -> Any:
     from cspace.ik.wrapping import into_limits
 
     return into_limits(q, arm.chain.joint_types, arm.limits.lower, arm.limits.upper)[1]
-
-
-def tints_of(inside: Any, solid: int) -> list[Array]:
-    """One colour per configuration: hues for those within limits, blue for the solid one, grey for others."""
-    coloured = inside.copy()
-    coloured[solid] = True
-    tints = np.tile(np.array(colors.BARRED), (len(inside), 1))
-    first = int(coloured[:solid].sum())
-    tints[coloured] = np.roll(colors.make_palette(int(coloured.sum())), first, axis=0)
-    return list(tints)
 
 
 def branch_names(answer: Any, inside: Any) -> list[str]:
@@ -194,12 +185,13 @@ def write_legend(ax: Any, names: list[str], tints: Sequence[Any], solid: int) ->
     """The branches and their colours; the solid one is marked."""
     from matplotlib.lines import Line2D
 
+    entries = list_entries(names, solid)
     handles = [
         Line2D(
-            [], [], linestyle="none", marker="o", markersize=8 if k == solid else 7,
-            markerfacecolor=(*tint, 1.0 if k == solid else 0.45), markeredgecolor=tint, label=name,
+            [], [], linestyle="none", marker="o" if k >= 0 else "", markersize=8 if k == solid else 7,
+            markerfacecolor=(*tints[k], 1.0 if k == solid else 0.45), markeredgecolor=tints[k], label=text,
         )
-        for k, (name, tint) in enumerate(zip(names, tints, strict=True))
+        for k, text in entries
     ]  # fmt: skip
     own_figure = len(ax.figure.axes) == 1
     legend = ax.legend(
@@ -208,6 +200,5 @@ def write_legend(ax: Any, names: list[str], tints: Sequence[Any], solid: int) ->
         bbox_to_anchor=(0.02, 0.90) if own_figure else (0.0, 1.0),
         bbox_transform=ax.figure.transFigure if own_figure else ax.transAxes,
     )  # fmt: skip
-    for k, text in enumerate(legend.get_texts()):
-        text.set_fontweight("bold" if k == solid else "normal")
+    mark_bold(legend, entries, solid)
     return [legend]

@@ -11,12 +11,16 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes, write_title
+from cspace.plot.legends import list_entries, mark_bold
 from cspace.plot.skeleton import Skeleton, make_skeleton, planar_basis, size_of
 from cspace.tolerances import DRAWN_LENGTH, LEAST_DIVISOR
 
 WORKSPACE_SAMPLES: Final = 400
 """Cells along the longer side of a workspace picture: about one per pixel."""
 
+
+GAP_CELLS: Final = 3
+"""Half the width of gaps between random samples that are closed: without, some hundred cells stay white."""
 
 EXACT_ENDS: Final = {"shrinkA": 0, "shrinkB": 0}
 """Arrows that end exactly at given points."""
@@ -166,13 +170,17 @@ def draw_legend(ax: Any, names: Sequence[str], tints: Sequence[Any], solid: int)
     """The branches and their colours; the solid one is bold."""
     from matplotlib.patches import Patch
 
+    entries = list_entries(names, solid)
     handles = [
-        Patch(facecolor=(*tint, 1.0 if k == solid else 0.35), edgecolor=tint, label=name)
-        for k, (name, tint) in enumerate(zip(names, tints, strict=True))
+        Patch(
+            facecolor=(*tints[k], 1.0 if k == solid else 0.35) if k >= 0 else "none",
+            edgecolor=tints[k] if k >= 0 else "none",
+            label=text,
+        )
+        for k, text in entries
     ]
     drawn = ax.legend(handles=handles, frameon=False, fontsize=9, loc="best", labelcolor=colors.INK)
-    for k, text in enumerate(drawn.get_texts()):
-        text.set_fontweight("bold" if k == solid else "normal")
+    mark_bold(drawn, entries, solid)
     return [drawn]
 
 
@@ -211,7 +219,7 @@ def workspace(arm: Any, *, ax: Any | None = None, title: str = "") -> list[Any]:
         )
     else:
         measure = np.sqrt(np.clip(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0, None))
-        artists = [best_in_cells(axes, points, measure)]
+        artists = [best_in_cells(axes, points, measure, gap_cells=0 if arm.dof <= 2 else GAP_CELLS)]
     return artists + draw_base(axes, size, zorder=4) + write_title(axes, title, 11)
 
 
@@ -232,8 +240,28 @@ def grid_of(arm: Any) -> Array:
     return np.asarray(rng.uniform(lower, upper, size=(6 * WORKSPACE_SAMPLES**2, arm.dof)))
 
 
-def best_in_cells(ax: Any, points: Array, measure: Array) -> Any:
-    """An image of the greatest measure found in each cell of the plane."""
+def close_gaps(image: Array, cells: int) -> Array:
+    """The image with values, the greatest nearby, in cells (-inf) that samples within so many cells surround.
+
+    The closing of mathematical morphology (Serra 1982): the region grows by so many cells, then shrinks.
+    """
+
+    def spread(values: Array) -> Array:
+        wide = np.pad(values, 1, constant_values=-np.inf)
+        return np.asarray(np.lib.stride_tricks.sliding_window_view(wide, (3, 3)).max(axis=(2, 3)))
+
+    best = np.pad(image, cells, constant_values=-np.inf)
+    for _ in range(cells):
+        best = spread(best)
+    outside = np.where(np.isfinite(best), -np.inf, 0.0)
+    for _ in range(cells):
+        outside = spread(outside)
+    closed = np.where(np.isfinite(outside), -np.inf, best)
+    return np.asarray(closed[cells:-cells, cells:-cells] if cells else image)
+
+
+def best_in_cells(ax: Any, points: Array, measure: Array, gap_cells: int) -> Any:
+    """An image of the greatest measure found in each cell of the plane, or near it within so many cells."""
     low, high = points.min(axis=0), points.max(axis=0)
     room = 0.03 * float((high - low).max())
     low, high = low - room, high + room
@@ -241,6 +269,7 @@ def best_in_cells(ax: Any, points: Array, measure: Array) -> Any:
     cells = np.minimum(((points - low) / (high - low) * count).astype(int), count - 1)
     image = np.full(tuple(count), -np.inf)
     np.maximum.at(image, (cells[:, 0], cells[:, 1]), measure)
+    image = close_gaps(image, gap_cells)
     shown = np.ma.masked_invalid(np.where(np.isfinite(image), image, np.nan)).T
     drawn = ax.imshow(
         shown, origin="lower", extent=(low[0], high[0], low[1], high[1]), cmap="YlGnBu", zorder=1,

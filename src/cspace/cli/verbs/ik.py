@@ -37,6 +37,8 @@ KEYWORDS: Final = re.compile(
     r"|least_squares|goal_parts)=(?=[^=]|$)"
 )
 """The keywords of robot.ik that are options here."""
+MOST_NUMBERED: Final = 24
+"""Most solutions whose numbers a picture shows; of more, those of one branch share an entry and a colour."""
 NOT_EXPLAINED = (*GOAL_WORDS, *FREEDOM_WORDS, "plot")
 """Options of a goal and its solutions, which an explanation does not accept."""
 
@@ -86,6 +88,7 @@ def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:
         out.hint(gripper_note(args, robot))
         out.hint(degrees_note(args, robot))
     if found and args.plot is not None:
+        out.hint(f"drawing {len(rows)} configuration{'s' if len(rows) > 1 else ''} …")
         draw_solutions(args.plot, robot, rows, goal.mark)
         out.hint(f"picture written to {args.plot}")
     return Exit.DONE if found else Exit.NEGATIVE
@@ -112,9 +115,10 @@ def draw_solutions(path: Path, robot: Robot, rows: list[dict[str, Any]], goal: A
     said = "one configuration reaches" if len(rows) == 1 else f"{len(rows)} configurations reach"
     order = sorted(range(len(rows)), key=lambda k: bool(rows[k]["out_of_limits"]))
     within = [not rows[k]["out_of_limits"] for k in order]
+    numbers = [f"{k + 1}  " if len(rows) <= MOST_NUMBERED else "" for k in order]
     labels = [
-        f"{k + 1}  {rows[k]['branch']}" + ("" if fits else " (out of limits)")
-        for k, fits in zip(order, within, strict=True)
+        f"{number}{rows[k]['branch']}" + ("" if fits else " (out of limits)")
+        for number, k, fits in zip(numbers, order, within, strict=True)
     ]
     q, title = [rows[k]["q"] for k in order], f"{robot.name}: {said} the goal"
     plot.save(plot.solutions(robot, q, goal, labels=labels, within=within, title=title), path)
