@@ -195,12 +195,9 @@ inline void divide_domain(const CriticalValues& critical, Cells& cells) {
 // cells in which one branch is feasible.
 inline void walk_cells(const Redundant& arm, const Sweep& sweep, const CriticalValues& critical,
                        bool is_circle, Intervals& out) {
-    // [rad, m] The square root of the form's error.
-    constexpr double merging = 1e-6, merging_idealised = 1e-4;
     Cells cells;
     cells.is_circle = is_circle;
-    // Where two branches all but meet, nothing can be told from a value in between.
-    cells.fuzz = sweep.locked->arm.plan.idealised ? merging_idealised : merging;
+    cells.fuzz = fuzz_of(sweep.locked->arm.plan);
     divide_domain(critical, cells);
     const int n = cells.count;
     int first[Intervals::room], kept = 0;

@@ -182,9 +182,10 @@ inline bool has_changes(const CurveSamples& all) {
     return false;
 }
 
-// Values between the folds within a window of the circle, ascending; returns their number.
-inline int values_between_folds(const FoldValues& folds, double middle, double half, double* values,
-                                int room) {
+// Values between the folds within a window of the circle, ascending; returns their number. closest: folds
+// this close are one.
+inline int values_between_folds(const FoldValues& folds, double closest, double middle, double half,
+                                double* values, int room) {
     constexpr int each = 8;
     double fold[FoldValues::room + 1];
     const int n = sort_folds(folds, middle - pi, fold);
@@ -193,7 +194,7 @@ inline int values_between_folds(const FoldValues& folds, double middle, double h
         const double from = fold[k], to = fold[k + 1];
         // The last of them reaches into the next revolution, and so into the window from below.
         const bool inside = (to >= middle - half && from <= middle + half) || to - 2 * pi >= middle - half;
-        if (to - from < limit_slack || !inside) continue;
+        if (to - from < closest || !inside) continue;
         for (int j = 0; j < each; ++j)
             values[count++] = from + 0.5 * (to - from) * (1 - std::cos(pi * (j + 0.5) / each));
     }

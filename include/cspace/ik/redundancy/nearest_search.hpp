@@ -200,9 +200,11 @@ inline void sample_window(const Redundant& arm, const Sweep& sweep, const Target
     add_samples(arm, sweep, values, nullptr, count, target, samples);
     if (has_changes(samples)) {
         const FoldValues folds = fold_values(arm, sweep);
+        const Plan& plan = sweep.locked->arm.plan;
+        const double closest = plan.idealised ? fuzz_of(plan) : limit_slack;
         double between[CurveSamples::room];
-        const int n =
-            values_between_folds(folds, window.middle, window.half, between, CurveSamples::room - 64);
+        const int n = values_between_folds(folds, closest, window.middle, window.half, between,
+                                           CurveSamples::room - 64);
         if (n > 0) {
             samples.count = 0;
             add_samples(arm, sweep, between, nullptr, n, target, samples);

@@ -223,7 +223,7 @@ inline void descend_abreast(const Chain& chain, const Posed& goal, double length
 CSPACE_ONCE void descend_to_manifold(const Chain& chain, int rank, const Posed& goal, double length,
                                      double (*q)[max_joints], int starts, bool* reached) {
     if (rank == 6) {
-        (chain.n == 7 ? descend_abreast<7, Pack<4>> : descend_abreast<0, Pack<4>>)(chain, goal, length, q,
+        (chain.n == 7 ? descend_abreast<7, Pack<8>> : descend_abreast<0, Pack<4>>)(chain, goal, length, q,
                                                                                    starts, reached);
         return;
     }

@@ -300,6 +300,13 @@ CSPACE_ONCE FoldValues fold_values(const Redundant& whole, const Sweep& sweep) {
     return out;
 }
 
+// [rad, m] Values of the parameter closer than this count as one place: the square root of the form's error.
+// Where two branches all but meet, nothing can be told from a value in between.
+inline double fuzz_of(const Plan& plan) {
+    constexpr double merging = 1e-6, merging_idealised = 1e-4;
+    return plan.idealised ? merging_idealised : merging;
+}
+
 // The folds in [start, start + 2π), sorted; the first is repeated at + 2π.
 inline int sort_folds(const FoldValues& folds, double start, double* sorted) {
     const int n = folds.count;
