@@ -9,6 +9,7 @@
 #include "cspace/ik/self_motion/self_motion.hpp"
 #include "cspace/ik/solution.hpp"
 #include "cspace/ik/three_parallel.hpp"
+#include "cspace/ik/wrist_bend.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 
@@ -74,14 +75,34 @@ inline int listed_beside(const Solutions& out, const Chain& chain, const double*
     return -1;
 }
 
-// Adds q to the solutions unless it is not a solution or is already listed. Returns its row, or −1.
-CSPACE_ONCE int accept_solution(Solutions& out, const Chain& chain, const Posed& goal, double length,
-                                double* q, int branch, int most_steps) {
+// Refines q; a start exactly on a fold, where the error is stationary along the weakest direction, once more
+// from beside it. Returns the remaining error.
+inline double refine_branch(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
+                            int most_steps) {
+    constexpr double aside = 1e-5, stationary = 1e-6;  // [rad], smallest singular value
+    double size = refine_solution(chain, goal, length, q, error, most_steps);
+    const int weak = weakest_direction(error.jacobian);
+    if (size > tolerance::rounding && size <= tolerance::reached && error.jacobian.sigma[weak] < stationary) {
+        double other[max_joints];
+        for (int i = 0; i < chain.n; ++i) other[i] = q[i] + aside * error.jacobian.v[weak][i];
+        PoseError there;
+        const double left = refine_solution(chain, goal, length, other, there, most_steps);
+        if (left < size) {
+            size = left, error = there;
+            for (int i = 0; i < chain.n; ++i) q[i] = other[i];
+        }
+    }
+    return size;
+}
+
+// Refines q and adds it unless it misses the goal by more than `most` or is already listed. Returns its row,
+// or −1; `error` belongs to q where it is new.
+inline int add_distinct(Solutions& out, const Chain& chain, const Posed& goal, double length, double* q,
+                        int branch, int most_steps, PoseError& error, double most = tolerance::reached) {
     const int beside = listed_beside(out, chain, q);
     if (beside >= 0) return beside;
-    PoseError error;
-    const double size = refine_solution(chain, goal, length, q, error, most_steps);
-    if (!(size <= tolerance::reached) || out.count == max_solutions) return -1;
+    const double size = refine_branch(chain, goal, length, q, error, most_steps);
+    if (!(size <= most) || out.count == max_solutions) return -1;
     const int weak = weakest_direction(error.jacobian);
     const double conditioning = max(error.jacobian.sigma[weak], tolerance::always_singular);
     const double near = 10 * max(size, tolerance::last_digits) / conditioning;
@@ -92,6 +113,15 @@ CSPACE_ONCE int accept_solution(Solutions& out, const Chain& chain, const Posed&
     }
     const int n = append_solution(chain, q, branch, out);
     out.conditioning[n] = error.jacobian.sigma[weak];
+    return n;
+}
+
+// Adds q to the solutions unless it is not a solution or is already listed. Returns its row, or −1.
+CSPACE_ONCE int accept_solution(Solutions& out, const Chain& chain, const Posed& goal, double length,
+                                double* q, int branch, int most_steps) {
+    PoseError error;
+    const int before = out.count, n = add_distinct(out, chain, goal, length, q, branch, most_steps, error);
+    if (n < before) return n;
     out.self_motion[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
     if (out.self_motion[n]) out.status = Status::singular;
     return n;
@@ -121,6 +151,45 @@ inline double configuration_of(const Plan& plan, const double* t, double* q) {
     return stray;
 }
 
+// Whether the arm can go on from q along `direction` and miss the goal by no more than a solution may.
+inline bool goes_on(const Plan& plan, const Posed& goal, const double* q, const double* direction) {
+    for (const double stride : {0.05, -0.05}) {
+        const double kept = kept_of_stride(plan.chain, goal, plan.form.length, q, direction, stride, true,
+                                           tolerance::reached);
+        if (0.8 < kept && kept < 1.25) return true;
+    }
+    return false;
+}
+
+// Adds a branch of an exact closed form. A solution whose wrist is bent by more than rounding is isolated,
+// however little the tip moves when the wrist rolls. Where rounding decides about the roll or the elbow, they
+// are free as far as the goal tells, and nothing else is. Other branches may leave no certificate.
+inline void add_branch(const Plan& plan, const Posed& goal, double* q, int branch, int most_steps,
+                       Solutions& out) {
+    PoseError error;
+    const int before = out.count;
+    const int n = add_distinct(out, plan.chain, goal, plan.form.length, q, branch, most_steps, error,
+                               tolerance::fold_band);
+    if (n < 0) return;
+    const Looseness loose = looseness_of(plan, q);
+    if (n == before && loose != Looseness::none) {
+        double* const direction = out.direction[n];
+        bool moves =
+            find_self_motion(plan.chain, goal, plan.form.length, out.q[n], error.jacobian, direction);
+        if (!moves && loose == Looseness::as_rounded) {
+            const double* weakest = error.jacobian.v[weakest_direction(error.jacobian)];
+            std::copy(weakest, weakest + 6, direction);
+            if (plan.family == Family::spherical_wrist) roll_of_wrist(plan, out.q[n], direction);
+            moves = goes_on(plan, goal, out.q[n], direction);
+        }
+        out.self_motion[n] = moves;
+        if (moves) out.status = Status::singular;
+        out.settled[n] = moves && (loose == Looseness::as_rounded || turns_first_joint(plan, out.q[n]));
+    }
+    if (n == before && loose == Looseness::none) out.settled[n] = true;
+    out.complete = out.complete && (out.self_motion[n] || leaves_certificate(plan, q, loose));
+}
+
 // The branches of the plan for one choice of unconstrained joints, as configurations of the chain.
 inline void closed_form_candidates(const Plan& plan, const Posed& goal_form, const Care& care, Solutions& out,
                                    const Posed& goal, const CandidateSearch& search = {}) {
@@ -128,7 +197,10 @@ inline void closed_form_candidates(const Plan& plan, const Posed& goal_form, con
     for (int k = search.first; k < search.last; ++k) {
         if (!b.ok[k]) continue;
         double q[max_joints] = {};
-        if (configuration_of(plan, b.t[k], q) <= search.stray)
+        const double stray = configuration_of(plan, b.t[k], q);
+        if (is_exact(plan))
+            add_branch(plan, goal, q, k, search.most_steps, out);
+        else if (stray <= search.stray)
             accept_solution(out, plan.chain, goal, plan.form.length, q, k, search.most_steps);
     }
 }
@@ -253,6 +325,7 @@ inline void number_by_branches(const Plan& plan, const Posed& goal, Solutions& o
 inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const double* unconstrained) {
     Solutions out;
     Care care = care_of(plan);
+    constexpr double wide = 1e-5;  // by so much rounding of a joint before may move a fold
     const double slack = 4 * plan.form.deviation;
     care.free = max(tolerance::free_joint, slack);
     double t[6];
@@ -260,6 +333,7 @@ inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const doub
     const Posed goal_form = goal_in_form(plan, goal);
     // Near singularities of the completed arm an idealised form leaves virtual joints far from zero.
     const CandidateSearch search = {0, max_branches, plan.idealised ? 0.1 : rounded_stray};
+    if (is_exact(plan)) care.band = max(care.band, wide);
     closed_form_candidates(plan, goal_form, care, out, goal, search);
     if (plan.idealised) {
         care.spread = slack;
@@ -267,11 +341,14 @@ inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const doub
     }
     if (plan.idealised && plan.virtual_joints && out.count == 0)
         try_perturbed_goals(plan, goal_form, care, out, goal);
-    if (plan.idealised || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
+    if (!is_exact(plan) && (plan.idealised || plan.virtual_joints))
+        sweep_free_joints(plan, goal_form, care, t, out, goal);
     if (plan.family == Family::three_parallel) {
-        widen_fold_band(plan, goal_form, care, out, goal);
+        if (!is_exact(plan)) widen_fold_band(plan, goal_form, care, out, goal);
         turn_free_wrist(plan, goal_form, care, t[3], out, goal);
     }
+    if (is_exact(plan) && plan.family == Family::three_parallel && !covers_curves(plan, goal_form, care, out))
+        for (int k = 0; k < out.count; ++k) out.settled[k] = out.settled[k] && !out.self_motion[k];
     out.crowded = plan.virtual_joints == 0;  // most goals are settled before they come here
     // Merging pairs of the true arm may lie where the form has none.
     if (plan.form.deviation > tolerance::visible_deviation &&

@@ -31,6 +31,7 @@ struct Solutions {
     double q[max_solutions][max_arm];
     signed char branch[max_solutions];         // which of the closed form's branches
     bool self_motion[max_solutions];           // stands for a one-parameter family
+    bool settled[max_solutions] = {};          // known to be isolated
     double direction[max_solutions][max_arm];  // of the family at q, unit; undefined where not a family
     double conditioning[max_solutions] = {};   // smallest singular value of the Jacobian; 0: not known
 };

@@ -181,7 +181,7 @@ inline void add_bifurcations(const Chain& chain, const Posed& goal, double lengt
     int steps_left = 8000;  // of all curves together: some 50 ms
     bool passed[max_solutions] = {};
     for (int k = 0; k < out.count; ++k) {
-        if (!out.self_motion[k] || passed[k]) continue;
+        if (!out.self_motion[k] || out.settled[k] || passed[k]) continue;
         if (only_rolls(chain, constraint, out.q[k], out.direction[k])) {
             out.complete = out.complete && (rolls_round(chain, constraint, out.q[k], out.direction[k]) ||
                                             turn_into_valley(chain, goal, length, k, room, listed, out));
@@ -211,7 +211,8 @@ inline void look_along(const Chain& chain, const Posed& goal, double length, con
         add_bifurcations(chain, goal, length, unconstrained, room, listed, out);
     double direction[max_joints];
     for (int k = 0; k < out.count && out.crowded && out.complete; ++k)
-        if (!out.self_motion[k] && !listed[k] && lies_in_valley(chain, goal, length, out.q[k], direction))
+        if (!out.self_motion[k] && !out.settled[k] && !listed[k] &&
+            lies_in_valley(chain, goal, length, out.q[k], direction))
             out.complete = search_valley(chain, goal, length, out.q[k], direction, room, listed, out).whole;
 }
 
