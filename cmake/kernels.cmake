@@ -40,12 +40,6 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_OSX_ARCHITECTURES
 endif()
 target_compile_definitions(cspace_kernels PUBLIC ${kernel_copies})
 
-# GCC copies structs of lanes 16 bytes at a time unless told otherwise, and a register that was stored in two parts is
-# loaded late.
-include(CheckCXXCompilerFlag)
-check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" has_wide_moves)
-set(wide_moves $<$<BOOL:${has_wide_moves}>:-mmove-max=256> $<$<BOOL:${has_wide_moves}>:-mstore-max=256>)
-
 if("CSPACE_HAS_AVX2" IN_LIST kernel_copies AND NOT MSVC)
   add_kernels(baseline -O2)  # for processors without AVX2, older than 2013: it compiles sooner than -O3
 else()
@@ -55,13 +49,22 @@ if("CSPACE_HAS_AVX2" IN_LIST kernel_copies)
   if(MSVC)
     add_kernels(avx2 /arch:AVX2)
   else()
-    add_kernels(avx2 -mavx2 -mfma ${wide_moves})
+    add_kernels(avx2 -mavx2 -mfma)
   endif()
 endif()
 if("CSPACE_HAS_AVX512" IN_LIST kernel_copies)
   # GCC 12 finds its own AVX-512 headers uninitialised; the other copies keep these warnings.
-  add_kernels(avx512 -mavx512f -mavx512dq -mavx512vl -mfma ${wide_moves}
+  add_kernels(avx512 -mavx512f -mavx512dq -mavx512vl -mfma
               $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+endif()
+
+# GCC copies structs 16 bytes at a time. A register of four lanes that was stored in two parts is loaded late; so, in other
+# files, is one that two stores of two lanes filled.
+include(CheckCXXCompilerFlag)
+check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" has_wide_moves)
+if(has_wide_moves)
+  set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/kinematics.cpp
+               APPEND PROPERTY COMPILE_OPTIONS -mmove-max=256 -mstore-max=256)
 endif()
 
 # The library: what calls the kernels and what needs no instruction set of its own, compiled once behind plain

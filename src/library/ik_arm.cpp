@@ -157,6 +157,7 @@ double turn_to_seed(const bool* prismatic, int n, const double* lower, const dou
     constexpr double turn = 6.283185307179586, on_limit = 1e-9;
     double excess = 0;
     for (int i = 0; i < n; ++i) {
+        if (q[i] >= lower[i] && q[i] <= upper[i] && std::fabs(seed[i] - q[i]) < turn / 2) continue;
         const double least = std::ceil((lower[i] - on_limit - q[i]) / turn);
         const double most = std::floor((upper[i] + on_limit - q[i]) / turn);
         const double wanted = std::nearbyint((seed[i] - q[i]) / turn);
