@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "cspace/math/isa.hpp"
 #include "cspace/math/plane.hpp"
 
 namespace cspace {
@@ -79,7 +80,7 @@ auto with_exact_differences(Point a, Point b, Point c, WithDifferences with_diff
     return with_expansion();
 }
 
-inline int orientation(Point a, Point b, Point c) {
+CSPACE_COLD inline int orientation(Point a, Point b, Point c) {
     return with_exact_differences(
         a, b, c, [](Point u, Point v) { return sign_of_difference(u.x, v.y, u.y, v.x); },
         [&] { return expanded_determinant(a, b, c).sign(); });
@@ -104,7 +105,7 @@ inline double determinant(Point a, Point b, Point c) {
 }  // namespace exact
 
 // Where c lies seen from a towards b: +1 to the left, −1 to the right, 0 on the line.
-inline int orientation(Point a, Point b, Point c) {
+CSPACE_INLINE int orientation(Point a, Point b, Point c) {
     const double left = (a.x - c.x) * (b.y - c.y), right = (a.y - c.y) * (b.x - c.x);
     const double det = left - right;
     constexpr double error = 3.3306690738754716e-16;  // (3 + 16ε) ε, ε = 2⁻⁵³
