@@ -95,14 +95,22 @@ inline double refine_branch(const Chain& chain, const Posed& goal, double length
     return size;
 }
 
-// Refines q and adds it unless it misses the goal by more than `most` or is already listed. Returns its row,
-// or −1; `error` belongs to q where it is new.
+// What counts as a solution: by how much it may miss the goal, and whether a start on a fold is refined once
+// more from beside it.
+struct Acceptance {
+    double most = tolerance::reached;
+    bool aside = false;
+};
+
+// Refines q and adds it unless it misses the goal or is already listed. Returns its row, or −1; `error`
+// belongs to q where it is new.
 inline int add_distinct(Solutions& out, const Chain& chain, const Posed& goal, double length, double* q,
-                        int branch, int most_steps, PoseError& error, double most = tolerance::reached) {
+                        int branch, int most_steps, PoseError& error, const Acceptance& accept = {}) {
     const int beside = listed_beside(out, chain, q);
     if (beside >= 0) return beside;
-    const double size = refine_branch(chain, goal, length, q, error, most_steps);
-    if (!(size <= most) || out.count == max_solutions) return -1;
+    const double size = accept.aside ? refine_branch(chain, goal, length, q, error, most_steps)
+                                     : refine_solution(chain, goal, length, q, error, most_steps);
+    if (!(size <= accept.most) || out.count == max_solutions) return -1;
     const int weak = weakest_direction(error.jacobian);
     const double conditioning = max(error.jacobian.sigma[weak], tolerance::always_singular);
     const double near = 10 * max(size, tolerance::last_digits) / conditioning;
@@ -169,7 +177,7 @@ inline void add_branch(const Plan& plan, const Posed& goal, double* q, int branc
     PoseError error;
     const int before = out.count;
     const int n = add_distinct(out, plan.chain, goal, plan.form.length, q, branch, most_steps, error,
-                               tolerance::fold_band);
+                               {tolerance::fold_band, !plan.idealised});
     if (n < 0) return;
     const Looseness loose = looseness_of(plan, q);
     if (n == before && loose != Looseness::none) {

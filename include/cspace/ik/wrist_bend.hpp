@@ -178,9 +178,9 @@ inline void roll_of_wrist(const Plan& plan, const double* q, double* direction) 
     direction[plan.joint[5]] = std::copysign(std::sqrt(0.5), -dot(at.axis[3], at.axis[5]));
 }
 
-inline Looseness looseness_of(const Bend& bend, double determined) {
+inline Looseness looseness_of(const Bend& bend, double determined, double misplaced) {
     constexpr double bent = 1.5e-10;  // below, the roll misses the goal by next to nothing
-    if (!(bend.place < most_misplaced)) return Looseness::unknown;
+    if (!(bend.place < misplaced)) return Looseness::unknown;
     if (!(bend.blur < determined * bend.sine) || !(bend.placed < most_moved)) return Looseness::as_rounded;
     return bend.sine > bent ? Looseness::none : Looseness::straight;
 }
@@ -188,10 +188,10 @@ inline Looseness looseness_of(const Bend& bend, double determined) {
 // At q. A closed form that idealises the arm does not move the solution, which is refined, but must not
 // confuse it with another one.
 inline Looseness looseness_of(const Plan& plan, const double* q) {
-    constexpr double rounded = 1e-4, alone = 0.1;  // what may be left open of the roll [rad]
-    const Looseness out = looseness_of(measure_bend(plan, q, pose_noise), rounded);
+    constexpr double rounded = 1e-4, alone = 0.3, beside = 1e-2;  // what may be left open of joints [rad]
+    const Looseness out = looseness_of(measure_bend(plan, q, pose_noise), rounded, most_misplaced);
     if (!plan.idealised) return out;
-    return std::max(out, looseness_of(measure_bend(plan, q, 4 * plan.form.deviation), alone));
+    return std::max(out, looseness_of(measure_bend(plan, q, 4 * plan.form.deviation), alone, beside));
 }
 
 // Whether a list with an isolated solution q may be complete.
