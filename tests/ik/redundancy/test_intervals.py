@@ -60,6 +60,21 @@ def test_nor_do_those_of_arms_without_a_closed_form(name):
         assert contradictions(robot, T, found, joint, 200) == 0
 
 
+@pytest.mark.parametrize(
+    "q",
+    [
+        [-0.67057, -1.09108, 0.20320, 0.01313, 0.39270, -1.02450, -1.46968],
+        [1.4554, -1.3463, 0.3647, 0.0089, -2.9799, 1.2228, -0.8238],
+        [0.2084, 0.2189, -0.2395, -0.0147, -2.1482, -1.8309, -1.8745],
+        [2.7289, 0.6169, 0.1995, 0.0120, 2.5331, -2.0397, 2.6530],
+    ],
+)
+def test_narrow_loops_of_an_elbow_that_is_nearly_straight_are_followed_round_both_strands(q):
+    robot = cs.load_robot("gen3")
+    found = robot.redundancy(robot.fk(q))
+    assert found.feasible(q[6])
+
+
 @pytest.mark.parametrize("joint", [0, 1, 3, 5])
 def test_any_joint_may_be_the_parameter(joint):
     robot = cs.load_robot("panda")

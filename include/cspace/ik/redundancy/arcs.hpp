@@ -86,7 +86,9 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
             return use_points(tracer, next, -1) ? ArcEnd::limit : ArcEnd::known_limit;
         }
         if (is_far(tracer, next.q)) return add({next.q[p], end_none, 0}) ? ArcEnd::open : ArcEnd::lost;
-        if (k > 0 && part_of_chord(arm.chain, at.q, next.q, origin.q) >= 0) {
+        // Not the other strand of a narrow loop, which leads back.
+        const bool same_way = dot_n(next.tangent, origin.tangent, n) > 0;
+        if (k > 0 && same_way && part_of_chord(arm.chain, at.q, next.q, origin.q) >= 0) {
             turns.closing = next.q[p] + joint_difference(arm.chain, p, origin.q[p] - next.q[p]);
             return ArcEnd::closed;
         }
@@ -131,9 +133,16 @@ inline void add_piece(Tracer& tracer, const Critical& from, const Critical& to, 
 inline void add_pieces(Tracer& tracer, const Turns& turns) {
     for (int k = 0; k + 1 < turns.count; ++k) add_piece(tracer, turns.at[k], turns.at[k + 1], turns.q[k + 1]);
 }
-// start: the parameter at which tracing began.
-inline void add_closed_pieces(Tracer& tracer, const Turns& turns, double start, const double* q) {
+// start: the parameter at which tracing began. A closed curve turns an even number of times.
+inline void add_closed_pieces(Tracer& tracer, Turns& turns, double start, const double* q) {
     const double shift = turns.closing - start;
+    if (turns.count % 2) {
+        const double again = turns.at[turns.count - 1].value - shift - turns.at[0].value;
+        if (std::fabs(again) < same_point)
+            --turns.count;  // the last step passed the first turn once more
+        else
+            tracer.out->complete = false;
+    }
     if (turns.count) {
         add_pieces(tracer, turns);
         Critical next = turns.at[0];

@@ -102,31 +102,31 @@ inline Ahead look_ahead(const CurvePoint& from, const CurvePoint& to, int n) {
     return out;
 }
 
-// Tries a step of length `stride`. Returns true if it stayed close to the curve. One Newton step is enough
-// where it is so small that the next one would be rounding to what follows, unless the parameter all but
-// turns.
+// Tries a step of length `stride`. Returns true if it stayed close to the curve: the bend alone must lead
+// close to its end, for then the chord is close as well. One Newton step is enough where it is so small that
+// the next one would be rounding to what follows, unless the parameter all but turns.
 inline bool try_step(const Tracer& tracer, const CurvePoint& from, const Ahead& ahead, double stride,
                      double most_off, CurvePoint& to) {
     constexpr double small = 1e-4, turning = 0.01, third = 1.0 / 6, fourth = 1.0 / 24;
     const Redundant& arm = *tracer.arm;
     const int n = arm.chain.n;
-    double guess[max_joints];
-    predict_along(from.q, from.tangent, from.bend, stride, n, guess);
+    double bent[max_joints], guess[max_joints];
+    predict_along(from.q, from.tangent, from.bend, stride, n, bent);
     const double h3 = stride * stride * stride;
     for (int i = 0; i < n; ++i) {
-        guess[i] += h3 * (third * ahead.third[i] + fourth * stride * ahead.fourth[i]);
+        guess[i] = bent[i] + h3 * (third * ahead.third[i] + fourth * stride * ahead.fourth[i]);
         to.q[i] = guess[i];
     }
-    const auto moved = [&] {
+    const auto away_from = [&](const double* predicted) {
         double off = 0;
-        for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - guess[i]));
+        for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - predicted[i]));
         return off;
     };
     onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, to);
-    const bool once = moved() < small && std::fabs(to.tangent[tracer.parameter]) > turning;
+    const bool once = away_from(guess) < small && std::fabs(to.tangent[tracer.parameter]) > turning;
     if (!once) put_on_curve(tracer, to);
     orient_tangent(to.tangent, from.tangent, n);
-    return (once || to.error < tolerance::reached) && moved() < most_off * stride &&
+    return (once || to.error < tolerance::reached) && away_from(bent) < most_off * stride &&
            dot_n(to.tangent, from.tangent, n) > 0.95;
 }
 
