@@ -475,7 +475,9 @@ def test_limits_of_some_turns_and_of_millions_are_left_alone(kind):
     for size in (1, 6.4, 12.6, 18.9, 1e4, 1e16) if kind == "revolute" else (180, 1000):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            from_urdf(LIMITED.format(kind=kind, lower=-size, upper=size).replace("-99", f"-{size}"))
+            robot = from_urdf(LIMITED.format(kind=kind, lower=-size, upper=size).replace("-99", f"-{size}"))
+        limits = {(joint.lower, joint.upper) for joint in robot.joints}
+        assert limits == {(-math.inf, math.inf) if kind == "continuous" else (-size, size)}
 
 
 def test_extensions_are_left_alone():
