@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from cspace.errors import CspaceError
 
 if TYPE_CHECKING:
-    from cspace import export, ik, kinematics, maps, model, navigation, plot, robots, spatial
+    from cspace import export, ik, kinematics, maps, model, navigation, plot, robots, shapes, spatial
     from cspace._core import __version__
     from cspace.ik import (
         CenterOfMassTask,
@@ -23,6 +23,17 @@ if TYPE_CHECKING:
     from cspace.navigation.navigate import navigate
     from cspace.robot import Robot
     from cspace.robots import load_robot
+    from cspace.shapes import (
+        Box,
+        Capsule,
+        Cylinder,
+        HalfSpace,
+        HeightField,
+        Hull,
+        Mesh,
+        PointCloud,
+        Sphere,
+    )
     from cspace.spatial import *  # noqa: F403
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
@@ -43,7 +54,8 @@ __all__ = [
     "navigate",
     "navigation",
 ]
-__all__ += ["plot", "robots", "spatial", "subproblems"]
+__all__ += ["plot", "robots", "shapes", "spatial", "subproblems"]
+__all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
     __all__ += spatial.__all__
@@ -53,15 +65,24 @@ _OWN: list[str] = globals().pop("__all__")
 # Where the names are that are imported when they are first used: numpy and the rooms take time to load. The
 # names that are not here are those of spatial.
 _LATER = {
+    "Box": "cspace.shapes",
+    "Capsule": "cspace.shapes",
     "CenterOfMassTask": "cspace.ik",
+    "Cylinder": "cspace.shapes",
     "DirectionTask": "cspace.ik",
+    "HalfSpace": "cspace.shapes",
+    "HeightField": "cspace.shapes",
+    "Hull": "cspace.shapes",
     "Limits": "cspace.model",
+    "Mesh": "cspace.shapes",
     "OccupancyGrid": "cspace.maps",
-    "PoseTask": "cspace.ik",
+    "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
+    "PoseTask": "cspace.ik",
     "PositionTask": "cspace.ik",
     "PostureTask": "cspace.ik",
     "Robot": "cspace.robot",
+    "Sphere": "cspace.shapes",
     "__version__": "cspace._core",
     "export": "",
     "ik": "",
@@ -73,6 +94,7 @@ _LATER = {
     "navigation": "",
     "plot": "",
     "robots": "",
+    "shapes": "",
     "spatial": "",
     "subproblems": "cspace.ik",
     "tolerances": "",

@@ -14,6 +14,7 @@ __all__ = [
     "InputError",
     "InputTypeError",
     "MapError",
+    "MeshError",
     "MissingExtraError",
     "Renamed",
     "UnknownNameError",
@@ -126,11 +127,15 @@ class _FileError(CspaceError, ValueError):
 
 
 class DescriptionError(_FileError):
-    """A robot description that cannot be read; contains the file and, if known, the line."""
+    """A robot or scene description that cannot be read; contains the file and, if known, the line."""
 
 
 class MapError(_FileError):
     """A map file that cannot be read; contains the file and, if known, the line."""
+
+
+class MeshError(_FileError):
+    """A mesh file that cannot be read; contains the file and, if known, the line."""
 
 
 class MissingExtraError(CspaceError, ImportError):

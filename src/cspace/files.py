@@ -12,7 +12,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
-from cspace.errors import DescriptionError, InputError, InputTypeError, MapError, shorten
+from cspace.errors import DescriptionError, InputError, InputTypeError, MapError, MeshError, shorten
 
 __all__ = [
     "YamlLine",
@@ -35,6 +35,9 @@ STEM: Final = 40
 CONTENT: Final = re.compile(r"""(?:(?<!\S)'(?:[^']|'')*'|(?<!\S)"[^"]*"|[^#]|(?<=\S)#)*""")
 """The content of a line of YAML before its comment: a # that follows a blank and is outside quotes."""
 
+FileError = DescriptionError | MapError | MeshError
+"""What is raised for a file that cannot be read."""
+
 ENTRY: Final = re.compile(r"( *)(?:(-)|([A-Za-z_][\w.-]*)\s*:)(?:\s+(.*))?")
 
 
@@ -46,9 +49,7 @@ def path_of(source: Any, subject: str = "a file is given by its path") -> str:
         raise InputTypeError(f"{subject}, got {type(source).__name__}") from None
 
 
-def read_regular(
-    path: str | os.PathLike[str], kind: str, most: int, error: type[DescriptionError] | type[MapError]
-) -> bytes:
+def read_regular(path: str | os.PathLike[str], kind: str, most: int, error: type[FileError]) -> bytes:
     """The bytes of a regular file of reasonable size.
 
     kind: what it should be ("robot", "map"); most: the largest size that is read (bytes). Raises `error`
@@ -72,9 +73,7 @@ def read_regular(
         raise error(f"cannot be read: {getattr(fault, 'strerror', None) or fault}", path=name) from None
 
 
-def read_text(
-    path: str | os.PathLike[str], kind: str, most: int, error: type[DescriptionError] | type[MapError]
-) -> str:
+def read_text(path: str | os.PathLike[str], kind: str, most: int, error: type[FileError]) -> str:
     """The text of a file in UTF-8; `error` as from read_regular, or with the line of an invalid byte."""
     data = read_regular(path, kind, most, error)
     try:

@@ -439,4 +439,19 @@ DRAWN_PLANE: Final = 1e-6
 LEAST_DIVISOR: Final = 1e-12
 """Least divisor of a picture, in place of zero: lengths and shares of what is drawn are far above it."""
 
+HULL_FLAT: Final = 1e-9
+"""Share of the extent of points up to which they lie in a plane or a line, and triangles of their hull in a
+common plane: coordinates of CAD files carry about 1e-7, but a plate of a micrometre is still a solid."""
+
+HULL_DETERMINANT: Final = 2.0**-49
+"""Rounding of a determinant of three differences, relative to the sum of the absolute products in it: twelve
+operations lose less than sixteen times 2^-53."""
+
+MESH_BYTES: Final = 256 * 2**20
+"""Largest mesh file that is read (bytes): five million triangles, a hundred times a detailed robot link."""
+
+MOST_COVER_CELLS: Final = 200_000
+"""Most cells of a cover by spheres that are evaluated at once: a link needs some thousand, and checks against
+more spheres are slower than those against the mesh."""
+
 __all__ = [name for name in globals() if name.isupper()]
