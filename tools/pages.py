@@ -14,7 +14,16 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 sys.path.insert(0, str(ROOT / "src"))
 COURSE = ("spatial", "robots", "catalogue", "kinematics", "ik", "subproblems", "redundancy", "tracking")
-COURSE += ("differential-kinematics", "export", "shapes", "maps", "navigation", "planners", "cars")
+COURSE += (
+    "differential-kinematics",
+    "export",
+    "shapes",
+    "collision",
+    "maps",
+    "navigation",
+    "planners",
+    "cars",
+)
 COURSE += ("plot", "cli", "cpp")
 """The pages of the rooms, in the order in which they build on each other."""
 

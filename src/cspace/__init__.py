@@ -8,8 +8,21 @@ from typing import TYPE_CHECKING, Any
 from cspace.errors import CspaceError
 
 if TYPE_CHECKING:
-    from cspace import export, ik, kinematics, maps, model, navigation, plot, robots, shapes, spatial
+    from cspace import (
+        collision,
+        export,
+        ik,
+        kinematics,
+        maps,
+        model,
+        navigation,
+        plot,
+        robots,
+        shapes,
+        spatial,
+    )
     from cspace._core import __version__
+    from cspace.collision import Scene
     from cspace.ik import (
         CenterOfMassTask,
         DirectionTask,
@@ -44,7 +57,9 @@ __all__ = [
     "OccupancyGrid",
     "PolygonWorld",
     "Robot",
+    "Scene",
     "__version__",
+    "collision",
     "export",
     "ik",
     "kinematics",
@@ -82,8 +97,10 @@ _LATER = {
     "PositionTask": "cspace.ik",
     "PostureTask": "cspace.ik",
     "Robot": "cspace.robot",
+    "Scene": "cspace.collision",
     "Sphere": "cspace.shapes",
     "__version__": "cspace._core",
+    "collision": "",
     "export": "",
     "ik": "",
     "kinematics": "",

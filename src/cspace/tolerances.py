@@ -439,6 +439,10 @@ DRAWN_PLANE: Final = 1e-6
 LEAST_DIVISOR: Final = 1e-12
 """Least divisor of a picture, in place of zero: lengths and shares of what is drawn are far above it."""
 
+ROUNDED_UNIT: Final = 2.0**-51
+"""Difference of the length of a vector from one (unitless) that is the rounding of its division by its
+length."""
+
 HULL_FLAT: Final = 1e-9
 """Share of the extent of points up to which they lie in a plane or a line, and triangles of their hull in a
 common plane: coordinates of CAD files carry about 1e-7, but a plate of a micrometre is still a solid."""

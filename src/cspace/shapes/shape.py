@@ -79,6 +79,10 @@ class Shape:
         """The same shape moved by T (4, 4), a displacement in the frame where it is placed."""
         return replace(self, pose=one_pose(T, "T") @ self.pose)  # type: ignore[type-var]
 
+    def placed(self: S, pose: Any) -> S:
+        """The same shape at another pose (4, 4) or position (3,)."""
+        return replace(self, pose=pose)  # type: ignore[type-var]
+
     def renamed(self: S, name: str) -> S:
         """The same shape under another name."""
         return replace(self, name=name)  # type: ignore[type-var]

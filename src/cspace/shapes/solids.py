@@ -12,7 +12,7 @@ from cspace.arrays import Array, one_array, one_number, positive_number
 from cspace.errors import InputError
 from cspace.shapes.shape import IDENTITY, ORIGIN, Shape, find_bounds
 from cspace.tables import shown
-from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER
+from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER, ROUNDED_UNIT
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -186,7 +186,9 @@ class HalfSpace(Shape):
         if length < AXIS_LENGTH:
             raise InputError(f"normal of a half space is {normal.tolist()}; it must not be zero")
         offset = one_number(self.offset, "offset of a half space", largest=LARGEST_NUMBER)
-        self._store(normal=normal / length, offset=offset)
+        if abs(length - 1.0) > ROUNDED_UNIT:  # a unit vector stays as it is, bit for bit
+            normal /= length
+        self._store(normal=normal, offset=offset)
         self._place()
 
     @property
