@@ -1,12 +1,15 @@
 // All of cspace: one header for programs that would rather not choose. It lists the headers
 // that no other one includes; every other header comes with them.
 //
-// Each room is a namespace: cspace::model, cspace::spatial, cspace::kinematics, cspace::ik, cspace::search,
-// cspace::maps and cspace::navigation. The mathematics that every room uses, its vectors, packs of lanes,
-// polynomials and linear algebra, stands in cspace itself; the thresholds stand in cspace::tolerance.
-// Inside each namespace an inline one is named after the instruction set (cspace/math/isa.hpp).
+// Each room is a namespace: cspace::model, cspace::spatial, cspace::shapes, cspace::kinematics,
+// cspace::collision, cspace::ik, cspace::search, cspace::maps and cspace::navigation. The mathematics that
+// every room uses, its vectors, packs of lanes, polynomials and linear algebra, stands in cspace itself; the
+// thresholds stand in cspace::tolerance. Inside each namespace an inline one is named after the instruction
+// set (cspace/math/isa.hpp).
 #pragma once
 
+#include "cspace/collision/edge.hpp"
+#include "cspace/collision/rows.hpp"
 #include "cspace/ik/numeric/resolved_rate.hpp"
 #include "cspace/ik/numeric/search.hpp"
 #include "cspace/ik/numeric/tasks.hpp"
@@ -44,4 +47,6 @@
 #include "cspace/navigation/sampling/rrt.hpp"
 #include "cspace/navigation/visibility/search.hpp"
 #include "cspace/navigation/voronoi/roadmap.hpp"
+#include "cspace/shapes/distance.hpp"
+#include "cspace/shapes/smallest_ball.hpp"
 #include "cspace/version.hpp"

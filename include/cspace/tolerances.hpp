@@ -113,4 +113,15 @@ inline constexpr double one_turn = 6.3;
 // much off.
 inline constexpr double cell_border = 1e-9;
 
+// A unit in the last place of a float, relative.
+inline constexpr double float_rounding = 1.2e-7;
+
+// Length [m] added to every radius in collision checks, per metre of the robot's reach where that is longer
+// than one metre: a sphere placed in floats is off by up to 4e-7 m, and two of them meet.
+inline constexpr double collision_slack = 2e-6;
+
+// Two distances [m] that differ by less are equal, and two of their gradients [m/rad] are one: rounding of
+// forward kinematics in double leaves 1e-15.
+inline constexpr double same_distance = 1e-12, same_gradient = 1e-9;
+
 }  // namespace cspace::tolerance

@@ -1,0 +1,344 @@
+// Edges of configuration space: proved free, blocked or undecided; or sampled at a stated resolution.
+//
+// An edge runs from mid − half (parameter −1) to mid + half (parameter 1). Over an interval of half width w
+// around a parameter, a point with speed v there stays within v w + ½ κ w² of its place, where
+//     κ = Σ_j ρ_j |h_j| (|h_j| + 2 Σ_{i before j} |h_i|)
+// bounds its acceleration: h are the rates of the revolute joints that carry it, ρ_j bounds its distance from
+// axis j (a prismatic joint has ρ = 1 and no square of its own). If no ball, grown by that, touches anything,
+// the interval is proved free. If one touches at the middle, the edge is blocked. Other intervals are split.
+// The idea is that of Schwarzer, Saha & Latombe (2005, "Adaptive dynamic collision checking for single and
+// multiple articulated robots in complex environments"), who bound the length of the motion by levers alone.
+#pragma once
+
+#include "cspace/collision/block.hpp"
+
+namespace cspace::collision {
+
+// The narrowest interval that is split: an edge is undecided below.
+inline constexpr float narrowest = 1.0f / 1024;
+// Of the eight intervals that a proof begins with.
+inline constexpr float first_half_width = 1.0f / 8;
+
+}  // namespace cspace::collision
+
+namespace cspace::collision::inline CSPACE_ISA {
+
+class EdgeCheck {
+  public:
+    EdgeCheck(const Robot& robot, const Scene& scene, Workspace& w, const float* from, const float* to)
+        : robot_(robot), scene_(scene), w_(w), block_(robot, scene, w) {
+        for (int k = 0; k < robot.n_coordinates; ++k) {
+            mid_[k] = 0.5f * (from[k] + to[k]);
+            half_[k] = 0.5f * (to[k] - from[k]);
+        }
+        bound_motion(robot.levers, robot.body_stride, w.kappa, w.reach);
+        bound_motion(robot.pair_levers, robot.pair_stride, w.pair_kappa, w.pair_reach);
+    }
+    static constexpr int most_coordinates = 64;
+
+    Verdict prove() {
+        Interval now[float_lanes];
+        int count = float_lanes, left = 0;
+        bool is_undecided = false;
+        for (int i = 0; i < float_lanes; ++i)
+            now[i] = {first_half_width * float(2 * i + 1 - float_lanes), first_half_width};
+        is_first_ = true;
+        while (true) {
+            place(now, count);
+            const Moving motion{*this, block_};
+            if (test_all(motion, first_half_width)) return Verdict::blocked;
+            is_first_ = false;
+            const unsigned unsure = block_.unsure;
+            int open = 0;
+            for (unsigned m = unsure; m; m &= m - 1) ++open;
+            const int parts = open + left <= 1 ? 8 : open + left <= 2 ? 4 : 2;
+            for (int i = 0; i < count; ++i)
+                if (unsure >> i & 1 && !split(now[i], parts, left)) is_undecided = true;
+            if (is_undecided) return Verdict::undecided;
+            if (left == 0) return Verdict::free;
+            count = left < float_lanes ? left : float_lanes;
+            for (int i = 0; i < count; ++i) now[i] = w_.stack[--left];
+            for (int i = count; i < float_lanes; ++i) now[i] = now[0];
+        }
+    }
+
+    // Free if none of 8 n configurations at equal distances, both ends included, touches anything.
+    bool sample(int n) {
+        const float step = 2.0f / float(float_lanes * n - 1);
+        is_first_ = true;
+        for (int k = 0; k < n; ++k) {
+            // The middle of the rows first: it stands for all of them when candidates are chosen.
+            const int row = k == 0 ? n / 2 : k <= n / 2 ? k - 1 : k;
+            for (int i = 0; i < float_lanes; ++i)
+                middle_[i] = 0.5f * step * float(2 * (i * n + row) - (float_lanes * n - 1));
+            place_at(load_floats(middle_));
+            const float covered = k == 0 ? step * float(n / 2) : 0.0f;
+            if (test_all(Still{*this, covered}, covered)) return false;
+            if (is_first_ && is_clear()) return true;
+            is_first_ = false;
+        }
+        return true;
+    }
+
+    // Where along the edge lane i is.
+    float parameter(int i) const { return middle_[i]; }
+    unsigned lanes_hit() const { return block_.hit; }
+
+  private:
+    const Robot& robot_;
+    const Scene& scene_;
+    Workspace& w_;
+    Block block_;
+    alignas(32) float middle_[float_lanes] = {};
+    alignas(32) float mid_[most_coordinates], half_[most_coordinates];
+    Floats width_, width_2_;
+    bool is_first_ = true;
+
+    // By how much balls move within an interval.
+    struct Moving {
+        const EdgeCheck& edge;
+        Block& block;
+        static constexpr bool is_moving = true;
+        static Floats no_growth() { return fill_floats(0.0f); }
+        CSPACE_INLINE Floats growth(int x, const Place& at) const {
+            return speed_at(block.frames[x], block.rates[x], at) * edge.width_ +
+                   edge.width_2_ * edge.w_.kappa[x];
+        }
+        CSPACE_INLINE Floats pair_growth(int p, const Place& at) const {
+            const BodyPair& pair = edge.robot_.pairs[p];
+            const Floats speed = relative_speed(block.frames[pair.a], block.rates[pair.a],
+                                                block.frames[pair.b], block.rates[pair.b], at);
+            return speed * edge.width_ + edge.width_2_ * edge.w_.pair_kappa[p];
+        }
+        // An upper bound of pair_growth at all places on body b.
+        CSPACE_INLINE Floats pair_bound(int p) const {
+            const BodyPair& pair = edge.robot_.pairs[p];
+            const Rate &a = block.rates[pair.a], &b = block.rates[pair.b];
+            const Floats x = b.w[0] - a.w[0], y = b.w[1] - a.w[1], z = b.w[2] - a.w[2];
+            const Floats turn = sqrt(x * x + y * y + z * z) * edge.robot_.bodies[pair.b].ball.r;
+            return pair_growth(p, block.body_place(pair.b)) + turn * edge.width_;
+        }
+        static float cover(float) { return 0; }
+        static bool is_done(const Block& block) { return block.hit != 0; }
+    };
+    // Samples do not move; `covered` widens the search for candidates to the samples of later blocks.
+    struct Still {
+        const EdgeCheck& edge;
+        float covered;
+        static constexpr bool is_moving = false;
+        static NoMotion no_growth() { return {}; }
+        CSPACE_INLINE NoMotion growth(int, const Place&) const { return {}; }
+        CSPACE_INLINE NoMotion pair_growth(int, const Place&) const { return {}; }
+        CSPACE_INLINE NoMotion pair_bound(int) const { return {}; }
+        float cover(float reach) const { return reach * covered; }
+        static bool is_done(const Block& block) { return block.hit != 0; }
+    };
+
+    // κ/2 and Σ ρ_j |h_j| of all bodies (or pairs), eight at a time.
+    void bound_motion(const float* levers, int stride, float* kappa, float* reach) {
+        for (int b = 0; b < stride; b += float_lanes) {
+            Floats sum = fill_floats(0.0f), before = sum, length = sum;
+            for (int j = 0; j < robot_.n_joints; ++j) {
+                const Joint& joint = robot_.joints[j];
+                const float h = std::fabs(joint.ratio * half_[joint.coordinate]);
+                const Floats lever = load_floats(levers + std::size_t(j) * std::size_t(stride) + b);
+                const Floats moved = lever * h;
+                length = length + moved;
+                if (joint.is_prismatic) {
+                    sum = sum + moved * before;
+                } else {
+                    sum = sum + moved * (before + 0.5f * h);
+                    before = select(lever > 0.0f, before + h, before);
+                }
+            }
+            store_floats(kappa + b, sum);
+            store_floats(reach + b, length);
+        }
+    }
+
+    CSPACE_INLINE void place_at(Floats s) {
+        Floats q[most_coordinates];
+        for (int k = 0; k < robot_.n_coordinates; ++k) q[k] = s * half_[k] + mid_[k];
+        block_.place(q);
+    }
+    CSPACE_INLINE void place(const Interval* now, int count) {
+        alignas(32) float width[float_lanes];
+        for (int i = 0; i < float_lanes; ++i) {
+            middle_[i] = now[i].middle;
+            width[i] = now[i].half;
+        }
+        width_ = load_floats(width);
+        width_2_ = width_ * width_;
+        block_.wanted = (1u << count) - 1;
+        place_at(load_floats(middle_));
+        place_rates(robot_, half_, block_.frames, block_.rates);
+    }
+    bool split(const Interval& interval, int parts, int& left) {
+        if (interval.half < narrowest || left + parts > w_.stack_size) return false;
+        const float half = interval.half / float(parts);
+        for (int k = 0; k < parts; ++k)
+            w_.stack[left++] = {interval.middle - interval.half + half * float(2 * k + 1), half};
+        return true;
+    }
+
+    // No primitive and no pair of links is near, in any block.
+    bool is_clear() const {
+        for (int b = 1; b < robot_.n_bodies; ++b)
+            if (w_.near_counts[b]) return false;
+        for (int p = 0; p < robot_.n_pairs; ++p)
+            if (w_.kept_pairs[p]) return false;
+        return true;
+    }
+
+    // All tests of a block; true if something touches.
+    template <class Motion>
+    bool test_all(const Motion& motion, float covered) {
+        if (is_first_) {
+            if (test_likely()) return true;
+            find_near(covered);
+        }
+        for (int k = 0; k < w_.n_order; ++k) {
+            const int test = w_.order[k];
+            if (test < robot_.n_bodies ? test_body(test, motion)
+                                       : test_pair(test - robot_.n_bodies, motion)) {
+                for (int i = k; i > 0; --i) w_.order[i] = w_.order[i - 1];
+                w_.order[0] = test;
+                w_.contact.at = middle_[lowest_lane(block_.hit)];
+                return true;
+            }
+        }
+        return false;
+    }
+
+    // The test that found a contact last, before candidates are chosen: it settles most blocked edges.
+    bool test_likely() {
+        constexpr int most_primitives = 64;
+        if (w_.n_order == 0) return false;
+        const int test = w_.order[0];
+        const Still motion{*this, 0.0f};
+        bool found = false;
+        if (test >= robot_.n_bodies) {
+            found = test_likely_pair(test - robot_.n_bodies, motion);
+        } else if (scene_.n <= most_primitives) {
+            for (int i = 0; i < scene_.n; ++i) w_.near_body[i] = i;
+            const Candidates near =
+                block_.narrow({w_.near_body, scene_.n}, block_.body_place(test),
+                              robot_.bodies[test].ball.r + scene_.margin, NoMotion{}, w_.near_body);
+            found = near.count && block_.test_links(test, near, motion);
+        }
+        if (found) w_.contact.at = middle_[lowest_lane(block_.hit)];
+        return found;
+    }
+
+    bool test_likely_pair(int p, const Still& motion) {
+        const BodyPair& pair = robot_.pairs[p];
+        for (int k = pair.first; k < pair.first + pair.count; ++k) {
+            const LinkPair& links = robot_.link_pairs[k];
+            const float sum = robot_.links[links.a].ball.r + robot_.links[links.b].ball.r;
+            if (block_.may_meet(block_.link_place(links.a), block_.link_place(links.b), sum, NoMotion{}) &&
+                block_.test_link_pair(p, links, motion))
+                return true;
+        }
+        return false;
+    }
+
+    // The primitives whose boxes meet the box around all places of a body's ball along the edge.
+    void find_near(float covered) {
+        for (int first = 1; first < robot_.n_bodies; first += float_lanes) {
+            const int count = robot_.n_bodies - first < float_lanes ? robot_.n_bodies - first : float_lanes;
+            Floats x[float_lanes], y[float_lanes], z[float_lanes];
+            alignas(32) float radius[float_lanes];
+            for (int i = 0; i < float_lanes; ++i) {
+                const int b = first + (i < count ? i : 0);
+                const bool is_empty = i >= count || robot_.bodies[b].count == 0;
+                const Place& at = block_.body_place(b);
+                x[i] = at.x, y[i] = at.y, z[i] = at.z;
+                radius[i] =
+                    is_empty ? -3e38f : robot_.bodies[b].ball.r + scene_.margin + w_.reach[b] * covered;
+            }
+            Floats low[3], high[3];
+            bound_rows(x, low[0], high[0]);
+            bound_rows(y, low[1], high[1]);
+            bound_rows(z, low[2], high[2]);
+            const Floats r = load_floats(radius);
+            for (int k = 0; k < 3; ++k) low[k] = low[k] - r, high[k] = high[k] + r;
+            for (int i = 0; i < count; ++i) w_.near_counts[first + i] = 0;
+            for (int p = 0; p < scene_.n; ++p) {
+                FloatMask meets = (low[0] < scene_.high[0][p]) & (high[0] > scene_.low[0][p]);
+                for (int k = 1; k < 3; ++k)
+                    meets = meets & (low[k] < scene_.high[k][p]) & (high[k] > scene_.low[k][p]);
+                for (unsigned bits = bits_of(meets); bits; bits &= bits - 1) {
+                    const int b = first + lowest_lane(bits);
+                    w_.near[b * w_.near_stride + w_.near_counts[b]++] = p;
+                }
+            }
+        }
+    }
+
+    // A body against the primitives near it. The first block drops those that no block can reach.
+    template <class Motion>
+    bool test_body(int x, const Motion& motion) {
+        int* const near = w_.near + x * w_.near_stride;
+        int& count = w_.near_counts[x];
+        if (count == 0) return false;
+        const Place& at = block_.body_place(x);
+        const float r = robot_.bodies[x].ball.r + scene_.margin;
+        const auto growth = motion.growth(x, at);
+        Candidates touched = {near, count};
+        if (is_first_) {
+            const float covered = motion.cover(w_.reach[x]);
+            touched = block_.narrow(touched, at, r + covered, growth, near);
+            count = touched.count;
+            if (covered > 0) touched = block_.narrow(touched, at, r, growth, w_.near_body);
+        } else {
+            touched = block_.narrow(touched, at, r, growth, w_.near_body);
+        }
+        return touched.count && block_.test_links(x, touched, motion);
+    }
+
+    // A pair of bodies. The first block keeps the pairs of links that any block can bring together.
+    template <class Motion>
+    bool test_pair(int p, const Motion& motion) {
+        if (!is_first_ && !w_.kept_pairs[p]) return false;
+        const BodyPair& pair = robot_.pairs[p];
+        const Place &at_a = block_.body_place(pair.a), &at_b = block_.body_place(pair.b);
+        const float r = robot_.bodies[pair.a].ball.r + robot_.bodies[pair.b].ball.r;
+        if (is_first_) {
+            const float reach =
+                Motion::is_moving ? w_.pair_reach[p] * first_half_width : motion.cover(w_.pair_reach[p]);
+            w_.kept_pairs[p] = block_.may_meet(at_a, at_b, r + reach, NoMotion{});
+            if (!w_.kept_pairs[p]) return false;
+        } else if (!Motion::is_moving && !block_.may_meet(at_a, at_b, r, NoMotion{})) {
+            return false;
+        }
+        if (Motion::is_moving && !block_.may_meet(at_a, at_b, r, motion.pair_growth(p, at_b))) {
+            if (is_first_) w_.kept_pairs[p] = 0;
+            return false;
+        }
+        return test_link_pairs(p, motion);
+    }
+    template <class Motion>
+    bool test_link_pairs(int p, const Motion& motion) {
+        const BodyPair& pair = robot_.pairs[p];
+        const auto bound = motion.pair_bound(p);
+        int kept = 0;
+        for (int k = pair.first; k < pair.first + pair.count; ++k) {
+            if (!is_first_ && !w_.kept_links[k]) continue;
+            const LinkPair& links = robot_.link_pairs[k];
+            const Place &a = block_.link_place(links.a), &b = block_.link_place(links.b);
+            const float sum = robot_.links[links.a].ball.r + robot_.links[links.b].ball.r;
+            if (is_first_) {
+                w_.kept_links[k] = block_.may_meet(a, b, sum + motion.cover(w_.pair_reach[p]), bound);
+                if (!w_.kept_links[k]) continue;
+                ++kept;
+            }
+            if (block_.may_meet(a, b, sum, motion.pair_growth(p, b)) &&
+                block_.test_link_pair(p, links, motion))
+                return true;
+        }
+        if (is_first_ && kept == 0) w_.kept_pairs[p] = 0;
+        return false;
+    }
+};
+
+}  // namespace cspace::collision::inline CSPACE_ISA

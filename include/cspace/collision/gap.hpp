@@ -1,0 +1,60 @@
+// Squared distances of eight places from a primitive, 0 inside: the test of a ball against an obstacle.
+#pragma once
+
+#include "cspace/collision/placement.hpp"
+#include "cspace/collision/scene.hpp"
+
+namespace cspace::collision::inline CSPACE_ISA {
+
+CSPACE_INLINE Floats clamp_positive(Floats x) { return max(x, fill_floats(0.0f)); }
+
+CSPACE_INLINE Floats square_gap(const Box& box, const Place& at) {
+    const Floats x = at.x - box.center[0], y = at.y - box.center[1], z = at.z - box.center[2];
+    const auto beyond = [&](int k) {
+        const float* axis = box.axes + 3 * k;
+        return clamp_positive(abs(x * axis[0] + (y * axis[1] + z * axis[2])) - box.half[k]);
+    };
+    return square(beyond(0)) + square(beyond(1)) + square(beyond(2));
+}
+CSPACE_INLINE Floats square_gap(const Capsule& capsule, const Place& at) {
+    const float* v = capsule.along;
+    const Floats x = at.x - capsule.start[0], y = at.y - capsule.start[1], z = at.z - capsule.start[2];
+    const Floats share = (x * v[0] + (y * v[1] + z * v[2])) * capsule.inverse_square;
+    const Floats t = min(clamp_positive(share), fill_floats(1.0f));
+    return square(x - t * v[0]) + (square(y - t * v[1]) + square(z - t * v[2]));
+}
+CSPACE_INLINE Floats square_gap(const Cylinder& cylinder, const Place& at) {
+    const float* n = cylinder.axis;
+    const Floats x = at.x - cylinder.center[0], y = at.y - cylinder.center[1], z = at.z - cylinder.center[2];
+    const Floats along = x * n[0] + (y * n[1] + z * n[2]);
+    const Floats across =
+        sqrt(square(x - along * n[0]) + (square(y - along * n[1]) + square(z - along * n[2])));
+    return square(clamp_positive(across - cylinder.rim)) + square(clamp_positive(abs(along) - cylinder.half));
+}
+CSPACE_INLINE Floats square_gap(const HalfSpace& half_space, const Place& at) {
+    const float* n = half_space.normal;
+    return square(clamp_positive(at.x * n[0] + (at.y * n[1] + at.z * n[2]) - half_space.offset));
+}
+
+// Of primitive i; `radius` receives what it is grown by.
+CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, float& radius) {
+    if (i < scene.n_boxes) {
+        radius = scene.boxes[i].radius;
+        return square_gap(scene.boxes[i], at);
+    }
+    i -= scene.n_boxes;
+    if (i < scene.n_capsules) {
+        radius = scene.capsules[i].radius;
+        return square_gap(scene.capsules[i], at);
+    }
+    i -= scene.n_capsules;
+    if (i < scene.n_cylinders) {
+        radius = scene.cylinders[i].radius;
+        return square_gap(scene.cylinders[i], at);
+    }
+    i -= scene.n_cylinders;
+    radius = scene.half_spaces[i].radius;
+    return square_gap(scene.half_spaces[i], at);
+}
+
+}  // namespace cspace::collision::inline CSPACE_ISA

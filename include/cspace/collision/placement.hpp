@@ -1,0 +1,129 @@
+// Forward kinematics of eight configurations: frames and velocities of all bodies, places of balls.
+#pragma once
+
+#include "cspace/collision/robot.hpp"
+#include "cspace/math/float_trig.hpp"
+
+namespace cspace::collision::inline CSPACE_ISA {
+
+struct Place {
+    Floats x, y, z;
+};
+struct Frame {
+    Floats R[9], p[3];
+};
+// Of a body, per unit of the parameter along an edge: ω and the velocity of the origin of its frame.
+struct Rate {
+    Floats w[3], u[3];
+};
+
+CSPACE_INLINE Floats square_distance(const Place& a, const Place& b) {
+    const Floats x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+    return x * x + y * y + z * z;
+}
+
+CSPACE_INLINE Place place_ball(const Frame& f, const Ball& ball) {
+    return {f.R[0] * ball.x + (f.R[1] * ball.y + (f.R[2] * ball.z + f.p[0])),
+            f.R[3] * ball.x + (f.R[4] * ball.y + (f.R[5] * ball.z + f.p[1])),
+            f.R[6] * ball.x + (f.R[7] * ball.y + (f.R[8] * ball.z + f.p[2]))};
+}
+
+// The frame of a joint at zero: parent · T_parent_joint.
+CSPACE_INLINE void place_joint(const Joint& joint, const Frame& parent, Frame& frame) {
+    for (int r = 0; r < 3; ++r) {
+        Floats t = parent.p[r];
+        for (int k = 0; k < 3; ++k)
+            if (joint.p[k] != 0) t = parent.R[3 * r + k] * joint.p[k] + t;
+        frame.p[r] = t;
+    }
+    if (joint.is_permuted) {
+        for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r) {
+                const Floats t = parent.R[3 * r + joint.row[c]];
+                frame.R[3 * r + c] = joint.sign[c] < 0 ? -t : t;
+            }
+        return;
+    }
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+            frame.R[3 * r + c] = parent.R[3 * r] * joint.R[c] + parent.R[3 * r + 1] * joint.R[3 + c] +
+                                 parent.R[3 * r + 2] * joint.R[6 + c];
+}
+
+// Frames of all bodies; q: one entry per coordinate. Frame 0 is the identity and stays.
+CSPACE_INLINE void place_frames(const Robot& robot, const Floats* q, Frame* frames) {
+    for (int j = 0; j < robot.n_joints; ++j) {
+        const Joint& joint = robot.joints[j];
+        Frame& frame = frames[j + 1];
+        if (joint.parent == 0) {
+            for (int k = 0; k < 9; ++k) frame.R[k] = fill_floats(joint.R[k]);
+            for (int k = 0; k < 3; ++k) frame.p[k] = fill_floats(joint.p[k]);
+        } else {
+            place_joint(joint, frames[joint.parent], frame);
+        }
+        Floats value = q[joint.coordinate];
+        if (!joint.is_plain) value = value * joint.ratio + joint.offset;
+        if (joint.is_prismatic) {
+            for (int r = 0; r < 3; ++r) frame.p[r] = value * frame.R[3 * r + 2] + frame.p[r];
+            continue;
+        }
+        Floats s, c;
+        sin_cos(value, s, c);
+        for (int r = 0; r < 3; ++r) {
+            const Floats x = frame.R[3 * r], y = frame.R[3 * r + 1];
+            frame.R[3 * r] = s * y + c * x;
+            frame.R[3 * r + 1] = c * y - s * x;
+        }
+    }
+}
+
+CSPACE_INLINE void set_identity(Frame& frame) {
+    for (int k = 0; k < 9; ++k) frame.R[k] = fill_floats(k % 4 == 0 ? 1.0f : 0.0f);
+    for (int k = 0; k < 3; ++k) frame.p[k] = fill_floats(0.0f);
+}
+CSPACE_INLINE void set_resting(Rate& rate) {
+    for (int k = 0; k < 3; ++k) rate.w[k] = rate.u[k] = fill_floats(0.0f);
+}
+
+// Rates of all bodies while q moves by `half` per unit; rate 0 is zero and stays.
+CSPACE_INLINE void place_rates(const Robot& robot, const float* half, const Frame* frames, Rate* rates) {
+    for (int j = 0; j < robot.n_joints; ++j) {
+        const Joint& joint = robot.joints[j];
+        const Frame &from = frames[joint.parent], &to = frames[j + 1];
+        const Rate& before = rates[joint.parent];
+        Rate& rate = rates[j + 1];
+        const Floats speed = fill_floats(joint.ratio * half[joint.coordinate]);
+        Floats d[3];
+        for (int k = 0; k < 3; ++k) d[k] = to.p[k] - from.p[k];
+        for (int k = 0; k < 3; ++k) {
+            const int a = (k + 1) % 3, b = (k + 2) % 3;
+            const Floats z = to.R[3 * k + 2] * speed;
+            rate.u[k] = before.u[k] + (before.w[a] * d[b] - before.w[b] * d[a]);
+            rate.w[k] = before.w[k];
+            (joint.is_prismatic ? rate.u[k] : rate.w[k]) = (joint.is_prismatic ? rate.u[k] : rate.w[k]) + z;
+        }
+    }
+}
+
+struct Velocity {
+    Floats x, y, z;
+};
+CSPACE_INLINE Velocity velocity_at(const Frame& frame, const Rate& rate, const Place& at) {
+    const Floats d[3] = {at.x - frame.p[0], at.y - frame.p[1], at.z - frame.p[2]};
+    return {rate.u[0] + (rate.w[1] * d[2] - rate.w[2] * d[1]),
+            rate.u[1] + (rate.w[2] * d[0] - rate.w[0] * d[2]),
+            rate.u[2] + (rate.w[0] * d[1] - rate.w[1] * d[0])};
+}
+CSPACE_INLINE Floats speed_at(const Frame& frame, const Rate& rate, const Place& at) {
+    const Velocity v = velocity_at(frame, rate, at);
+    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+// The speed of a place on one body as seen from another.
+CSPACE_INLINE Floats relative_speed(const Frame& seen_from, const Rate& its_rate, const Frame& frame,
+                                    const Rate& rate, const Place& at) {
+    const Velocity v = velocity_at(frame, rate, at), w = velocity_at(seen_from, its_rate, at);
+    const Floats x = v.x - w.x, y = v.y - w.y, z = v.z - w.z;
+    return sqrt(x * x + y * y + z * z);
+}
+
+}  // namespace cspace::collision::inline CSPACE_ISA

@@ -1,0 +1,62 @@
+// The robot as its collision checks read it: joints, the spheres that each joint carries, pairs of links.
+//
+// Body 0 is the base, body k + 1 is all that joint k carries; the links of a body never move against each
+// other. Balls enclose the spheres of a body, of a link and of a group of spheres. Plain data, rounded to
+// float: it is shared by all instruction sets and owned by library/collision_robot.hpp.
+#pragma once
+
+namespace cspace::collision {
+
+struct Ball {
+    float x, y, z, r;
+};
+
+// Places body `child` in its parent: T_parent_joint, then a turn about or a slide along z by
+// ratio · q[coordinate] + offset.
+struct Joint {
+    int parent;  // body that carries it
+    int coordinate;
+    float ratio, offset;
+    bool is_prismatic, is_plain;  // plain: ratio 1, offset 0
+    bool is_permuted;             // column c of R is sign[c] times the unit vector of row[c]
+    int row[3];
+    float sign[3];
+    float R[9], p[3];
+};
+struct Group {
+    int first, count;  // spheres
+    Ball ball;
+};
+struct Link {
+    int body, first, count;  // groups
+    Ball ball;
+};
+struct Body {
+    int first, count;  // links
+    Ball ball;
+};
+struct LinkPair {
+    int a, b;  // links; the body of a is before that of b
+};
+struct BodyPair {
+    int a, b, first, count;  // bodies, link pairs
+};
+
+struct Robot {
+    const Joint* joints;
+    const Body* bodies;
+    const Link* links;
+    const Group* groups;
+    const Ball* spheres;
+    const BodyPair* pairs;
+    const LinkPair* link_pairs;
+    // Bounds [m] on the distance of the sphere centres of a body from the axis of a joint, 0 if it does not
+    // move the body (1 for a prismatic joint that does): row j has `body_stride` bodies.
+    const float* levers;
+    // The same for the motion of body b of a pair against body a: row j has `pair_stride` pairs.
+    const float* pair_levers;
+    int n_joints, n_bodies, n_links, n_groups, n_spheres, n_pairs, n_link_pairs, n_coordinates;
+    int body_stride, pair_stride;  // multiples of eight
+};
+
+}  // namespace cspace::collision

@@ -1,0 +1,40 @@
+// The memory of one thread's checks, and what the last of them found. The library owns it
+// (library/collision_workspace.hpp); kernels fill it.
+#pragma once
+
+namespace cspace::collision {
+
+enum class Verdict { free, blocked, undecided };
+
+// A part of an edge: middle ± half of its parameter, which runs from −1 to 1.
+struct Interval {
+    float middle, half;
+};
+
+// What touches: a link, and a primitive or another link. `at`: the parameter of the edge, −1 … 1, or the
+// lane.
+struct Contact {
+    int link = -1, other = -1;
+    bool is_pair = false;
+    float at = 0;
+};
+
+struct Workspace {
+    // Frame, Rate per body and Place per body, link, group and sphere, with lanes of eight floats.
+    void *frames, *rates, *body_places, *link_places, *group_places, *sphere_places;
+    // The number of the block in which each was placed last.
+    unsigned *body_stamps, *link_stamps, *group_stamps, stamp;
+    // Per body a list of the primitives that it may touch, of `near_stride` entries, and its length.
+    int *near, *near_counts, near_stride;
+    int *near_body, *near_link, *near_group, *near_spheres;  // lists for one descent
+    int *kept_pairs, *kept_links;                            // whether a body pair, a link pair may touch
+    // Bodies (x) and body pairs (n_bodies + pair); the one that found a contact last comes first.
+    int *order, n_order;
+    float *kappa, *pair_kappa, *reach, *pair_reach;  // bounds along the edge, see edge.hpp
+    Interval* stack;
+    int stack_size;
+    long long blocks;  // placed so far
+    Contact contact;
+};
+
+}  // namespace cspace::collision

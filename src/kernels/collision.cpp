@@ -1,0 +1,41 @@
+#include "collision.hpp"
+
+#include "cspace/collision/edge.hpp"
+#include "cspace/collision/rows.hpp"
+
+namespace cspace::collision::inline CSPACE_ISA {
+
+void prepare_workspace(const Robot& robot, Workspace& w) {
+    set_identity(static_cast<Frame*>(w.frames)[0]);
+    set_resting(static_cast<Rate*>(w.rates)[0]);
+    w.n_order = 0;
+    for (int b = robot.n_bodies - 1; b > 0; --b)
+        if (robot.bodies[b].count) w.order[w.n_order++] = b;
+    for (int p = 0; p < robot.n_pairs; ++p) w.order[w.n_order++] = robot.n_bodies + p;
+}
+
+int prove_edge(const Robot& robot, const Scene& scene, Workspace& w, const float* from, const float* to) {
+    return int(EdgeCheck(robot, scene, w, from, to).prove());
+}
+
+int sample_edge(const Robot& robot, const Scene& scene, Workspace& w, const float* from, const float* to,
+                int n) {
+    return EdgeCheck(robot, scene, w, from, to).sample(n) ? 0 : 1;
+}
+
+unsigned check_rows(const Robot& robot, const Scene& scene, Workspace& w, const float* columns, int count) {
+    Floats q[EdgeCheck::most_coordinates];
+    for (int k = 0; k < robot.n_coordinates; ++k) q[k] = load_floats(columns + float_lanes * k);
+    Block block(robot, scene, w);
+    return lanes_in_collision(block, q, (1u << count) - 1);
+}
+
+bool ball_touches(const Scene& scene, int i, const Ball& ball) {
+    const Place at = {fill_floats(ball.x), fill_floats(ball.y), fill_floats(ball.z)};
+    float radius;
+    const Floats gap = square_gap(scene, i, at, radius);
+    const float r = ball.r + scene.margin + radius;
+    return bits_of(gap < fill_floats(r * r)) != 0;
+}
+
+}  // namespace cspace::collision::inline CSPACE_ISA

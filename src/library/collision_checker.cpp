@@ -1,0 +1,212 @@
+#include "collision_checker.hpp"
+
+#include <cmath>
+#include <new>
+
+#include "cspace/math/threads.hpp"
+#include "kernels/collision.hpp"
+
+namespace cspace::collision {
+
+namespace {
+
+constexpr std::size_t lane_bytes = 8 * sizeof(float), alignment = 64;
+constexpr int stack_size = 4096;
+
+// Hands out pieces of one block of memory; with no block it only counts.
+class Arena {
+  public:
+    explicit Arena(std::byte* memory) : memory_(memory) {}
+    template <class T>
+    void take(T*& pointer, std::size_t count, std::size_t size) {
+        if (memory_) pointer = reinterpret_cast<T*>(memory_ + used_);
+        used_ += (count * size + alignment - 1) / alignment * alignment;
+    }
+    std::size_t used() const { return used_; }
+
+  private:
+    std::byte* memory_;
+    std::size_t used_ = 0;
+};
+
+std::size_t lay_out(const Robot& robot, int n_primitives, std::byte* memory, Workspace& w) {
+    constexpr std::size_t frame = 12 * lane_bytes, rate = 6 * lane_bytes, place = 3 * lane_bytes;
+    const std::size_t bodies = std::size_t(robot.n_bodies), links = std::size_t(robot.n_links);
+    const std::size_t groups = std::size_t(robot.n_groups), spheres = std::size_t(robot.n_spheres);
+    const std::size_t primitives = std::size_t(n_primitives), pairs = std::size_t(robot.n_pairs);
+    Arena arena(memory);
+    const auto bytes = [&](void*& pointer, std::size_t count, std::size_t size) {
+        std::byte* at = static_cast<std::byte*>(pointer);
+        arena.take(at, count, size);
+        pointer = at;
+    };
+    bytes(w.frames, bodies, frame);
+    bytes(w.rates, bodies, rate);
+    bytes(w.body_places, bodies, place);
+    bytes(w.link_places, links, place);
+    bytes(w.group_places, groups, place);
+    bytes(w.sphere_places, spheres, place);
+    arena.take(w.body_stamps, bodies, sizeof(unsigned));
+    arena.take(w.link_stamps, links, sizeof(unsigned));
+    arena.take(w.group_stamps, groups, sizeof(unsigned));
+    arena.take(w.near, (bodies + 1) * (primitives + 1), sizeof(int));
+    arena.take(w.near_counts, bodies, sizeof(int));
+    arena.take(w.near_body, primitives + 1, sizeof(int));
+    arena.take(w.near_link, primitives + 1, sizeof(int));
+    arena.take(w.near_group, primitives + 1, sizeof(int));
+    arena.take(w.near_spheres, spheres + 1, sizeof(int));
+    arena.take(w.kept_pairs, pairs + 1, sizeof(int));
+    arena.take(w.kept_links, std::size_t(robot.n_link_pairs) + 1, sizeof(int));
+    arena.take(w.order, bodies + pairs + 1, sizeof(int));
+    arena.take(w.kappa, std::size_t(robot.body_stride) + 8, sizeof(float));
+    arena.take(w.reach, std::size_t(robot.body_stride) + 8, sizeof(float));
+    arena.take(w.pair_kappa, std::size_t(robot.pair_stride) + 8, sizeof(float));
+    arena.take(w.pair_reach, std::size_t(robot.pair_stride) + 8, sizeof(float));
+    arena.take(w.stack, stack_size, sizeof(Interval));
+    w.near_stride = n_primitives + 1;
+    w.stack_size = stack_size;
+    return arena.used();
+}
+
+}  // namespace
+
+void WorkspaceMemory::Free::operator()(std::byte* p) const {
+    ::operator delete(p, std::align_val_t(alignment));
+}
+
+WorkspaceMemory::WorkspaceMemory(const Robot& robot, int n_primitives) {
+    const std::size_t size = lay_out(robot, n_primitives, nullptr, w);
+    memory_.reset(static_cast<std::byte*>(::operator new(size, std::align_val_t(alignment))));
+    std::fill_n(memory_.get(), size, std::byte(0));
+    lay_out(robot, n_primitives, memory_.get(), w);
+    kernels::prepare_workspace(robot, w);
+}
+
+Checker::Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const SceneData> scene,
+                 double margin, std::span<const std::pair<int, int>> allowed)
+    : robot_(std::move(robot)), data_(std::move(scene)), scene_(data_->view()) {
+    scene_.margin = scene_.pair_margin = float(margin) + robot_->slack();
+    if (!allowed.empty()) {
+        allowed_.assign(std::size_t(this->robot().n_links) * std::size_t(scene_.n), 0);
+        for (const auto& [link, object] : allowed)
+            for (int i = 0; i < scene_.n; ++i)
+                if (data_->owner(i) == object)
+                    allowed_[std::size_t(link) * std::size_t(scene_.n) + std::size_t(i)] = 1;
+        scene_.allowed = allowed_.data();
+    }
+    shifts_.assign(std::size_t(dof()), 1);
+    for (int j = 0; j < this->robot().n_joints; ++j) {
+        const Joint& joint = this->robot().joints[j];
+        if (joint.is_prismatic || joint.ratio != std::round(joint.ratio))
+            shifts_[std::size_t(joint.coordinate)] = 0;
+    }
+    check_base();
+}
+
+// The base does not move: it is checked once, here.
+void Checker::check_base() {
+    const Robot& all = robot();
+    const Body& base = all.bodies[0];
+    base_contact_ = {};
+    for (int l = base.first; l < base.first + base.count; ++l)
+        for (int g = all.links[l].first; g < all.links[l].first + all.links[l].count; ++g)
+            for (int s = all.groups[g].first; s < all.groups[g].first + all.groups[g].count; ++s)
+                for (int i = 0; i < scene_.n; ++i) {
+                    if (scene_.allowed && scene_.allowed[l * scene_.n + i]) continue;
+                    if (kernels::ball_touches(scene_, i, all.spheres[s])) {
+                        base_contact_ = {l, i, false, 0};
+                        return;
+                    }
+                }
+}
+
+Checker::Borrowed Checker::borrow_workspace() const {
+    {
+        const std::lock_guard<std::mutex> lock(busy_);
+        if (!spare_.empty()) {
+            WorkspaceMemory* memory = spare_.back().release();
+            spare_.pop_back();
+            return {memory, {this}};
+        }
+    }
+    return {new WorkspaceMemory(robot(), scene_.n), {this}};
+}
+void Checker::GiveBack::operator()(WorkspaceMemory* memory) const {
+    const std::lock_guard<std::mutex> lock(checker->busy_);
+    checker->spare_.emplace_back(memory);
+}
+
+void Checker::round_edge(const double* from, const double* to, float* a, float* b) const {
+    constexpr double turn = 6.28318530717958647692;
+    for (int k = 0; k < dof(); ++k) {
+        const double shift =
+            shifts_[std::size_t(k)] ? turn * std::round(0.5 * (from[k] + to[k]) / turn) : 0.0;
+        a[k] = float(from[k] - shift), b[k] = float(to[k] - shift);
+    }
+}
+
+bool Checker::is_free(const double* q, WorkspaceMemory& memory) const {
+    if (base_contact_.other >= 0) {
+        memory.w.contact = base_contact_;
+        return false;
+    }
+    float a[64], b[64];
+    round_edge(q, q, a, b);
+    return kernels::sample_edge(robot(), scene_, memory.w, a, b, 1) == 0;
+}
+
+void Checker::check_rows(const double* q, std::size_t n, std::uint8_t* collides, int threads) const {
+    constexpr std::size_t least_rows = 2048;
+    if (base_contact_.other >= 0) return void(std::fill_n(collides, n, std::uint8_t(1)));
+    const std::size_t width = std::size_t(dof());
+    over_rows(n, threads, 8, least_rows, [&](std::size_t begin, std::size_t end) {
+        const Borrowed memory = borrow_workspace();
+        alignas(32) float columns[64 * 8];
+        float a[64], b[64];
+        for (std::size_t row = begin; row < end; row += 8) {
+            const std::size_t count = std::min<std::size_t>(8, end - row);
+            for (std::size_t i = 0; i < 8; ++i) {
+                const double* from = q + (row + std::min(i, count - 1)) * width;
+                round_edge(from, from, a, b);
+                for (std::size_t k = 0; k < width; ++k) columns[8 * k + i] = a[k];
+            }
+            const unsigned hit = kernels::check_rows(robot(), scene_, memory->w, columns, int(count));
+            for (std::size_t i = 0; i < count; ++i) collides[row + i] = hit >> i & 1;
+        }
+        return true;
+    });
+}
+
+Verdict Checker::prove_edge(const float* from, const float* to, WorkspaceMemory& memory) const {
+    if (base_contact_.other >= 0) {
+        memory.w.contact = base_contact_;
+        return Verdict::blocked;
+    }
+    return Verdict(kernels::prove_edge(robot(), scene_, memory.w, from, to));
+}
+Verdict Checker::sample_edge(const float* from, const float* to, float resolution,
+                             WorkspaceMemory& memory) const {
+    if (base_contact_.other >= 0) {
+        memory.w.contact = base_contact_;
+        return Verdict::blocked;
+    }
+    float square = 0;
+    for (int k = 0; k < dof(); ++k) square += (to[k] - from[k]) * (to[k] - from[k]);
+    constexpr float most_blocks = 1e6f;
+    const float blocks = std::ceil(std::sqrt(square) / (8 * resolution));
+    const int n = int(std::fmin(std::fmax(blocks, 1.0f), most_blocks));
+    return Verdict(kernels::sample_edge(robot(), scene_, memory.w, from, to, n));
+}
+Verdict Checker::prove_edge(const double* from, const double* to, WorkspaceMemory& memory) const {
+    float a[64], b[64];
+    round_edge(from, to, a, b);
+    return prove_edge(a, b, memory);
+}
+Verdict Checker::sample_edge(const double* from, const double* to, double resolution,
+                             WorkspaceMemory& memory) const {
+    float a[64], b[64];
+    round_edge(from, to, a, b);
+    return sample_edge(a, b, float(resolution), memory);
+}
+
+}  // namespace cspace::collision

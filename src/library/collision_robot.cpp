@@ -1,0 +1,249 @@
+#include "collision_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "cspace/shapes/smallest_ball.hpp"
+#include "cspace/tolerances.hpp"
+
+namespace cspace::collision {
+
+namespace {
+
+constexpr int lanes = 8;
+constexpr std::size_t most_spheres_in_group = 16, spheres_of_group = 8;
+
+int padded(int n) { return (n + lanes - 1) / lanes * lanes; }
+float rounded(double x) { return float(x); }
+
+Ball ball_around(std::span<const Ball> spheres) {
+    std::vector<shapes::Ball> given;
+    for (const Ball& s : spheres) given.push_back({{s.x, s.y, s.z}, s.r});
+    const shapes::Ball ball = shapes::smallest_ball(given);
+    Ball result = {rounded(ball.center.x), rounded(ball.center.y), rounded(ball.center.z), 0};
+    double r = 0;
+    for (const Ball& s : spheres)
+        r = std::max(
+            r, std::hypot(double(s.x) - result.x, double(s.y) - result.y, double(s.z) - result.z) + s.r);
+    result.r = rounded(r * (1 + tolerance::float_rounding));
+    return result;
+}
+
+Joint rounded_joint(const model::Joint& given) {
+    Joint joint = {};
+    joint.parent = given.parent + 1;
+    joint.coordinate = given.coordinate;
+    joint.ratio = rounded(given.ratio), joint.offset = rounded(given.offset);
+    joint.is_prismatic = given.prismatic;
+    joint.is_plain = given.ratio == 1 && given.offset == 0;
+    const auto snapped = [](double x) {
+        const double whole = std::round(x);
+        return std::fabs(x - whole) < tolerance::float_rounding / 10 ? whole : x;
+    };
+    joint.is_permuted = true;
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) {
+            const double entry = snapped(given.T_parent_joint.R.m[r][c]);
+            joint.R[3 * r + c] = rounded(entry);
+            if (std::fabs(entry) == 1) joint.row[c] = r, joint.sign[c] = rounded(entry);
+            if (entry != 0 && std::fabs(entry) != 1) joint.is_permuted = false;
+        }
+    const Vec3d& p = given.T_parent_joint.t;
+    const double parts[] = {p.x, p.y, p.z};
+    for (int k = 0; k < 3; ++k)
+        joint.p[k] = std::fabs(parts[k]) < tolerance::float_rounding / 10 ? 0.0f : rounded(parts[k]);
+    return joint;
+}
+
+// Orders spheres so that those near each other come together: halves along the longest side, again and again.
+void cluster(std::span<Ball> spheres, std::vector<std::size_t>& sizes) {
+    if (spheres.size() <= spheres_of_group) return sizes.push_back(spheres.size());
+    float low[3] = {1e30f, 1e30f, 1e30f}, high[3] = {-1e30f, -1e30f, -1e30f};
+    const auto part = [](const Ball& b, int k) { return k == 0 ? b.x : k == 1 ? b.y : b.z; };
+    for (const Ball& s : spheres)
+        for (int k = 0; k < 3; ++k)
+            low[k] = std::min(low[k], part(s, k)), high[k] = std::max(high[k], part(s, k));
+    int longest = 0;
+    for (int k = 1; k < 3; ++k)
+        if (high[k] - low[k] > high[longest] - low[longest]) longest = k;
+    const auto middle = spheres.size() / 2;
+    std::nth_element(spheres.begin(), spheres.begin() + std::ptrdiff_t(middle), spheres.end(),
+                     [&](const Ball& a, const Ball& b) { return part(a, longest) < part(b, longest); });
+    cluster(spheres.first(middle), sizes);
+    cluster(spheres.subspan(middle), sizes);
+}
+
+}  // namespace
+
+RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, std::span<const double> lower,
+                     std::span<const double> upper, std::span<const int> link_bodies,
+                     std::span<const Sphere> spheres, std::span<const std::pair<int, int>> pairs)
+    : slides_(std::size_t(n_coordinates), 0),
+      given_joints_(joints.begin(), joints.end()),
+      given_spheres_(spheres.begin(), spheres.end()),
+      given_pairs_(pairs.begin(), pairs.end()) {
+    double reach = 0;
+    for (const model::Joint& joint : joints) {
+        joints_.push_back(rounded_joint(joint));
+        if (joint.prismatic) slides_[std::size_t(joint.coordinate)] = 1;
+        const Vec3d& p = joint.T_parent_joint.t;
+        reach += std::hypot(p.x, p.y, p.z);
+    }
+    slack_ = rounded(tolerance::collision_slack * std::max(1.0, reach));
+    bodies_.assign(joints.size() + 1, {0, 0, {0, 0, 0, 0}});
+    add_links(link_bodies, spheres);
+    view_.n_joints = int(joints_.size()), view_.n_bodies = int(bodies_.size()),
+    view_.n_coordinates = n_coordinates;
+    view_.body_stride = padded(view_.n_bodies);
+    add_pairs(pairs);
+    view_.pair_stride = padded(int(pairs_.size()));
+    bound_levers(joints, lower, upper);
+    view_.joints = joints_.data(), view_.bodies = bodies_.data(), view_.links = links_.data();
+    view_.groups = groups_.data(), view_.spheres = spheres_.data();
+    view_.pairs = pairs_.data(), view_.link_pairs = link_pairs_.data();
+    view_.levers = levers_.data(), view_.pair_levers = pair_levers_.data();
+    view_.n_links = int(links_.size()), view_.n_groups = int(groups_.size());
+    view_.n_spheres = int(spheres_.size()), view_.n_pairs = int(pairs_.size());
+    view_.n_link_pairs = int(link_pairs_.size());
+}
+
+// Links in the order of their bodies. `links_` keeps the numbers that the caller gave: link l of the caller
+// is number_[l] here only if its bodies ascend, which the caller sees to.
+void RobotData::add_links(std::span<const int> link_bodies, std::span<const Sphere> spheres) {
+    std::size_t next = 0;
+    for (std::size_t l = 0; l < link_bodies.size(); ++l) {
+        Link link = {link_bodies[l], int(groups_.size()), 0, {0, 0, 0, 0}};
+        const std::size_t first = spheres_.size();
+        for (; next < spheres.size() && spheres[next].link == int(l); ++next) {
+            const Sphere& s = spheres[next];
+            spheres_.push_back(
+                {rounded(s.center.x), rounded(s.center.y), rounded(s.center.z), rounded(s.radius)});
+        }
+        const std::span<Ball> own = std::span(spheres_).subspan(first);
+        std::vector<std::size_t> sizes;
+        if (own.size() > most_spheres_in_group)
+            cluster(own, sizes);
+        else if (!own.empty())
+            sizes.push_back(own.size());
+        std::size_t at = first;
+        for (const std::size_t size : sizes) {
+            groups_.push_back({int(at), int(size), ball_around(std::span(spheres_).subspan(at, size))});
+            at += size;
+        }
+        link.count = int(sizes.size());
+        if (!own.empty()) link.ball = link.count == 1 ? groups_.back().ball : ball_around(own);
+        Body& body = bodies_[std::size_t(link.body)];
+        if (body.count == 0) body.first = int(l);
+        ++body.count;
+        links_.push_back(link);
+    }
+    for (Body& body : bodies_) {
+        std::vector<Ball> all;
+        for (int l = body.first; l < body.first + body.count; ++l) {
+            const Link& link = links_[std::size_t(l)];
+            for (int g = link.first; g < link.first + link.count; ++g) {
+                const Group& group = groups_[std::size_t(g)];
+                all.insert(all.end(), spheres_.begin() + group.first,
+                           spheres_.begin() + group.first + group.count);
+            }
+        }
+        if (body.count == 1)
+            body.ball = links_[std::size_t(body.first)].ball;
+        else if (body.count)
+            body.ball = ball_around(all);
+    }
+}
+
+void RobotData::add_pairs(std::span<const std::pair<int, int>> pairs) {
+    std::map<std::pair<int, int>, std::vector<LinkPair>> by_bodies;
+    for (auto [a, b] : pairs) {
+        if (links_[std::size_t(a)].body > links_[std::size_t(b)].body) std::swap(a, b);
+        by_bodies[{links_[std::size_t(a)].body, links_[std::size_t(b)].body}].push_back({a, b});
+    }
+    for (const auto& [bodies, links] : by_bodies) {
+        pairs_.push_back({bodies.first, bodies.second, int(link_pairs_.size()), int(links.size())});
+        link_pairs_.insert(link_pairs_.end(), links.begin(), links.end());
+    }
+}
+
+void RobotData::bound_levers(std::span<const model::Joint> joints, std::span<const double> lower,
+                             std::span<const double> upper) {
+    constexpr double least = 1e-6;  // a joint on whose axis a body lies moves it nevertheless
+    constexpr double round_up = 1 + 1e-6;
+    const auto radial = [](const Vec3d& p) { return std::hypot(p.x, p.y); };
+    // How far the slide of a prismatic joint can take what it carries.
+    const auto travel = [&](const model::Joint& joint) {
+        if (!joint.prismatic) return 0.0;
+        const auto at = [&](std::span<const double> q) {
+            return std::fabs(joint.ratio * q[std::size_t(joint.coordinate)] + joint.offset);
+        };
+        return std::max(at(lower), at(upper));
+    };
+    // Distances of the sphere centres of body b from its own axis and its origin.
+    const auto extent = [&](int b, bool from_axis) {
+        double farthest = 0;
+        const Body& body = bodies_[std::size_t(b)];
+        for (int l = body.first; l < body.first + body.count; ++l) {
+            const Link& link = links_[std::size_t(l)];
+            for (int g = link.first; g < link.first + link.count; ++g) {
+                const Group& group = groups_[std::size_t(g)];
+                for (int s = group.first; s < group.first + group.count; ++s) {
+                    const Ball& ball = spheres_[std::size_t(s)];
+                    const Vec3d c = {ball.x, ball.y, ball.z};
+                    farthest = std::max(farthest, from_axis ? radial(c) : std::hypot(c.x, c.y, c.z));
+                }
+            }
+        }
+        return farthest;
+    };
+    const auto body_path = [&](int b) {  // from body b to the base
+        std::vector<int> path;
+        for (; b > 0; b = joints[std::size_t(b - 1)].parent + 1) path.push_back(b);
+        return path;
+    };
+    const std::size_t bodies = std::size_t(view_.body_stride);
+    levers_.assign(joints.size() * bodies, 0.0f);
+    for (int b = 1; b < view_.n_bodies; ++b) {
+        if (bodies_[std::size_t(b)].count == 0) continue;
+        double beyond = extent(b, false), own = extent(b, true);
+        for (const int k : body_path(b)) {
+            const model::Joint& joint = joints[std::size_t(k - 1)];
+            const double lever = joint.prismatic ? 1.0 : std::max(own, least);
+            levers_[std::size_t(k - 1) * bodies + std::size_t(b)] = rounded(lever * round_up);
+            const Vec3d& p = joint.T_parent_joint.t;
+            beyond += travel(joint);
+            own = radial(p) + beyond;
+            beyond += std::hypot(p.x, p.y, p.z);
+        }
+    }
+    const std::size_t stride = std::size_t(view_.pair_stride);
+    pair_levers_.assign(joints.size() * stride, 0.0f);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const std::vector<int> from = body_path(pairs_[p].a), to = body_path(pairs_[p].b);
+        const auto is_on = [](const std::vector<int>& path, int b) {
+            return std::find(path.begin(), path.end(), b) != path.end();
+        };
+        double longest = extent(pairs_[p].b, false);
+        for (const int k : to)
+            if (!is_on(from, k)) {
+                const float lever = levers_[std::size_t(k - 1) * bodies + std::size_t(pairs_[p].b)];
+                pair_levers_[std::size_t(k - 1) * stride + p] = lever;
+                const Vec3d& at = joints[std::size_t(k - 1)].T_parent_joint.t;
+                longest += std::hypot(at.x, at.y, at.z) + travel(joints[std::size_t(k - 1)]);
+            }
+        // Joints that carry body a alone: the whole way from b bounds the distance from each of their axes.
+        for (const int k : from)
+            if (!is_on(to, k)) {
+                const Vec3d& at = joints[std::size_t(k - 1)].T_parent_joint.t;
+                longest += std::hypot(at.x, at.y, at.z) + travel(joints[std::size_t(k - 1)]);
+            }
+        for (const int k : from)
+            if (!is_on(to, k))
+                pair_levers_[std::size_t(k - 1) * stride + p] =
+                    rounded((joints[std::size_t(k - 1)].prismatic ? 1.0 : longest) * round_up);
+    }
+}
+
+}  // namespace cspace::collision

@@ -1,0 +1,58 @@
+// The owner of a robot's collision data: bodies, links and groups of spheres with balls around them, levers.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cspace/collision/robot.hpp"
+#include "cspace/model/tree.hpp"
+
+namespace cspace::collision {
+
+struct Sphere {
+    Vec3d center;  // in the frame of its body [m]
+    double radius;
+    int link;
+};
+
+class RobotData {
+  public:
+    // The joints of a robot, their axes along z; coordinates within lower … upper (prismatic travel bounds
+    // levers); per link its body (0 the base, k + 1 what joint k carries); spheres sorted by link; pairs of
+    // links that are checked against each other.
+    RobotData(std::span<const model::Joint> joints, int n_coordinates, std::span<const double> lower,
+              std::span<const double> upper, std::span<const int> link_bodies,
+              std::span<const Sphere> spheres, std::span<const std::pair<int, int>> pairs);
+
+    const Robot& view() const { return view_; }
+    // What rounding to float may cost: added to every radius [m].
+    float slack() const { return slack_; }
+    // What was given, in double.
+    std::span<const model::Joint> given_joints() const { return given_joints_; }
+    std::span<const Sphere> given_spheres() const { return given_spheres_; }
+    std::span<const std::pair<int, int>> given_pairs() const { return given_pairs_; }
+    bool is_prismatic(int coordinate) const { return slides_[std::size_t(coordinate)]; }
+
+  private:
+    Robot view_ = {};
+    float slack_ = 0;
+    std::vector<char> slides_;
+    std::vector<model::Joint> given_joints_;
+    std::vector<Sphere> given_spheres_;
+    std::vector<std::pair<int, int>> given_pairs_;
+    std::vector<Joint> joints_;
+    std::vector<Body> bodies_;
+    std::vector<Link> links_;
+    std::vector<Group> groups_;
+    std::vector<Ball> spheres_;
+    std::vector<BodyPair> pairs_;
+    std::vector<LinkPair> link_pairs_;
+    std::vector<float> levers_, pair_levers_;
+
+    void add_links(std::span<const int> link_bodies, std::span<const Sphere> spheres);
+    void add_pairs(std::span<const std::pair<int, int>> pairs);
+    void bound_levers(std::span<const model::Joint> joints, std::span<const double> lower,
+                      std::span<const double> upper);
+};
+
+}  // namespace cspace::collision

@@ -1,0 +1,144 @@
+#include "collision_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cspace/tolerances.hpp"
+
+namespace cspace::collision {
+
+namespace {
+
+// What rounding the numbers of a primitive to float may move its surface by: half a unit in the last place of
+// each coordinate, twice over.
+double rounding_of(std::initializer_list<double> lengths) {
+    double largest = 0;
+    for (const double length : lengths) largest = std::max(largest, std::fabs(length));
+    return largest * tolerance::float_rounding / 2;
+}
+template <std::size_t n>
+void copy_rounded(const double* from, float (&to)[n]) {
+    for (std::size_t k = 0; k < n; ++k) to[k] = float(from[k]);
+}
+double norm(const double* v) { return std::hypot(v[0], v[1], v[2]); }
+
+}  // namespace
+
+SceneData::SceneData(const Primitives& given)
+    : box_rows_(given.boxes.begin(), given.boxes.end()),
+      capsule_rows_(given.capsules.begin(), given.capsules.end()),
+      cylinder_rows_(given.cylinders.begin(), given.cylinders.end()),
+      half_space_rows_(given.half_spaces.begin(), given.half_spaces.end()),
+      owners_(given.owners.begin(), given.owners.end()) {
+    for (std::size_t at = 0; at < given.boxes.size(); at += 15) {
+        const double *c = &given.boxes[at], *R = c + 3, *half = c + 12;
+        Box box = {};
+        copy_rounded(c, box.center);
+        copy_rounded(half, box.half);
+        double low[3], high[3];
+        for (int k = 0; k < 3; ++k) {
+            for (int r = 0; r < 3; ++r) box.axes[3 * k + r] = float(R[3 * r + k]);
+            const double extent = std::fabs(R[3 * k]) * half[0] + std::fabs(R[3 * k + 1]) * half[1] +
+                                  std::fabs(R[3 * k + 2]) * half[2];
+            low[k] = c[k] - extent, high[k] = c[k] + extent;
+        }
+        const double grown = rounding_of({norm(c), norm(half)});
+        box.radius = float(grown);
+        boxes_.push_back(box);
+        add_bounds(low, high, grown);
+    }
+    for (std::size_t at = 0; at < given.capsules.size(); at += 7) {
+        const double *a = &given.capsules[at], *b = a + 3, r = a[6];
+        Capsule capsule = {};
+        copy_rounded(a, capsule.start);
+        double low[3], high[3], square = 0;
+        for (int k = 0; k < 3; ++k) {
+            capsule.along[k] = float(b[k] - a[k]);
+            square += double(capsule.along[k]) * capsule.along[k];
+            low[k] = std::min(a[k], b[k]) - r, high[k] = std::max(a[k], b[k]) + r;
+        }
+        capsule.inverse_square = square > 0 ? float(1 / square) : 0.0f;
+        const double grown = rounding_of({norm(a), norm(b), r});
+        capsule.radius = float(r + grown);
+        capsules_.push_back(capsule);
+        add_bounds(low, high, grown);
+    }
+    for (std::size_t at = 0; at < given.cylinders.size(); at += 8) {
+        const double *c = &given.cylinders[at], *n = c + 3, half = c[6], r = c[7];
+        Cylinder cylinder = {};
+        copy_rounded(c, cylinder.center);
+        copy_rounded(n, cylinder.axis);
+        cylinder.half = float(half), cylinder.rim = float(r);
+        double low[3], high[3];
+        for (int k = 0; k < 3; ++k) {
+            const double extent = half * std::fabs(n[k]) + r * std::sqrt(std::max(0.0, 1 - n[k] * n[k]));
+            low[k] = c[k] - extent, high[k] = c[k] + extent;
+        }
+        const double grown = rounding_of({norm(c), half, r});
+        cylinder.radius = float(grown);
+        cylinders_.push_back(cylinder);
+        add_bounds(low, high, grown);
+    }
+    for (std::size_t at = 0; at < given.half_spaces.size(); at += 4) {
+        const double* n = &given.half_spaces[at];
+        HalfSpace half_space = {};
+        copy_rounded(n, half_space.normal);
+        half_space.offset = float(n[3]);
+        half_space.radius = float(rounding_of({n[3]}));
+        half_spaces_.push_back(half_space);
+        constexpr double everywhere = 1e30;
+        double low[3] = {-everywhere, -everywhere, -everywhere},
+               high[3] = {everywhere, everywhere, everywhere};
+        for (int k = 0; k < 3; ++k) {  // a half space along an axis has one side
+            if (n[k] == 1) high[k] = n[3];
+            if (n[k] == -1) low[k] = -n[3];
+        }
+        add_bounds(low, high, half_space.radius);
+    }
+    view_ = {boxes_.data(),
+             capsules_.data(),
+             cylinders_.data(),
+             half_spaces_.data(),
+             int(boxes_.size()),
+             int(capsules_.size()),
+             int(cylinders_.size()),
+             int(half_spaces_.size()),
+             int(low_[0].size()),
+             {low_[0].data(), low_[1].data(), low_[2].data()},
+             {high_[0].data(), high_[1].data(), high_[2].data()},
+             nullptr,
+             0,
+             0};
+}
+
+shapes::Distance SceneData::distance(int primitive, const Vec3d& point) const {
+    const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
+    std::size_t i = std::size_t(primitive);
+    if (i < boxes_.size()) {
+        const double* row = &box_rows_[15 * i];
+        const Mat3d R = {{{row[3], row[4], row[5]}, {row[6], row[7], row[8]}, {row[9], row[10], row[11]}}};
+        return shapes::distance_from_box(point, vector(row), R, vector(row + 12));
+    }
+    i -= boxes_.size();
+    if (i < capsules_.size()) {
+        const double* row = &capsule_rows_[7 * i];
+        return shapes::distance_from_capsule(point, vector(row), vector(row + 3), row[6]);
+    }
+    i -= capsules_.size();
+    if (i < cylinders_.size()) {
+        const double* row = &cylinder_rows_[8 * i];
+        return shapes::distance_from_cylinder(point, vector(row), vector(row + 3), row[6], row[7]);
+    }
+    const double* row = &half_space_rows_[4 * (i - cylinders_.size())];
+    return shapes::distance_from_half_space(point, vector(row), row[3]);
+}
+
+void SceneData::add_bounds(const double (&low)[3], const double (&high)[3], double grown) {
+    const double round_up = 2 * tolerance::float_rounding;
+    for (int k = 0; k < 3; ++k) {
+        low_[k].push_back(float(low[k] - grown - round_up * std::fabs(low[k])));
+        high_[k].push_back(float(high[k] + grown + round_up * std::fabs(high[k])));
+    }
+}
+
+}  // namespace cspace::collision

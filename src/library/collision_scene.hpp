@@ -1,0 +1,41 @@
+// The owner of a scene's primitives, rounded to float in the frame of the robot's base.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cspace/collision/scene.hpp"
+#include "cspace/shapes/distance.hpp"
+
+namespace cspace::collision {
+
+// Rows of numbers [m]: boxes (15): centre, rotation row-major (columns: the axes), half sizes; capsules (7):
+// two ends, radius; cylinders (8): centre, unit axis, half length, radius; half spaces (4): outward unit
+// normal n, offset o (solid where n · x ≤ o). owners: the object of each primitive, in this order.
+struct Primitives {
+    std::span<const double> boxes, capsules, cylinders, half_spaces;
+    std::span<const int> owners;
+};
+
+class SceneData {
+  public:
+    explicit SceneData(const Primitives& given);
+    const Scene& view() const { return view_; }  // without margins, and nothing allowed
+    int owner(int primitive) const { return owners_[std::size_t(primitive)]; }
+    // The distance of a point from a primitive, in double.
+    shapes::Distance distance(int primitive, const Vec3d& point) const;
+
+  private:
+    std::vector<double> box_rows_, capsule_rows_, cylinder_rows_, half_space_rows_;
+    Scene view_ = {};
+    std::vector<Box> boxes_;
+    std::vector<Capsule> capsules_;
+    std::vector<Cylinder> cylinders_;
+    std::vector<HalfSpace> half_spaces_;
+    std::vector<int> owners_;
+    std::vector<float> low_[3], high_[3];
+
+    void add_bounds(const double (&low)[3], const double (&high)[3], double grown);
+};
+
+}  // namespace cspace::collision

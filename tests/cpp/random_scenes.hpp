@@ -1,0 +1,111 @@
+// Random trees of joints with spheres, and random scenes of every primitive, for the tests of collision.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "library/collision_checker.hpp"
+#include "random.hpp"
+
+namespace check {
+
+struct RandomCell {
+    std::vector<cspace::model::Joint> joints;
+    std::vector<double> lower, upper;
+    std::vector<int> link_bodies;
+    std::vector<cspace::collision::Sphere> spheres;
+    std::vector<std::pair<int, int>> pairs;
+    std::vector<double> boxes, capsules, cylinders, half_spaces;
+    std::vector<int> owners;
+    std::unique_ptr<cspace::collision::Checker> checker;
+
+    std::vector<double> configuration(Random& random) const {
+        std::vector<double> q;
+        for (std::size_t k = 0; k < lower.size(); ++k) q.push_back(random.uniform(lower[k], upper[k]));
+        return q;
+    }
+};
+
+inline cspace::Mat3d random_rotation(Random& random) {
+    const cspace::Vec3d z = random.axis();
+    const cspace::Mat3d turned = cspace::frame_along(z);
+    const double angle = random.uniform(-3, 3), c = std::cos(angle), s = std::sin(angle);
+    return turned * cspace::Mat3d{{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
+}
+
+// A tree of n joints: some prismatic, some that mimic another, one link or two per body, up to 20 spheres a
+// link; every pair of bodies that are not neighbours is checked.
+inline RandomCell random_cell(Random& random, int n, double margin = 0) {
+    using namespace cspace;
+    RandomCell cell;
+    int coordinates = 0;
+    for (int k = 0; k < n; ++k) {
+        model::Joint joint = {};
+        joint.parent = k == 0 ? -1 : random.uniform(0, 1) < 0.8 ? k - 1 : random.below(k) - 1;
+        joint.T_parent_joint = {
+            random.uniform(0, 1) < 0.5 ? Mat3d{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}} : random_rotation(random),
+            0.3 * random.vector()};
+        joint.prismatic = random.uniform(0, 1) < 0.2;
+        const bool follows = coordinates > 0 && random.uniform(0, 1) < 0.1;
+        joint.coordinate = follows ? random.below(coordinates) : coordinates++;
+        joint.ratio = follows ? random.uniform(-1, 1) : 1;
+        joint.offset = follows ? random.uniform(-0.1, 0.1) : 0;
+        cell.joints.push_back(joint);
+    }
+    for (int k = 0; k < coordinates; ++k) cell.lower.push_back(-2), cell.upper.push_back(2);
+    for (int b = 0; b <= n; ++b)
+        for (int l = random.below(3); l > 0; --l) {
+            const int link = int(cell.link_bodies.size());
+            cell.link_bodies.push_back(b);
+            const Vec3d center = 0.15 * random.vector();
+            for (int s = random.uniform(0, 1) < 0.3 ? 20 : 1 + random.below(4); s > 0; --s)
+                cell.spheres.push_back({center + 0.1 * random.vector(), random.uniform(0.01, 0.06), link});
+        }
+    for (std::size_t a = 0; a < cell.link_bodies.size(); ++a)
+        for (std::size_t b = a + 1; b < cell.link_bodies.size(); ++b) {
+            const int from = cell.link_bodies[a], to = cell.link_bodies[b];
+            const bool are_neighbours = from == to || cell.joints[std::size_t(to - 1)].parent + 1 == from;
+            if (!are_neighbours) cell.pairs.push_back({int(a), int(b)});
+        }
+    const auto add = [](std::vector<double>& rows, const Vec3d& v) {
+        rows.insert(rows.end(), {v.x, v.y, v.z});
+    };
+    const auto place = [&] { return 0.5 * random.vector() + random.uniform(0.4, 1.0) * random.axis(); };
+    for (int k = random.below(6); k > 0; --k) {
+        const Mat3d R = random_rotation(random);
+        add(cell.boxes, place());
+        for (int r = 0; r < 3; ++r) add(cell.boxes, row(R, r));
+        add(cell.boxes, {random.uniform(0.02, 0.3), random.uniform(0.02, 0.3), random.uniform(0.001, 0.3)});
+    }
+    for (int k = random.below(5); k > 0; --k) {
+        const Vec3d a = place();
+        add(cell.capsules, a);
+        add(cell.capsules, random.uniform(0, 1) < 0.3 ? a : a + 0.3 * random.vector());
+        cell.capsules.push_back(random.uniform(0.01, 0.1));
+    }
+    for (int k = random.below(4); k > 0; --k) {
+        add(cell.cylinders, place());
+        add(cell.cylinders, random.axis());
+        cell.cylinders.insert(cell.cylinders.end(), {random.uniform(0.01, 0.3), random.uniform(0.01, 0.2)});
+    }
+    if (random.uniform(0, 1) < 0.5) {
+        add(cell.half_spaces, random.axis());
+        cell.half_spaces.push_back(-random.uniform(0.5, 1.0));
+    }
+    const std::size_t count = cell.boxes.size() / 15 + cell.capsules.size() / 7 + cell.cylinders.size() / 8 +
+                              cell.half_spaces.size() / 4;
+    for (std::size_t i = 0; i < count; ++i) cell.owners.push_back(int(i));
+    std::vector<std::pair<int, int>> allowed;  // the base stands where it stands
+    for (std::size_t l = 0; l < cell.link_bodies.size(); ++l)
+        for (std::size_t i = 0; i < count; ++i)
+            if (cell.link_bodies[l] == 0 || random.uniform(0, 1) < 0.02) allowed.push_back({int(l), int(i)});
+    cell.checker = std::make_unique<collision::Checker>(
+        std::make_shared<collision::RobotData>(cell.joints, coordinates, cell.lower, cell.upper,
+                                               cell.link_bodies, cell.spheres, cell.pairs),
+        std::make_shared<collision::SceneData>(
+            collision::Primitives{cell.boxes, cell.capsules, cell.cylinders, cell.half_spaces, cell.owners}),
+        margin, allowed);
+    return cell;
+}
+
+}  // namespace check
