@@ -24,7 +24,7 @@ int sample_edge(const Robot& robot, const Scene& scene, Workspace& w, const floa
 }
 
 unsigned check_rows(const Robot& robot, const Scene& scene, Workspace& w, const float* columns, int count) {
-    Floats q[EdgeCheck::most_coordinates];
+    Floats q[most_coordinates];
     for (int k = 0; k < robot.n_coordinates; ++k) q[k] = load_floats(columns + float_lanes * k);
     Block block(robot, scene, w);
     return lanes_in_collision(block, q, (1u << count) - 1);

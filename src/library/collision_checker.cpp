@@ -44,7 +44,6 @@ std::size_t lay_out(const Robot& robot, int n_primitives, std::byte* memory, Wor
     bytes(w.rates, bodies, rate);
     bytes(w.body_places, bodies, place);
     bytes(w.link_places, links, place);
-    bytes(w.group_places, groups, place);
     bytes(w.sphere_places, spheres, place);
     arena.take(w.body_stamps, bodies, sizeof(unsigned));
     arena.take(w.link_stamps, links, sizeof(unsigned));
@@ -150,7 +149,7 @@ bool Checker::is_free(const double* q, WorkspaceMemory& memory) const {
         memory.w.contact = base_contact_;
         return false;
     }
-    float a[64], b[64];
+    float a[most_coordinates], b[most_coordinates];
     round_edge(q, q, a, b);
     return kernels::sample_edge(robot(), scene_, memory.w, a, b, 1) == 0;
 }
@@ -161,8 +160,8 @@ void Checker::check_rows(const double* q, std::size_t n, std::uint8_t* collides,
     const std::size_t width = std::size_t(dof());
     over_rows(n, threads, 8, least_rows, [&](std::size_t begin, std::size_t end) {
         const Borrowed memory = borrow_workspace();
-        alignas(32) float columns[64 * 8];
-        float a[64], b[64];
+        alignas(32) float columns[most_coordinates * 8];
+        float a[most_coordinates], b[most_coordinates];
         for (std::size_t row = begin; row < end; row += 8) {
             const std::size_t count = std::min<std::size_t>(8, end - row);
             for (std::size_t i = 0; i < 8; ++i) {
@@ -198,13 +197,13 @@ Verdict Checker::sample_edge(const float* from, const float* to, float resolutio
     return Verdict(kernels::sample_edge(robot(), scene_, memory.w, from, to, n));
 }
 Verdict Checker::prove_edge(const double* from, const double* to, WorkspaceMemory& memory) const {
-    float a[64], b[64];
+    float a[most_coordinates], b[most_coordinates];
     round_edge(from, to, a, b);
     return prove_edge(a, b, memory);
 }
 Verdict Checker::sample_edge(const double* from, const double* to, double resolution,
                              WorkspaceMemory& memory) const {
-    float a[64], b[64];
+    float a[most_coordinates], b[most_coordinates];
     round_edge(from, to, a, b);
     return sample_edge(a, b, float(resolution), memory);
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
+#include <stdexcept>
 
 #include "cspace/shapes/smallest_ball.hpp"
 #include "cspace/tolerances.hpp"
@@ -80,14 +80,14 @@ void cluster(std::span<Ball> spheres, std::vector<std::size_t>& sizes) {
 RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, std::span<const double> lower,
                      std::span<const double> upper, std::span<const int> link_bodies,
                      std::span<const Sphere> spheres, std::span<const std::pair<int, int>> pairs)
-    : slides_(std::size_t(n_coordinates), 0),
-      given_joints_(joints.begin(), joints.end()),
+    : given_joints_(joints.begin(), joints.end()),
       given_spheres_(spheres.begin(), spheres.end()),
       given_pairs_(pairs.begin(), pairs.end()) {
+    view_.n_coordinates = n_coordinates;
+    check_order(joints, link_bodies, spheres, pairs);
     double reach = 0;
     for (const model::Joint& joint : joints) {
         joints_.push_back(rounded_joint(joint));
-        if (joint.prismatic) slides_[std::size_t(joint.coordinate)] = 1;
         const Vec3d& p = joint.T_parent_joint.t;
         reach += std::hypot(p.x, p.y, p.z);
     }
@@ -109,8 +109,34 @@ RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, st
     view_.n_link_pairs = int(link_pairs_.size());
 }
 
-// Links in the order of their bodies. `links_` keeps the numbers that the caller gave: link l of the caller
-// is number_[l] here only if its bodies ascend, which the caller sees to.
+void RobotData::check_order(std::span<const model::Joint> joints, std::span<const int> link_bodies,
+                            std::span<const Sphere> spheres,
+                            std::span<const std::pair<int, int>> pairs) const {
+    const auto require = [](bool holds, const char* rule) {
+        if (!holds) throw std::invalid_argument(rule);
+    };
+    const auto is_below = [](int number, std::size_t count) {
+        return number >= 0 && std::size_t(number) < count;
+    };
+    require(view_.n_coordinates <= most_coordinates, "a robot must have at most 64 coordinates");
+    for (std::size_t k = 0; k < joints.size(); ++k)
+        require(joints[k].parent >= -1 && joints[k].parent < int(k) &&
+                    is_below(joints[k].coordinate, std::size_t(view_.n_coordinates)),
+                "joints must follow their parents, and have coordinates of the robot");
+    for (std::size_t l = 0; l < link_bodies.size(); ++l)
+        require(
+            is_below(link_bodies[l], joints.size() + 1) && (l == 0 || link_bodies[l - 1] <= link_bodies[l]),
+            "the bodies of links must ascend");
+    for (std::size_t s = 0; s < spheres.size(); ++s)
+        require(is_below(spheres[s].link, link_bodies.size()) &&
+                    (s == 0 || spheres[s - 1].link <= spheres[s].link),
+                "spheres must come in the order of their links");
+    for (const auto& [a, b] : pairs)
+        require(is_below(a, link_bodies.size()) && is_below(b, link_bodies.size()) &&
+                    link_bodies[std::size_t(a)] != link_bodies[std::size_t(b)],
+                "pairs must be links of two bodies");
+}
+
 void RobotData::add_links(std::span<const int> link_bodies, std::span<const Sphere> spheres) {
     std::size_t next = 0;
     for (std::size_t l = 0; l < link_bodies.size(); ++l) {

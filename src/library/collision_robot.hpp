@@ -19,7 +19,9 @@ class RobotData {
   public:
     // The joints of a robot, their axes along z; coordinates within lower … upper (prismatic travel bounds
     // levers); per link its body (0 the base, k + 1 what joint k carries); spheres sorted by link; pairs of
-    // links that are checked against each other.
+    // links that are checked against each other. Throws std::invalid_argument for more coordinates than
+    // most_coordinates, links whose bodies do not ascend, spheres that do not follow their links, and numbers
+    // out of range.
     RobotData(std::span<const model::Joint> joints, int n_coordinates, std::span<const double> lower,
               std::span<const double> upper, std::span<const int> link_bodies,
               std::span<const Sphere> spheres, std::span<const std::pair<int, int>> pairs);
@@ -31,12 +33,10 @@ class RobotData {
     std::span<const model::Joint> given_joints() const { return given_joints_; }
     std::span<const Sphere> given_spheres() const { return given_spheres_; }
     std::span<const std::pair<int, int>> given_pairs() const { return given_pairs_; }
-    bool is_prismatic(int coordinate) const { return slides_[std::size_t(coordinate)]; }
 
   private:
     Robot view_ = {};
     float slack_ = 0;
-    std::vector<char> slides_;
     std::vector<model::Joint> given_joints_;
     std::vector<Sphere> given_spheres_;
     std::vector<std::pair<int, int>> given_pairs_;
@@ -49,6 +49,8 @@ class RobotData {
     std::vector<LinkPair> link_pairs_;
     std::vector<float> levers_, pair_levers_;
 
+    void check_order(std::span<const model::Joint> joints, std::span<const int> link_bodies,
+                     std::span<const Sphere> spheres, std::span<const std::pair<int, int>> pairs) const;
     void add_links(std::span<const int> link_bodies, std::span<const Sphere> spheres);
     void add_pairs(std::span<const std::pair<int, int>> pairs);
     void bound_levers(std::span<const model::Joint> joints, std::span<const double> lower,

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 import cspace as cs
 from cspace.collision import pack_scene
+from cspace.errors import InputTypeError
 from shapes.solids import every_shape
 
 
@@ -68,3 +71,20 @@ def test_attached_objects_are_no_obstacles_and_an_empty_scene_has_empty_arrays()
     assert packed.names == ()
     assert (packed.boxes.shape, packed.capsules.shape, packed.cylinders.shape) == ((0, 15), (0, 7), (0, 8))
     assert (packed.half_spaces.shape, packed.points.shape, packed.hulls) == ((0, 4), (0, 4), ())
+
+
+def test_a_shape_of_another_class_is_refused_by_name():
+    @dataclass(frozen=True, eq=False, repr=False)
+    class Blob(cs.shapes.Shape):
+        kind = "blob"
+        pose: object = (0.0, 0.0, 0.0)
+        name: str = "cloud"
+
+        def __post_init__(self):
+            self._place()
+
+        def _sizes(self):
+            return ""
+
+    with pytest.raises(InputTypeError, match="'cloud' is a Blob"):
+        pack_scene(cs.Scene([Blob()]))

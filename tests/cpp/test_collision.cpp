@@ -1,5 +1,6 @@
 // Laws of collision checks: verdicts against distances in double, proofs against dense samples.
 #include <array>
+#include <stdexcept>
 
 #include "check.hpp"
 #include "random_scenes.hpp"
@@ -68,11 +69,10 @@ TEST(no_configuration_of_a_proved_edge_touches_anything) {
                 CHECK(cell.checker->sample_edge(a.data(), b.data(), 0.01, *memory) == Verdict::free);
             }
             if (verdict == Verdict::blocked) {
-                const double at = 0.5 * (double(memory->w.contact.at) + 1);
                 cell.checker->prove_edge(a.data(), b.data(), *memory);
                 const double where = 0.5 * (double(memory->w.contact.at) + 1);
                 CHECK(cell.checker->clearance(between(a, b, where).data()).distance < band);
-                CHECK(at >= 0 && at <= 1);
+                CHECK(where >= 0 && where <= 1);
             }
         }
     }
@@ -143,4 +143,30 @@ TEST(the_gradient_of_the_clearance_is_its_difference_quotient) {
         }
     }
     CHECK(tested > 500);
+}
+
+TEST(numbers_that_do_not_fit_are_refused) {
+    const auto is_refused = [](int coordinates, std::vector<model::Joint> joints, std::vector<int> bodies,
+                               std::vector<Sphere> spheres, std::vector<std::pair<int, int>> pairs) {
+        const Row limits(std::size_t(coordinates), 1.0);
+        try {
+            RobotData(joints, coordinates, limits, limits, bodies, spheres, pairs);
+        } catch (const std::invalid_argument&) {
+            return true;
+        }
+        return false;
+    };
+    const model::Joint joint = {identity_pose(), -1, 0, 1, 0, false, 0};
+    model::Joint orphan = joint, foreign = joint;
+    orphan.parent = 0, foreign.coordinate = 1;
+    const Sphere first = {{0, 0, 0}, 0.1, 0}, second = {{0, 0, 0}, 0.1, 1};
+    CHECK(!is_refused(1, {joint}, {0, 1}, {first, second}, {{0, 1}}));
+    CHECK(is_refused(65, {joint}, {0, 1}, {first, second}, {{0, 1}}));
+    CHECK(is_refused(1, {orphan}, {0, 1}, {first, second}, {{0, 1}}));
+    CHECK(is_refused(1, {foreign}, {0, 1}, {first, second}, {{0, 1}}));
+    CHECK(is_refused(1, {joint}, {1, 0}, {first, second}, {{0, 1}}));
+    CHECK(is_refused(1, {joint}, {0, 2}, {first, second}, {{0, 1}}));
+    CHECK(is_refused(1, {joint}, {0, 1}, {second, first}, {{0, 1}}));
+    CHECK(is_refused(1, {joint}, {0, 1}, {first, second}, {{0, 2}}));
+    CHECK(is_refused(1, {joint}, {1, 1}, {first, second}, {{0, 1}}));
 }

@@ -34,7 +34,6 @@ class EdgeCheck {
         bound_motion(robot.levers, robot.body_stride, w.kappa, w.reach);
         bound_motion(robot.pair_levers, robot.pair_stride, w.pair_kappa, w.pair_reach);
     }
-    static constexpr int most_coordinates = 64;
 
     Verdict prove() {
         Interval now[float_lanes];
@@ -79,10 +78,6 @@ class EdgeCheck {
         }
         return true;
     }
-
-    // Where along the edge lane i is.
-    float parameter(int i) const { return middle_[i]; }
-    unsigned lanes_hit() const { return block_.hit; }
 
   private:
     const Robot& robot_;

@@ -7,6 +7,9 @@
 
 namespace cspace::collision {
 
+// The most coordinates that a robot may have here.
+inline constexpr int most_coordinates = 64;
+
 struct Ball {
     float x, y, z, r;
 };

@@ -20,8 +20,8 @@ struct Contact {
 };
 
 struct Workspace {
-    // Frame, Rate per body and Place per body, link, group and sphere, with lanes of eight floats.
-    void *frames, *rates, *body_places, *link_places, *group_places, *sphere_places;
+    // Frame, Rate per body and Place per body, link and sphere, with lanes of eight floats.
+    void *frames, *rates, *body_places, *link_places, *sphere_places;
     // The number of the block in which each was placed last.
     unsigned *body_stamps, *link_stamps, *group_stamps, stamp;
     // Per body a list of the primitives that it may touch, of `near_stride` entries, and its length.

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.collision.scene import Scene
+from cspace.errors import InputTypeError
 from cspace.shapes import (
     Box,
     Capsule,
@@ -83,6 +84,9 @@ def pack_scene(scene: Scene, T_world_base: Any = None) -> PackedScene:
 WIDTHS = {"boxes": 15, "capsules": 7, "cylinders": 8, "half_spaces": 4, "hulls": 0, "meshes": 0, "points": 4}
 """The arrays, and the numbers of their rows; zero for lists of arrays."""
 
+PACKED = (Box, Sphere, Capsule, Cylinder, HalfSpace, Hull, Mesh, HeightField, PointCloud)
+"""The shapes that have arrays."""
+
 OWNERS = {
     **{"boxes": "box_object", "capsules": "capsule_object", "cylinders": "cylinder_object"},
     **{"half_spaces": "half_space_object", "hulls": "hull_object", "meshes": "mesh_object"},
@@ -116,4 +120,7 @@ def pack_shape(shape: Shape, T: Array) -> tuple[str, list[Any]]:
     if isinstance(shape, PointCloud):
         centers = transform_points(T, shape.points)
         return "points", list(np.column_stack([centers, np.full(len(centers), shape.radius)]))
-    raise NotImplementedError(type(shape).__name__)
+    known = ", ".join(kind.__name__ for kind in PACKED)
+    raise InputTypeError(
+        f"{shape.name!r} is a {type(shape).__name__}, which no check reads; use one of {known}"
+    )
