@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, cast
@@ -45,18 +45,19 @@ class Robot(Renamed, RobotBase, KinematicModel):
     """A robot: a kinematic chain or tree with its poses, velocities, inverse kinematics and export.
 
     description: links and joints. base, tip: links. With a tip, or when the joints form a chain anyway, the
-    robot is the chain from base to tip; joints off the chain are locked and left out. Without a tip it may
-    be a tree, whose frames are addressed by name. floating: the base moves freely, and six velocities
-    precede those of the joints; None takes it from the description. T_world_base, T_tip_tool (4, 4): the
-    mounting of the base and the tool on the tip; both apply in every function. name: of the robot.
+    robot is the chain from base to tip, and joints off the chain are locked with what they carry. Without a
+    tip it may be a tree, whose frames are addressed by name. floating: the base moves freely, and six
+    velocities precede those of the joints; None takes it from the description. locked: joint name → value
+    [rad or m] of joints off the chain, zero unless given. T_world_base, T_tip_tool (4, 4): the mounting of
+    the base and the tool on the tip; both apply in every function. name: of the robot.
 
     dof: number of velocities. joint_names: the n coordinates of a configuration, in order; joint_types: "R"
     (revolute) or "P" (prismatic) per coordinate. limits: each (n,). frames: every name that fk accepts.
     base, tip, leaves: names of links. mass: of all links of the robot [kg]. floating, description: as
     given.
 
-    Raises UnknownNameError for a link that does not exist, InputError for a base= with more than one
-    possible tip.
+    Raises UnknownNameError for a link or a locked joint that does not exist, InputError for a base= with
+    more than one possible tip, and for a locked joint that moves the tip.
     """
 
     description: Description
@@ -68,6 +69,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         tip: str | None = None,
         *,
         floating: bool | None = None,
+        locked: Mapping[str, float] | None = None,
         T_world_base: PoseLike | None = None,
         T_tip_tool: PoseLike | None = None,
     ) -> None:
@@ -76,10 +78,10 @@ class Robot(Renamed, RobotBase, KinematicModel):
                 f"Robot needs a Description, got {type(description).__name__}; load_robot takes names and"
                 " paths, Robot.from_urdf, from_dh, from_screws and from_toml what their names say"
             )
-        self._made_from = (description, base, tip, floating)
+        self._made_from = (description, base, tip, floating, dict(locked or {}))
         self._T_world_base = None if T_world_base is None else one_pose(T_world_base, "T_world_base").copy()
         self._T_tip_tool = None if T_tip_tool is None else one_pose(T_tip_tool, "T_tip_tool").copy()
-        assembly = kinematics.assemble(description, base, tip, floating=floating)
+        assembly = kinematics.assemble(description, base, tip, floating=floating, locked=locked)
         if self._T_world_base is not None:
             kinematics.mount(assembly, description.name, self._T_world_base)
         if self._T_tip_tool is not None:
@@ -95,10 +97,12 @@ class Robot(Renamed, RobotBase, KinematicModel):
         tip: str | None = None,
         *,
         floating: bool | None = None,
+        locked: Mapping[str, float] | None = None,
         package_paths: Sequence[Any] = (),
     ) -> Robot:
         """A robot from a URDF file or its text; see model.from_urdf, which also names the errors."""
-        return cls(model.from_urdf(source, package_paths=package_paths), base, tip, floating=floating)
+        description = model.from_urdf(source, package_paths=package_paths)
+        return cls(description, base, tip, floating=floating, locked=locked)
 
     @classmethod
     def from_mjcf(
@@ -108,10 +112,12 @@ class Robot(Renamed, RobotBase, KinematicModel):
         tip: str | None = None,
         *,
         floating: bool | None = None,
+        locked: Mapping[str, float] | None = None,
         package_paths: Sequence[Any] = (),
     ) -> Robot:
         """A robot from an MJCF file or its text; see model.from_mjcf, which also names the errors."""
-        return cls(model.from_mjcf(source, package_paths=package_paths), base, tip, floating=floating)
+        description = model.from_mjcf(source, package_paths=package_paths)
+        return cls(description, base, tip, floating=floating, locked=locked)
 
     @classmethod
     def from_toml(
@@ -121,10 +127,12 @@ class Robot(Renamed, RobotBase, KinematicModel):
         tip: str | None = None,
         *,
         floating: bool | None = None,
+        locked: Mapping[str, float] | None = None,
         package_paths: Sequence[Any] = (),
     ) -> Robot:
         """A robot from a TOML file or its text; see model.from_toml, which also names the errors."""
-        return cls(model.from_toml(source, package_paths=package_paths), base, tip, floating=floating)
+        description = model.from_toml(source, package_paths=package_paths)
+        return cls(description, base, tip, floating=floating, locked=locked)
 
     @classmethod
     def from_dh(cls, table: Any, **options: Any) -> Robot:
@@ -273,8 +281,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
 
     def _constructor(self, **changes: Any) -> partial[Robot]:
         """The call that makes this robot, or one with other arguments."""
-        description, base, tip, floating = self._made_from
-        kept = {"T_world_base": self._T_world_base, "T_tip_tool": self._T_tip_tool}
+        description, base, tip, floating, locked = self._made_from
+        kept = {"locked": locked, "T_world_base": self._T_world_base, "T_tip_tool": self._T_tip_tool}
         return partial(type(self), description, base, tip, floating=floating, **(kept | changes))
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -4,8 +4,10 @@ import pickle
 import numpy as np
 import pytest
 
-from cspace.errors import DescriptionError, InputError, UnknownNameError
+from cspace.errors import CspaceError, DescriptionError, InputError, UnknownNameError
 from cspace.model import Chain, Description, Joint, Link, Mimic, chain, default_tip, from_screws, twists
+from cspace.model.chain import find_path
+from cspace.robot import Robot
 from model.random_robots import random_pose, random_tree, random_values
 from oracles.forward import link_poses, product_of_exponentials
 
@@ -21,17 +23,72 @@ def test_a_chain_between_any_two_links_moves_as_the_tree_does(seed):
     rng = np.random.default_rng(seed)
     tree = random_tree(rng)
     values = random_values(rng, tree)
-    poses = link_poses(tree, values)
     names = [link.name for link in tree.links]
+    poses = link_poses(tree, values)
     for _ in range(12):
         base, tip = (str(name) for name in rng.choice(names, 2))
-        c = chain(tree, base, tip)
+        path = {joint.name for joint, _ in find_path(tree, base, tip)}
+        off = [joint for joint in tree.moving_joints if joint.name not in path]
+        c = chain(tree, base, tip, locked={j.name: values[j.name] for j in off if j.mimic is None})
+        assert set(c.frames) == set(names)
         q = chain_values(c, values)
         T = product_of_exponentials(c.axes, c.points, c.joint_types, c.T_zero, q)
         np.testing.assert_allclose(T, np.linalg.inv(poses[base]) @ poses[tip], atol=1e-13)
+        stays = {joint.name for joint in off if joint.mimic and leader(tree, joint) in path}
         for frame, (k, T_zero) in c.frames.items():
-            T = product_of_exponentials(c.axes[:k], c.points[:k], c.joint_types[:k], T_zero, q[:k])
-            np.testing.assert_allclose(T, np.linalg.inv(poses[base]) @ poses[frame], atol=1e-13)
+            if stays.isdisjoint(joint.name for joint, _ in find_path(tree, base, frame)):
+                T = product_of_exponentials(c.axes[:k], c.points[:k], c.joint_types[:k], T_zero, q[:k])
+                np.testing.assert_allclose(T, np.linalg.inv(poses[base]) @ poses[frame], atol=1e-13)
+
+
+def leader(tree, joint):
+    return joint.name if joint.mimic is None else leader(tree, tree.joint(joint.mimic.joint))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_joints_off_the_chain_are_locked_with_what_they_carry(seed):
+    rng = np.random.default_rng(seed)
+    tree = random_tree(rng, mimics=False, branch=0.5)
+    tip = str(rng.choice(tree.leaves))
+    path = {joint.name for joint, _ in find_path(tree, tree.root, tip)}
+    off = [joint.name for joint in tree.moving_joints if joint.name not in path]
+    values = {name: rng.uniform(-1, 1) for name in off}
+    robot = Robot(tree, tip=tip, locked=values)
+    whole = Robot(tree)
+    assert robot.mass == pytest.approx(whole.mass)
+    q = dict(zip(robot.joint_names, robot.random_configuration(rng=seed, reach=1.0), strict=True))
+    both = np.array([values.get(name, q.get(name)) for name in whole.joint_names])
+    own = np.array(list(q.values()))
+    np.testing.assert_allclose(robot.center_of_mass(own), whole.center_of_mass(both), atol=1e-12)
+    for name in robot.frames:
+        np.testing.assert_allclose(robot.fk(own, frame=name), whole.fk(both, frame=name), atol=1e-12)
+    again = pickle.loads(pickle.dumps(robot.with_tool(random_pose(rng))))
+    np.testing.assert_allclose(again.center_of_mass(own), whole.center_of_mass(both), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("locked", "message"),
+    [
+        ({"j1": 0.0}, "moves the tip"),
+        ({"j9": 0.0}, "no joint 'j9'"),
+        ({"f2": 0.0}, "mimics 'f1'; lock that one"),
+        ({"side": 0.0}, "is fixed"),
+        ({"f1": np.nan}, "locked joint 'f1' is NaN"),
+    ],
+)
+def test_only_moving_joints_off_the_chain_are_locked(locked, message):
+    joints = (
+        Joint("j1", "revolute", "base", "hand"),
+        Joint("f1", "prismatic", "hand", "left"),
+        Joint("f2", "prismatic", "hand", "right", mimic=Mimic("f1", -1.0, 0.0)),
+        Joint("side", "fixed", "base", "sensor"),
+    )
+    with pytest.raises(CspaceError, match=message):
+        Robot(robot_of(*joints), tip="hand", locked=locked)
+    with pytest.raises(InputError, match="every joint of 'r' moves"):
+        Robot(robot_of(*joints), locked={"f1": 0.0})
+    fixed = Robot(robot_of(*joints), tip="hand", locked={"f1": 0.1})
+    np.testing.assert_allclose(fixed.fk([0.0], frame="right")[:3, 3], [-0.1, 0, 0], atol=1e-15)
 
 
 @pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda c: pickle.loads(pickle.dumps(c))])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -74,14 +75,21 @@ class Assembly:
 
 
 def assemble(
-    description: Description, base: str | None = None, tip: str | None = None, *, floating: bool | None = None
+    description: Description,
+    base: str | None = None,
+    tip: str | None = None,
+    *,
+    floating: bool | None = None,
+    locked: Mapping[str, float] | None = None,
 ) -> Assembly:
     """The chain from `base` to `tip`, or, where the robot branches and nothing is chosen, the whole tree.
 
     base: a link, the root if None (below a floating joint that carries everything). tip: a link; if None,
-    the end of the only chain there is. Moving joints off the chain are left out with all that they carry.
-    floating: the base moves freely; None: if the description says so. Raises UnknownNameError for a link
-    that is not there, InputError for a base below which the robot branches.
+    the end of the only chain there is. Joints off the chain are locked, and the links that they carry keep
+    their masses, as frames of the chain. floating: the base moves freely; None: if the description says so.
+    locked: joint name → value [rad or m] of joints off the chain, zero unless given. Raises UnknownNameError
+    for a link or joint that is not there, InputError for a base below which the robot branches, and for
+    locked joints of a tree or of the chain.
     """
     loose = any(joint.type == "floating" for joint in description.joints)
     start = tree(description).root if base is None and loose else base
@@ -93,8 +101,13 @@ def assemble(
         except InputError:
             if base is not None:
                 raise
+            if locked:
+                raise InputError(
+                    f"every joint of {description.name!r} moves, since it branches and no tip= is chosen;"
+                    " locked= is for joints off the chain to a tip"
+                ) from None
             return _from_tree(tree(description), description, free)
-    return _from_chain(chain(description, start, end), description, free)
+    return _from_chain(chain(description, start, end, locked=locked), description, free)
 
 
 def assemble_chain(source: Chain) -> Assembly:

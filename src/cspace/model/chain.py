@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 from typing import Any
@@ -12,10 +12,16 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model.description import Description
-from cspace.model.elementary import Coordinates, Elementary, coordinates_of, elementary_joints
+from cspace.model.elementary import (
+    Coordinates,
+    Elementary,
+    coordinates_of,
+    elementary_joints,
+    leading_joint,
+)
 from cspace.model.joint import LIMIT_FIELDS, Joint, Limits
 from cspace.model.screws import twists
-from cspace.model.values import freeze_array
+from cspace.model.values import finite_number, freeze_array
 from cspace.spatial import exp_se3
 from cspace.spatial.poses import invert_pose
 from cspace.tables import one_line
@@ -190,28 +196,81 @@ def _ends(lower: float, upper: float) -> list[float]:
     return [lower, upper] + [np.inf] * (len(LIMIT_FIELDS) - 2)
 
 
-def zero_poses(description: Description, base: str | None = None) -> dict[str, Array]:
-    """The pose (4, 4) of every link in the link `base` (default: the root) with all joints at zero."""
+def zero_poses(
+    description: Description, base: str | None = None, locked: Mapping[str, float] | None = None
+) -> dict[str, Array]:
+    """The pose (4, 4) of every link in the link `base` (default: the root) with all joints at zero.
+
+    locked: joint name → value [rad or m] of joints that are not at zero.
+    """
     poses = {description.root: np.eye(4)}
     for link in description.ordered_links[1:]:
         joint = description.parent_joint[link]
         poses[link] = poses[joint.parent] @ joint.origin
+        if locked and locked.get(joint.name):
+            poses[link] = poses[link] @ joint_motion(joint, locked[joint.name])
     if base is not None and base != description.root:
         T_base_root = invert_pose(poses[description.link(base).name])
         poses = {link: T_base_root @ pose for link, pose in poses.items()}
     return poses
 
 
-def rigid_group(description: Description, link: str) -> tuple[str, ...]:
-    """The links tied to `link` by fixed joints alone, itself first."""
-    group = [link]
-    for here in group:
-        near = [joint.child for joint in description.child_joints[here] if not joint.moving]
+def joint_motion(joint: Joint, value: float) -> Array:
+    """The pose (4, 4) of a joint's child at a value [rad or m] in its child at zero."""
+    (step,) = elementary_joints(joint)
+    return exp_se3(value * twists(step.axis[None], np.zeros((1, 3)), step.kind)[0])
+
+
+def rigid_group(description: Description, link: str, locked: Container[str] = ()) -> tuple[str, ...]:
+    """The links tied to `link` by fixed joints, and by those whose names are in `locked`, itself first."""
+
+    def is_rigid(joint: Joint) -> bool:
+        return not joint.moving or joint.name in locked
+
+    group = {link: None}
+    open_links = [link]
+    for here in open_links:
+        near = [joint.child for joint in description.child_joints[here] if is_rigid(joint)]
         carrier = description.parent_joint.get(here)
-        if carrier is not None and not carrier.moving:
+        if carrier is not None and is_rigid(carrier):
             near.append(carrier.parent)
-        group += [other for other in near if other not in group]
+        open_links += [other for other in near if other not in group]
+        group.update(dict.fromkeys(near))
     return tuple(group)
+
+
+def locked_values(
+    description: Description, path: Sequence[Joint], values: Mapping[str, float] | None = None
+) -> dict[str, float]:
+    """The moving joints that are not on the path, name → value [rad or m], zero unless given.
+
+    A joint that mimics another follows it; one that follows a joint of the path stays where that is zero.
+    Floating joints are left out. Raises UnknownNameError for a joint that does not exist, InputError for
+    one that is on the path, fixed, floating, planar or mimics another, and for a value that is not finite.
+    """
+    on_path = {joint.name for joint in path}
+    given = {name: finite_number(v, f"locked joint {name!r}") for name, v in dict(values or {}).items()}
+    for name in given:
+        joint = description.joint(name)
+        if name in on_path:
+            raise InputError(
+                f"joint {name!r} moves the tip of {description.name!r}, so it cannot be locked here;"
+                " lock it in calls, such as robot.ik(T, locked=…)"
+            )
+        if joint.mimic is not None:
+            raise InputError(f"joint {name!r} mimics {joint.mimic.joint!r}; lock that one")
+        if joint.type not in ("revolute", "continuous", "prismatic"):
+            raise InputError(
+                f"joint {name!r} is {joint.type}; only revolute and prismatic ones can be locked"
+            )
+    off = [
+        joint for joint in description.moving_joints if joint.name not in on_path and joint.type != "floating"
+    ]
+    found = {}
+    for joint in off:
+        leader, factor, shift = leading_joint(joint, description.joint_by_name)
+        found[joint.name] = factor * given.get(leader.name, 0.0) + shift
+    return found
 
 
 def default_tip(description: Description, base: str | None = None) -> str:
@@ -274,30 +333,40 @@ def _ancestors(description: Description, link: str) -> list[str]:
     return line
 
 
-def chain(description: Description, base: str | None = None, tip: str | None = None) -> Chain:
+def chain(
+    description: Description,
+    base: str | None = None,
+    tip: str | None = None,
+    *,
+    locked: Mapping[str, float] | None = None,
+) -> Chain:
     """The chain from `base` to `tip`, any two links of the tree.
 
     base: a link, default the root. tip: a link, default as in default_tip. Joints passed from child to parent
-    act the other way round: their axes are negated. Links that hang rigidly on the chain are kept as frames,
-    moving side branches are dropped.
-    Raises UnknownNameError for unknown links, InputError where the tip is a choice, DescriptionError where a
-    floating joint lies between.
+    act the other way round: their axes are negated. Joints off the chain are locked, and what they carry is
+    kept as frames. locked: joint name → value [rad or m] of such joints, zero unless given.
+    Raises UnknownNameError for unknown links and joints, InputError where the tip is a choice and for a
+    locked joint that the chain moves, DescriptionError where a floating joint lies between.
     """
     base = description.root if base is None else description.link(base).name
     tip = default_tip(description, base) if tip is None else description.link(tip).name
-    poses = zero_poses(description, base)
+    path = find_path(description, base, tip)
+    fixed_at = locked_values(description, [joint for joint, _ in path], locked)
+    poses = zero_poses(description, base, fixed_at)
     parts: list[Elementary] = []
     axes: list[Array] = []
     points: list[Array] = []
-    frames = {link: (0, poses[link]) for link in rigid_group(description, base)}
-    for joint, backward in find_path(description, base, tip):
+    frames = {link: (0, poses[link]) for link in rigid_group(description, base, fixed_at)}
+    for joint, backward in path:
         steps = elementary_joints(joint)
         frame = poses[joint.child]  # at zero the joint frame is the child frame
         for step in reversed(steps) if backward else steps:
             parts.append(step)
             axes.append(frame[:3, :3] @ (-step.axis if backward else step.axis))
             points.append(frame[:3, 3])
-        for link in rigid_group(description, joint.parent if backward else joint.child) if steps else ():
+        for link in (
+            rigid_group(description, joint.parent if backward else joint.child, fixed_at) if steps else ()
+        ):
             frames[link] = (len(parts), poses[link])
     n = len(parts)
     return Chain(

@@ -78,7 +78,7 @@ def coordinates_of(joints: tuple[Elementary, ...], by_name: Mapping[str, Joint])
     leaders: list[Joint] = []
     index, multiplier, offset = [], [], []
     for part in joints:
-        leader, factor, shift = _leader(part.joint, by_name)
+        leader, factor, shift = leading_joint(part.joint, by_name)
         name = part.name if leader is part.joint else leader.name
         if name not in position:
             position[name] = len(position)
@@ -95,7 +95,7 @@ def coordinates_of(joints: tuple[Elementary, ...], by_name: Mapping[str, Joint])
     )
 
 
-def _leader(joint: Joint, by_name: Mapping[str, Joint]) -> tuple[Joint, float, float]:
+def leading_joint(joint: Joint, by_name: Mapping[str, Joint]) -> tuple[Joint, float, float]:
     """The joint at the head of a row of mimics, with the combined multiplier and offset."""
     factor, shift = 1.0, 0.0
     while joint.mimic is not None:

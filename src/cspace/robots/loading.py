@@ -33,6 +33,7 @@ def load_robot(
     tip: str | None = None,
     *,
     floating: bool | None = None,
+    locked: Mapping[str, float] | None = None,
     package_paths: Sequence[Any] = (),
     xacro_args: Mapping[str, Any] | None = None,
     calibration: str | os.PathLike[str] | None = None,
@@ -42,9 +43,11 @@ def load_robot(
     name_or_path: a name ("ur5e", see cspace.robots.names()) or the path of a URDF, xacro, MJCF or TOML file;
     XML files are distinguished by their content. base, tip: links between which it moves, if the file allows
     several. floating: whether the base moves freely, its six velocities before those of the joints; None:
-    if the file says so. package_paths: folders where packages (of package:// and $(find …)) are looked for
-    first. xacro_args: values of the arguments of a xacro file, by name. calibration: the file of one UR arm's
-    joint frames, see model.calibrated.
+    if the file says so. locked: joint name → value [rad or m] of joints off the chain from base to tip, such
+    as fingers; zero unless given. package_paths: folders where packages (of package:// and $(find …)) are
+    looked for first. xacro_args: values of the arguments of a xacro file, by name. calibration: the file of
+    one UR arm's joint frames, see model.calibrated.
+
     Raises UnknownNameError for a name that is not in the catalogue, DescriptionError for a file that cannot
     be read, InputError where the tip is a choice that must be made, MissingExtraError for xacro without the
     extra [xacro].
@@ -52,7 +55,7 @@ def load_robot(
     description = load_description(
         name_or_path, package_paths=package_paths, xacro_args=xacro_args, calibration=calibration
     )
-    return Robot(description, base, tip, floating=floating)
+    return Robot(description, base, tip, floating=floating, locked=locked)
 
 
 def load_description(
