@@ -306,6 +306,33 @@ class PolygonCore:
     def path_clearance(self, path: numpy.typing.NDArray[numpy.float64]) -> float:
         """The least distance from a path to a wall."""
 
+class CollisionRobot:
+    """A robot made of spheres."""
+
+    def __init__(self, joints: numpy.typing.NDArray[numpy.float64], bounds: numpy.typing.NDArray[numpy.float64], link_bodies: numpy.typing.NDArray[numpy.int64], spheres: numpy.typing.NDArray[numpy.float64], sphere_links: numpy.typing.NDArray[numpy.int64], pairs: numpy.typing.NDArray[numpy.int64]) -> None: ...
+
+class CollisionScene:
+    """Obstacles in the frame of a robot's base."""
+
+    def __init__(self, boxes: numpy.typing.NDArray[numpy.float64], capsules: numpy.typing.NDArray[numpy.float64], cylinders: numpy.typing.NDArray[numpy.float64], half_spaces: numpy.typing.NDArray[numpy.float64], owners: numpy.typing.NDArray[numpy.int64]) -> None: ...
+
+class CollisionChecker:
+    """A robot among obstacles."""
+
+    def __init__(self, robot: CollisionRobot, scene: CollisionScene, margin: float, allowed: numpy.typing.NDArray[numpy.int64]) -> None: ...
+
+    def find_contact(self, q: numpy.typing.NDArray[numpy.float64]) -> tuple[bool, int, int] | None:
+        """What touches at a configuration (dof,), None if nothing."""
+
+    def check_rows(self, q: numpy.typing.NDArray[numpy.float64], threads: int) -> numpy.typing.NDArray[numpy.uint8]:
+        """A byte per configuration (n, dof): 1 where something touches."""
+
+    def check_edge(self, start: numpy.typing.NDArray[numpy.float64], end: numpy.typing.NDArray[numpy.float64], resolution: float) -> tuple[int, tuple[bool, int, int] | None, float]:
+        """Verdict, contact and its place."""
+
+    def find_clearance(self, q: numpy.typing.NDArray[numpy.float64]) -> tuple[float, numpy.typing.NDArray[numpy.float64], bool, tuple[bool, int, int] | None]:
+        """Distance, gradient, whether another pair is as near, the nearest pair."""
+
 class RouteBase:
     """The compiled half of cspace.navigation.Route."""
 

@@ -20,6 +20,7 @@ from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
     from cspace import ik
+    from cspace.collision import RobotGeometry, checks
     from cspace.export import Export
 
     Seed = int | np.random.Generator | None
@@ -48,8 +49,9 @@ class Robot(Renamed, RobotBase, KinematicModel):
     robot is the chain from base to tip, and joints off the chain are locked with what they carry. Without a
     tip it may be a tree, whose frames are addressed by name. floating: the base moves freely, and six
     velocities precede those of the joints; None takes it from the description. locked: joint name → value
-    [rad or m] of joints off the chain, zero unless given. T_world_base, T_tip_tool (4, 4): the mounting of
-    the base and the tool on the tip; both apply in every function. name: of the robot.
+    [rad or m] of joints off the chain, zero unless given. geometry: "collision" or "skeleton", cover [m]:
+    what collision checks use, see `collision`. T_world_base, T_tip_tool (4, 4): the mounting of the base and
+    the tool on the tip; both apply in every function. name: of the robot.
 
     dof: number of velocities. joint_names: the n coordinates of a configuration, in order; joint_types: "R"
     (revolute) or "P" (prismatic) per coordinate. limits: each (n,). frames: every name that fk accepts.
@@ -70,6 +72,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
         *,
         floating: bool | None = None,
         locked: Mapping[str, float] | None = None,
+        geometry: str = "collision",
+        cover: float = 0.01,
         T_world_base: PoseLike | None = None,
         T_tip_tool: PoseLike | None = None,
     ) -> None:
@@ -78,7 +82,10 @@ class Robot(Renamed, RobotBase, KinematicModel):
                 f"Robot needs a Description, got {type(description).__name__}; load_robot takes names and"
                 " paths, Robot.from_urdf, from_dh, from_screws and from_toml what their names say"
             )
-        self._made_from = (description, base, tip, floating, dict(locked or {}))
+        self._ends = (base, tip)
+        self._collision: RobotGeometry | None = None
+        self._geometry, self._cover = geometry, cover
+        self._made_with: dict[str, Any] = {"floating": floating, "locked": dict(locked or {})}
         self._T_world_base = None if T_world_base is None else one_pose(T_world_base, "T_world_base").copy()
         self._T_tip_tool = None if T_tip_tool is None else one_pose(T_tip_tool, "T_tip_tool").copy()
         assembly = kinematics.assemble(description, base, tip, floating=floating, locked=locked)
@@ -201,6 +208,10 @@ class Robot(Renamed, RobotBase, KinematicModel):
     singularity = kinematics.singularity
     workspace = kinematics.workspace
     if TYPE_CHECKING:
+        clearance = checks.clearance
+        collides = checks.collides
+        contact = checks.contact
+        edge = checks.edge
         ik_many_starts = ik.ik_many_starts
         ik_numeric = ik.ik_numeric
         ik_plan = ik.ik_plan
@@ -220,9 +231,51 @@ class Robot(Renamed, RobotBase, KinematicModel):
         ) -> Export: ...
 
     else:
+        clearance, collides, contact, edge = (_Later("cspace.collision") for _ in range(4))
         export = _Later("cspace.export")
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
+
+    @property
+    def collision(self) -> RobotGeometry:
+        """What collision checks use, made when first read: spheres on links, and the pairs that are checked.
+
+        The collision elements of the description, covered by spheres within `cover` [m], or with
+        geometry="skeleton" capsules along the arm. Falsy, with a reason, if there are none; then every check
+        raises InputError. Raises DescriptionError for meshes that are not found or cannot be read.
+        """
+        if self._collision is None:
+            from cspace.collision import robot_geometry
+
+            geometry, cover, mount = self._geometry, self._cover, self._T_world_base
+            self._collision = robot_geometry(
+                self, self.description, geometry=geometry, cover=cover, T_world_base=mount
+            )
+        return self._collision
+
+    def with_spheres(
+        self,
+        spheres: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        *,
+        cover: float | None = None,
+    ) -> Robot:
+        """The same robot with other spheres for collision checks.
+
+        spheres: link → rows (n, 4) of centres in the frame of the link and radii [m], or the path of a file
+        of them (.json, .toml, or a URDF whose collision elements are spheres); links that are not named have
+        none. cover: instead, the excess [m] of the spheres that cover the shapes of the description. Raises
+        UnknownNameError for a link that does not exist, DescriptionError for a file that cannot be read,
+        InputError for a radius that is not positive.
+        """
+        if spheres is None:
+            return self._constructor(geometry="collision", **({} if cover is None else {"cover": cover}))()
+        if cover is not None:
+            raise InputTypeError("give with_spheres either spheres or cover=")
+        from cspace.collision import replace_spheres
+
+        return self._constructor(
+            description=replace_spheres(self.description, spheres), geometry="collision"
+        )()
 
     @property
     def named_poses(self) -> dict[str, Array]:
@@ -281,9 +334,10 @@ class Robot(Renamed, RobotBase, KinematicModel):
 
     def _constructor(self, **changes: Any) -> partial[Robot]:
         """The call that makes this robot, or one with other arguments."""
-        description, base, tip, floating, locked = self._made_from
-        kept = {"locked": locked, "T_world_base": self._T_world_base, "T_tip_tool": self._T_tip_tool}
-        return partial(type(self), description, base, tip, floating=floating, **(kept | changes))
+        kept = {**self._made_with, "geometry": self._geometry, "cover": self._cover}
+        kept |= {"T_world_base": self._T_world_base, "T_tip_tool": self._T_tip_tool}
+        description = changes.pop("description", self.description)
+        return partial(type(self), description, *self._ends, **(kept | changes))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return self._constructor(), ()

@@ -75,6 +75,15 @@ void cluster(std::span<Ball> spheres, std::vector<std::size_t>& sizes) {
     cluster(spheres.subspan(middle), sizes);
 }
 
+// How far the slide of a prismatic joint can take what it carries.
+double travel_of(const model::Joint& joint, std::span<const double> lower, std::span<const double> upper) {
+    if (!joint.prismatic) return 0.0;
+    const auto at = [&](std::span<const double> q) {
+        return std::fabs(joint.ratio * q[std::size_t(joint.coordinate)] + joint.offset);
+    };
+    return std::max(at(lower), at(upper));
+}
+
 }  // namespace
 
 RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, std::span<const double> lower,
@@ -89,7 +98,7 @@ RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, st
     for (const model::Joint& joint : joints) {
         joints_.push_back(rounded_joint(joint));
         const Vec3d& p = joint.T_parent_joint.t;
-        reach += std::hypot(p.x, p.y, p.z);
+        reach += std::hypot(p.x, p.y, p.z) + travel_of(joint, lower, upper);
     }
     slack_ = rounded(tolerance::collision_slack * std::max(1.0, reach));
     bodies_.assign(joints.size() + 1, {0, 0, {0, 0, 0, 0}});
@@ -199,14 +208,7 @@ void RobotData::bound_levers(std::span<const model::Joint> joints, std::span<con
     constexpr double least = 1e-6;  // a joint on whose axis a body lies moves it nevertheless
     constexpr double round_up = 1 + 1e-6;
     const auto radial = [](const Vec3d& p) { return std::hypot(p.x, p.y); };
-    // How far the slide of a prismatic joint can take what it carries.
-    const auto travel = [&](const model::Joint& joint) {
-        if (!joint.prismatic) return 0.0;
-        const auto at = [&](std::span<const double> q) {
-            return std::fabs(joint.ratio * q[std::size_t(joint.coordinate)] + joint.offset);
-        };
-        return std::max(at(lower), at(upper));
-    };
+    const auto travel = [&](const model::Joint& joint) { return travel_of(joint, lower, upper); };
     // Distances of the sphere centres of body b from its own axis and its origin.
     const auto extent = [&](int b, bool from_axis) {
         double farthest = 0;

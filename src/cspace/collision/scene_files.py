@@ -70,7 +70,7 @@ def parse_json(document: Document) -> Table:
     except (RecursionError, ValueError) as error:
         raise document.fault(f"malformed JSON: {error}") from None
     if not isinstance(values, dict):
-        raise document.fault(f"a scene is an object in braces, got {type(values).__name__}")
+        raise document.fault(f"the file must be an object in braces, got {type(values).__name__}")
     return Table(values, document, "", None)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import suggest
+from cspace.errors import InputError, suggest
 from cspace.model.joint import Joint, Loop
 from cspace.model.link import Link
 from cspace.model.structure import ElementError, check_mimics, check_tree, unique_names
@@ -57,6 +57,7 @@ class Description:
 
     name: the robot. links, joints: in file order; every link but one (the root) is the child of one joint.
     loops: joints that close loops. poses: named configurations, joint name → value [rad or m].
+    allowed_pairs: pairs of links that are not checked for collisions, each (link, link, reason).
     T_child at q is the product of the joint transforms from the root (see Joint).
 
     Raises DescriptionError for doubled names, missing links, cycles and two roots.
@@ -68,6 +69,7 @@ class Description:
     loops: tuple[Loop, ...] = ()
     poses: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     provenance: Provenance = field(default_factory=Provenance)
+    allowed_pairs: tuple[tuple[str, str, str], ...] = ()
     ordered_links: tuple[str, ...] = field(init=False, repr=False)
     """Link names from the root outward, depth first, children in file order."""
 
@@ -89,13 +91,22 @@ class Description:
                 if end not in self.link_by_name:
                     error = suggest("link", end, self.link_by_name, owner=f"robot {self.name!r}")
                     raise ElementError(f"loop {loop.name!r}: {error}", loop)
+        store(self, "allowed_pairs", tuple(map(self._checked_pair, self.allowed_pairs)))
         store(self, "poses", MappingProxyType({k: self._checked_pose(k, v) for k, v in self.poses.items()}))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Read-only mappings cannot be pickled; what they were made from can."""
         poses = {pose: dict(values) for pose, values in self.poses.items()}
-        fields = (self.name, self.links, self.joints, self.loops, poses, self.provenance)
+        fields = (self.name, self.links, self.joints, self.loops, poses, self.provenance, self.allowed_pairs)
         return type(self), fields
+
+    def _checked_pair(self, pair: Any) -> tuple[str, str, str]:
+        a, b, reason = pair
+        for name in (a, b):
+            self.link(name)
+        if a == b:
+            raise InputError(f"the allowed pair names link {a!r} twice; a pair is of two different links")
+        return a, b, str(reason)
 
     def _checked_pose(self, pose: str, values: Mapping[str, float]) -> Mapping[str, float]:
         for joint in values:

@@ -34,6 +34,8 @@ def load_robot(
     *,
     floating: bool | None = None,
     locked: Mapping[str, float] | None = None,
+    geometry: str = "collision",
+    cover: float = 0.01,
     package_paths: Sequence[Any] = (),
     xacro_args: Mapping[str, Any] | None = None,
     calibration: str | os.PathLike[str] | None = None,
@@ -44,9 +46,10 @@ def load_robot(
     XML files are distinguished by their content. base, tip: links between which it moves, if the file allows
     several. floating: whether the base moves freely, its six velocities before those of the joints; None:
     if the file says so. locked: joint name → value [rad or m] of joints off the chain from base to tip, such
-    as fingers; zero unless given. package_paths: folders where packages (of package:// and $(find …)) are
-    looked for first. xacro_args: values of the arguments of a xacro file, by name. calibration: the file of
-    one UR arm's joint frames, see model.calibrated.
+    as fingers; zero unless given. geometry: what collision checks use, "collision" (the elements of the file,
+    covered by spheres within `cover` [m]) or "skeleton" (capsules along the arm). package_paths: folders
+    where packages (of package:// and $(find …)) are looked for first. xacro_args: values of the arguments of
+    a xacro file, by name. calibration: the file of one UR arm's joint frames, see model.calibrated.
 
     Raises UnknownNameError for a name that is not in the catalogue, DescriptionError for a file that cannot
     be read, InputError where the tip is a choice that must be made, MissingExtraError for xacro without the
@@ -55,7 +58,7 @@ def load_robot(
     description = load_description(
         name_or_path, package_paths=package_paths, xacro_args=xacro_args, calibration=calibration
     )
-    return Robot(description, base, tip, floating=floating, locked=locked)
+    return Robot(description, base, tip, floating=floating, locked=locked, geometry=geometry, cover=cover)
 
 
 def load_description(

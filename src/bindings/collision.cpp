@@ -1,0 +1,142 @@
+// The compiled half of cspace.collision: robots made of spheres, scenes, and checks of one in the other.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/tuple.h>
+
+#include "arrays.hpp"
+#include "arrays_in_place.hpp"
+#include "bindings.hpp"
+#include "cspace/kinematics/forward.hpp"
+#include "library/collision_checker.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace cspace;
+using namespace cspace::collision;
+
+namespace {
+
+using Integers = Plain<const std::int64_t>;
+
+void require(bool fits, const char* rule) {
+    if (!fits) throw nb::value_error(rule);
+}
+
+std::vector<std::pair<int, int>> read_pairs(const Integers& given) {
+    require(given.ndim() == 2 && given.shape(1) == 2, "pairs must be an array (n, 2)");
+    std::vector<std::pair<int, int>> pairs;
+    for (npy_intp k = 0; k < given.size; k += 2)
+        pairs.emplace_back(int(given.data[k]), int(given.data[k + 1]));
+    return pairs;
+}
+
+// joints (n, 21): the pose T_parent_joint by rows, parent, coordinate, ratio, offset, prismatic.
+std::shared_ptr<RobotData> make_robot(const ConstDoubles& joints, const ConstDoubles& bounds,
+                                      const Integers& link_bodies, const ConstDoubles& spheres,
+                                      const Integers& sphere_links, const Integers& pairs) {
+    constexpr npy_intp joint_width = 21;
+    require(joints.ndim() == 2 && joints.shape(1) == joint_width, "joints must be an array (n, 21)");
+    require(bounds.ndim() == 2 && bounds.shape(0) == 2, "bounds must be an array (2, n)");
+    require(spheres.ndim() == 2 && spheres.shape(1) == 4 && spheres.shape(0) == sphere_links.size,
+            "spheres must be an array (n, 4), with the link of each");
+    std::vector<model::Joint> read;
+    for (const double* row = joints.data; row < joints.data + joints.size; row += joint_width)
+        read.push_back({kinematics::read_matrix(row), int(row[16]), int(row[17]), row[18], row[19],
+                        row[20] != 0.0, 0.0});
+    std::vector<Sphere> balls;
+    for (npy_intp k = 0; k < sphere_links.size; ++k) {
+        const double* row = spheres.data + 4 * k;
+        balls.push_back({{row[0], row[1], row[2]}, row[3], int(sphere_links.data[k])});
+    }
+    const std::vector<int> bodies(link_bodies.data, link_bodies.data + link_bodies.size);
+    const std::size_t n = std::size_t(bounds.shape(1));
+    return std::make_shared<RobotData>(read, int(n), std::span(bounds.data, n), std::span(bounds.data + n, n),
+                                       bodies, balls, read_pairs(pairs));
+}
+
+std::shared_ptr<SceneData> make_scene(const ConstDoubles& boxes, const ConstDoubles& capsules,
+                                      const ConstDoubles& cylinders, const ConstDoubles& half_spaces,
+                                      const Integers& owners) {
+    const auto rows = [](const ConstDoubles& given, npy_intp width) {
+        require(given.ndim() == 2 && given.shape(1) == width, "primitives have rows of another width");
+        return std::span(given.data, std::size_t(given.size));
+    };
+    const std::vector<int> numbers(owners.data, owners.data + owners.size);
+    const Primitives given = {rows(boxes, 15), rows(capsules, 7), rows(cylinders, 8), rows(half_spaces, 4),
+                              numbers};
+    require(boxes.shape(0) + capsules.shape(0) + cylinders.shape(0) + half_spaces.shape(0) == owners.size,
+            "every primitive needs an owner");
+    return std::make_shared<SceneData>(given);
+}
+
+void require_configuration(const Checker& checker, const ConstDoubles& q) {
+    require(q.ndim() == 1 && q.size == checker.dof(), "a configuration must be an array (dof,)");
+}
+
+// What touches: (whether it is a link, the link, the object or other link).
+using Found = std::tuple<bool, int, int>;
+Found named_contact(const Checker& checker, const Contact& contact) {
+    return {contact.is_pair, contact.link,
+            contact.is_pair ? contact.other : checker.scene_data().owner(contact.other)};
+}
+
+std::optional<Found> find_contact(const Checker& checker, const ConstDoubles& q) {
+    require_configuration(checker, q);
+    const Checker::Borrowed memory = checker.borrow_workspace();
+    if (checker.is_free(q.data, *memory)) return std::nullopt;
+    return named_contact(checker, memory->w.contact);
+}
+
+Plain<std::uint8_t> check_rows(const Checker& checker, const ConstDoubles& q, int threads) {
+    require(q.ndim() == 2 && q.shape(1) == checker.dof(), "configurations must be an array (n, dof)");
+    Plain<std::uint8_t> found({q.shape(0)});
+    const nb::gil_scoped_release release;
+    checker.check_rows(q.data, std::size_t(q.shape(0)), found.data, threads);
+    return found;
+}
+
+// Verdict, contact and its place on the edge, 0 … 1. A resolution of zero: the edge is proved.
+std::tuple<int, std::optional<Found>, double> check_edge(const Checker& checker, const ConstDoubles& from,
+                                                         const ConstDoubles& to, double resolution) {
+    require_configuration(checker, from);
+    require_configuration(checker, to);
+    const Checker::Borrowed memory = checker.borrow_workspace();
+    const Verdict verdict = resolution > 0 ? checker.sample_edge(from.data, to.data, resolution, *memory)
+                                           : checker.prove_edge(from.data, to.data, *memory);
+    if (verdict != Verdict::blocked) return {int(verdict), std::nullopt, 0.0};
+    const Contact& contact = memory->w.contact;
+    return {int(verdict), named_contact(checker, contact), 0.5 + 0.5 * double(contact.at)};
+}
+
+// Distance, gradient, whether another pair is as near, and the nearest pair.
+std::tuple<double, Doubles, bool, std::optional<Found>> find_clearance(const Checker& checker,
+                                                                       const ConstDoubles& q) {
+    require_configuration(checker, q);
+    const Clearance found = checker.clearance(q.data);
+    const Doubles gradient({npy_intp(found.gradient.size())}, found.gradient.data());
+    std::optional<Found> nearest;
+    if (found.nearest.other >= 0) nearest = named_contact(checker, found.nearest);
+    return {found.distance, gradient, found.is_crease, nearest};
+}
+
+}  // namespace
+
+void bind_collision(nb::module_& m) {
+    nb::class_<RobotData>(m, "CollisionRobot", "A robot made of spheres.")
+        .def(nb::new_(&make_robot), "joints"_a, "bounds"_a, "link_bodies"_a, "spheres"_a, "sphere_links"_a,
+             "pairs"_a);
+    nb::class_<SceneData>(m, "CollisionScene", "Obstacles in the frame of a robot's base.")
+        .def(nb::new_(&make_scene), "boxes"_a, "capsules"_a, "cylinders"_a, "half_spaces"_a, "owners"_a);
+    nb::class_<Checker>(m, "CollisionChecker", "A robot among obstacles.")
+        .def(nb::new_([](std::shared_ptr<const RobotData> robot, std::shared_ptr<const SceneData> scene,
+                         double margin, const Integers& allowed) {
+                 return std::make_shared<Checker>(robot, scene, margin, read_pairs(allowed));
+             }),
+             "robot"_a, "scene"_a, "margin"_a, "allowed"_a)
+        .def("find_contact", &find_contact, "q"_a, "What touches at a configuration (dof,), None if nothing.")
+        .def("check_rows", &check_rows, "q"_a, "threads"_a,
+             "A byte per configuration (n, dof): 1 where something touches.")
+        .def("check_edge", &check_edge, "start"_a, "end"_a, "resolution"_a, "Verdict, contact and its place.")
+        .def("find_clearance", &find_clearance, "q"_a,
+             "Distance, gradient, whether another pair is as near, the nearest pair.");
+}

@@ -1,0 +1,153 @@
+"""A robot in a scene, compiled: its links with attached objects, the obstacles, and the names of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from cspace._core import CollisionChecker, CollisionRobot, CollisionScene
+from cspace.arrays import bounded_number
+from cspace.collision.pack_scene import PackedScene, pack_scene
+from cspace.collision.robot_geometry import RobotGeometry, split_rows
+from cspace.collision.scene import Scene
+from cspace.errors import InputError, InputTypeError
+from cspace.shapes import cover_shape
+from cspace.tolerances import LARGEST_NUMBER
+
+KEPT_CHECKERS: Final = 8
+"""Scenes whose checkers a geometry keeps: a planner needs one, and an edit makes a new scene."""
+
+ATTACHED_COVER: Final = 0.005
+"""Excess [m] of the spheres that cover an attached object."""
+
+NOTHING: Final = Scene()
+"""The scene without obstacles."""
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedRobot:
+    """The links of a robot with the objects that it carries, in the order of their bodies, compiled."""
+
+    core: CollisionRobot
+    links: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Checker:
+    """The compiled checks of a robot in a scene, and the names of links and obstacles by their numbers."""
+
+    core: CollisionChecker
+    robot: CheckedRobot
+    obstacles: tuple[str, ...]
+
+    def name_pair(self, found: tuple[bool, int, int]) -> tuple[str, str]:
+        """The names of a contact: a link, and an obstacle or another link."""
+        is_pair, link, other = found
+        return self.robot.links[link], (self.robot.links if is_pair else self.obstacles)[other]
+
+
+def checker_of(geometry: RobotGeometry, scene: Scene | None, margin: float) -> Checker:
+    """The checks of a robot in a scene; those of the last scenes are kept.
+
+    scene: None without obstacles. margin: by how much everything must keep away from everything else [m].
+    Raises InputError for a robot without collision geometry, for shapes that no check reads, for names that
+    do not fit and a margin that is negative; InputTypeError for a scene that is not one.
+    """
+    scene = NOTHING if scene is None else scene
+    if not isinstance(scene, Scene):
+        raise InputTypeError(
+            f"scene is a {type(scene).__name__}; it must be a cspace.Scene, such as cs.Scene([cs.Box(…)])"
+        )
+    gap = bounded_number(margin, "margin", 0.0, "it must be a length [m], 0 or more", largest=LARGEST_NUMBER)
+    kept, key = geometry._kept, (scene.version, gap)
+    checker: Checker | None = kept.get(key)
+    if checker is None:
+        checker = make_checker(geometry, scene, gap)
+        while len(kept) >= KEPT_CHECKERS:
+            kept.pop(next(iter(kept)), None)
+        kept[key] = checker
+    return checker
+
+
+def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checker:
+    """As checker_of, made anew."""
+    if not geometry:
+        raise InputError(f"{geometry.robot} cannot be checked for collisions: {geometry.reason}")
+    scene.check_links({*geometry.links, *geometry.frames}, geometry.frames, geometry.robot)
+    robot = add_attached(geometry, scene)
+    packed = pack_scene(scene, geometry.T_world_base)
+    refuse_unread(packed)
+    capsules = np.concatenate([packed.capsules, packed.points[:, [0, 1, 2, 0, 1, 2, 3]]])
+    owners = np.concatenate(
+        [
+            packed.box_object,
+            packed.capsule_object,
+            packed.point_object,
+            packed.cylinder_object,
+            packed.half_space_object,
+        ]
+    ).astype(np.int64)
+    core = CollisionScene(packed.boxes, capsules, packed.cylinders, packed.half_spaces, owners)
+    number = {name: k for k, name in enumerate(packed.names)}
+    touching = touching_pairs(scene)
+    allowed = [
+        (k, number[other])
+        for k, link in enumerate(robot.links)
+        for other in number
+        if frozenset((link, other)) in touching
+    ]
+    pairs = np.array(allowed, dtype=np.int64).reshape(-1, 2)
+    return Checker(CollisionChecker(robot.core, core, margin, pairs), robot, packed.names)
+
+
+def refuse_unread(packed: PackedScene) -> None:
+    """Complain about obstacles that checks do not read yet."""
+    for kind, owners in (("hull", packed.hull_object), ("mesh or height field", packed.mesh_object)):
+        if len(owners):
+            raise InputError(
+                f"{packed.names[owners[0]]!r} is a {kind}, which checks of robots do not read yet; use boxes,"
+                " spheres, capsules, cylinders, half spaces or point clouds, such as its cover by spheres"
+            )
+
+
+def touching_pairs(scene: Scene) -> set[frozenset[str]]:
+    """The pairs of names that may touch: those allowed, and what attached objects may touch."""
+    pairs = {frozenset(pair) for pair in scene.allowed}
+    for name, attachment in scene.attached.items():
+        pairs |= {frozenset((name, other)) for other in attachment.touch}
+    return pairs
+
+
+def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
+    """The robot with the objects that it carries: their covers are spheres of the bodies that carry them.
+
+    An attached object is checked against all links of other bodies, and against other attached objects.
+    """
+    if not scene.attached and not scene.allowed:
+        return CheckedRobot(geometry.compiled, geometry.links)
+    links = list(geometry.links)
+    bodies = geometry.link_bodies.tolist()
+    parts = split_rows(geometry.spheres, geometry.sphere_links)
+    checked = {frozenset((links[a], links[b])) for a, b in geometry.pairs.tolist()}
+    for name, attachment in scene.attached.items():
+        joint, T_joint_frame = geometry.frames[attachment.frame]
+        solid = scene[name].placed(T_joint_frame @ attachment.T_frame_object)
+        cover = cover_shape(solid, ATTACHED_COVER)
+        checked |= {frozenset((name, links[k])) for k in range(len(links)) if bodies[k] != joint + 1}
+        links.append(name)
+        bodies.append(joint + 1)
+        parts.append(cover.spheres)
+    checked -= touching_pairs(scene)
+    order = sorted(range(len(links)), key=lambda k: bodies[k])
+    names = tuple(links[k] for k in order)
+    number = {name: k for k, name in enumerate(names)}
+    pairs = sorted(tuple(sorted(number[name] for name in pair)) for pair in checked)
+    core = geometry.compile(
+        np.array([bodies[k] for k in order], dtype=np.int64),
+        np.concatenate([parts[k] for k in order]),
+        np.repeat(np.arange(len(order)), [len(parts[k]) for k in order]).astype(np.int64),
+        np.array(pairs, dtype=np.int64).reshape(-1, 2),
+    )
+    return CheckedRobot(core, names)

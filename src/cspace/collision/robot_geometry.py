@@ -1,0 +1,255 @@
+"""The collision geometry of a robot: spheres on its links, and the pairs of links that are checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace._core import CollisionRobot
+from cspace.arrays import Array, positive_number
+from cspace.collision.link_pairs import SAMPLES, Allowed, adjacent_pairs, always_touching
+from cspace.collision.link_shapes import Solids, described_solids, skeleton_solids
+from cspace.errors import InputError, suggest
+from cspace.kinematics import Assembly, KinematicModel, random_configurations
+from cspace.model import Description
+from cspace.shapes import cover_shape
+from cspace.spatial.poses import invert_pose, transform_points
+from cspace.tables import one_line
+from cspace.tolerances import LARGEST_NUMBER
+
+GEOMETRIES: Final = ("collision", "skeleton")
+"""What the geometry of a robot is made from: the elements of its description, or capsules along the arm."""
+
+FREE_TRAVEL: Final = 1.0
+"""How far prismatic joints without limits move in samples [m]."""
+
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class RobotGeometry:
+    """Spheres that stand for the links of a robot in collision checks; falsy, with a reason, without any.
+
+    robot: the name. source: what the spheres are made from. reason: why there are none. links: names of the
+    links with spheres; link_bodies (n,): what carries each, 0 the base and k + 1 joint k. spheres (m, 4):
+    centres and radii [m] in the frame of the body; sphere_links (m,): the link of each. excess [m]: no sphere
+    sticks out of the shapes of its link by more. pairs (k, 2): links that are checked against each other.
+    allowed: pairs of links that are not, with the reason.
+
+    joints (j, 21): T_parent_joint by rows, parent, coordinate, ratio, offset, prismatic, the base at the
+    origin. lower, upper (dof,): limits. joint_names. T_world_base (4, 4). frames: name → (joint that carries
+    it or −1, its pose (4, 4) there).
+    """
+
+    robot: str
+    source: str
+    reason: str
+    links: tuple[str, ...]
+    link_bodies: Integers
+    spheres: Array
+    sphere_links: Integers
+    excess: float
+    pairs: Integers
+    allowed: tuple[Allowed, ...]
+    joints: Array
+    lower: Array
+    upper: Array
+    joint_names: tuple[str, ...]
+    T_world_base: Array
+    frames: Mapping[str, tuple[int, Array]]
+    _kept: dict[Any, Any] = field(default_factory=dict, repr=False)
+    """Compiled checks of the last scenes, see checker.py."""
+
+    def __bool__(self) -> bool:
+        return len(self.spheres) > 0
+
+    def __len__(self) -> int:
+        """The number of spheres."""
+        return len(self.spheres)
+
+    @property
+    def collision(self) -> RobotGeometry:
+        """Itself, so that checks take it like a Robot."""
+        return self
+
+    @property
+    def dof(self) -> int:
+        """The number of coordinates of a configuration."""
+        return len(self.joint_names)
+
+    @cached_property
+    def prismatic(self) -> tuple[int, ...]:
+        """The coordinates that move prismatic joints."""
+        return tuple(sorted({int(row[17]) for row in self.joints if row[20]}))
+
+    @cached_property
+    def compiled(self) -> CollisionRobot:
+        """The compiled robot without attached objects."""
+        return self.compile(self.link_bodies, self.spheres, self.sphere_links, self.pairs)
+
+    def compile(
+        self, link_bodies: Integers, spheres: Array, sphere_links: Integers, pairs: Integers
+    ) -> CollisionRobot:
+        """The compiled robot with these links, which follow their bodies.
+
+        Raises InputError for a prismatic joint without limits.
+        """
+        bounds = np.array([self.lower, self.upper])
+        for k in self.prismatic:
+            if not np.isfinite(bounds[:, k]).all():
+                raise InputError(
+                    f"prismatic joint {self.joint_names[k]!r} of {self.robot} has no limits; collision checks"
+                    " need them, since rounding grows with its travel"
+                )
+        return CollisionRobot(self.joints, bounds, link_bodies, spheres, sphere_links, pairs)
+
+    def __repr__(self) -> str:
+        if not self:
+            return one_line("RobotGeometry", f"of {self.robot}: empty, {self.reason}")
+        return one_line(
+            "RobotGeometry",
+            f"of {self.robot}: {len(self)} spheres on {len(self.links)} links, {len(self.pairs)} pairs of"
+            f" links checked; {self.source}, excess {1000 * self.excess:.3g} mm",
+        )
+
+
+def robot_geometry(
+    robot: KinematicModel,
+    description: Description,
+    *,
+    geometry: str = "collision",
+    cover: float = 0.01,
+    T_world_base: Array | None = None,
+) -> RobotGeometry:
+    """The collision geometry of a robot.
+
+    geometry: "collision" takes the collision elements of the description: spheres as they are, other shapes
+    and meshes covered by spheres that stick out by at most `cover` [m]. "skeleton" takes capsules along the
+    arm, which show how checks work but are not the shape of the robot. Links off the chain count at the
+    values at which their joints are locked. T_world_base (4, 4): the mount that the robot has.
+
+    Links that a joint connects, and links that touch at each of 256 random configurations, are not checked
+    against each other; nor are pairs that the description allows. Raises DescriptionError for meshes that
+    cannot be read, UnknownNameError for another geometry, InputError for a cover that is not positive.
+    """
+    if geometry not in GEOMETRIES:
+        raise suggest("geometry", geometry, GEOMETRIES)
+    excess = positive_number(cover, "cover", "it must be one positive number [m]", largest=LARGEST_NUMBER)
+    mount = np.eye(4) if T_world_base is None else T_world_base
+    assembly = robot._assembly
+    frames = frames_on_base(assembly, mount)
+    skeleton = geometry == "skeleton"
+    solids = skeleton_solids(assembly) if skeleton else described_solids(description, frames)
+    links, link_bodies, spheres, sphere_links, most = place_spheres(
+        {} if robot.floating else solids, frames, excess
+    )
+    samples = random_configurations(robot.limits, robot.joint_types, SAMPLES, rng=0, reach=FREE_TRAVEL)
+    centers = [
+        transform_points((robot.fk(samples, name) @ invert_pose(frames[name][1]))[:, None], own)
+        for name, own in zip(links, split_rows(spheres[:, :3], sphere_links), strict=True)
+    ]
+    adjacent = adjacent_pairs(link_bodies.tolist(), assembly.parent.tolist())
+    radii = split_rows(spheres[:, 3], sphere_links)
+    pairs, allowed = choose_pairs(description, links, link_bodies, adjacent, centers, radii)
+    return RobotGeometry(
+        robot=robot.name,
+        source="capsules of the skeleton" if skeleton else "collision elements of the description",
+        reason="" if len(spheres) else missing_reason(robot, description),
+        links=links,
+        link_bodies=link_bodies,
+        spheres=spheres,
+        sphere_links=sphere_links,
+        excess=most,
+        pairs=np.array(pairs, dtype=np.int64).reshape(-1, 2),
+        allowed=tuple(allowed),
+        joints=joint_rows(assembly, mount),
+        lower=np.array(robot.limits.lower),
+        upper=np.array(robot.limits.upper),
+        joint_names=robot.joint_names,
+        T_world_base=mount,
+        frames=frames,
+    )
+
+
+def frames_on_base(assembly: Assembly, T_world_base: Array) -> dict[str, tuple[int, Array]]:
+    """Frame → (joint that carries it or −1, its pose there), those of the base as seen from the base."""
+    T_base_world = invert_pose(T_world_base)
+    frames = {}
+    for name, f in assembly.frame_index.items():
+        joint, T = int(assembly.frame_joint[f]), assembly.T_joint_frame[f]
+        frames[name] = (joint, T_base_world @ T if joint < 0 else T)
+    return frames
+
+
+def joint_rows(assembly: Assembly, T_world_base: Array) -> Array:
+    """The joints as rows (j, 21), see RobotGeometry."""
+    placed = np.array(assembly.T_parent_joint)
+    on_base = assembly.parent < 0
+    placed[on_base] = invert_pose(T_world_base) @ placed[on_base]
+    columns = [assembly.parent, assembly.coordinate, assembly.ratio, assembly.offset, assembly.prismatic]
+    return np.column_stack([placed.reshape(-1, 16), *columns]).astype(np.float64)
+
+
+def missing_reason(robot: KinematicModel, description: Description) -> str:
+    """Why a robot has no collision geometry, and what to do."""
+    if robot.floating:
+        return f"the base of {robot.name} is floating, and checks need a fixed one; give base= and tip="
+    where = "the catalogue" if "collision" in description.provenance.missing else "its description"
+    return (
+        f"{where} has no collision geometry for {robot.name}; give spheres by robot.with_spheres(…), or load"
+        ' the robot with geometry="skeleton" for capsules along the arm'
+    )
+
+
+def place_spheres(
+    solids: Solids, frames: Mapping[str, tuple[int, Array]], cover: float
+) -> tuple[tuple[str, ...], Integers, Array, Integers, float]:
+    """Links in the order of their bodies, the bodies, spheres in the frames of bodies, their links, the
+    excess."""
+    order = sorted(solids, key=lambda name: frames[name][0])
+    rows, owners, most = [np.zeros((0, 4))], [], 0.0
+    for number, name in enumerate(order):
+        for solid in solids[name]:
+            found = cover_shape(solid, cover)
+            most = max(most, found.excess)
+            placed = found.spheres.copy()
+            placed[:, :3] = transform_points(frames[name][1], placed[:, :3])
+            rows.append(placed)
+            owners += [number] * len(placed)
+    bodies = np.array([frames[name][0] + 1 for name in order], dtype=np.int64)
+    return tuple(order), bodies, np.concatenate(rows), np.array(owners, dtype=np.int64), most
+
+
+def split_rows(rows: Array, owners: Integers) -> list[Array]:
+    """The rows of each owner, whose numbers ascend."""
+    return np.split(rows, np.flatnonzero(np.diff(owners)) + 1) if len(rows) else []
+
+
+def choose_pairs(
+    description: Description,
+    links: Sequence[str],
+    bodies: Integers,
+    adjacent: Sequence[tuple[int, int]],
+    centers: Sequence[Array],
+    radii: Sequence[Array],
+) -> tuple[list[tuple[int, int]], list[Allowed]]:
+    """The pairs of links that are checked, by number, and the others with their reasons.
+
+    centers: per link those of its spheres at samples (samples, n, 3) [m]; radii (n,).
+    """
+    reasons = {pair: "adjacent" for pair in adjacent}
+    number = {name: k for k, name in enumerate(links)}
+    for a, b, why in description.allowed_pairs:
+        if a in number and b in number:
+            reasons[min(number[a], number[b]), max(number[a], number[b])] = why
+    every = [(a, b) for a in range(len(links)) for b in range(a + 1, len(links)) if bodies[a] != bodies[b]]
+    always = f"touch at each of {SAMPLES} random configurations"
+    open_pairs = [pair for pair in every if pair not in reasons]
+    reasons |= dict.fromkeys(always_touching(open_pairs, centers, radii), always)
+    allowed = [(links[a], links[b], reasons[a, b]) for a, b in every if (a, b) in reasons]
+    return [pair for pair in every if pair not in reasons], allowed
