@@ -4,7 +4,7 @@ file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels
 list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
 # Kernels that work on packs of four numbers: an AVX-512 copy of them is no faster than that for AVX2
 # (docs/decisions/compiled-boundary.md). Their headers say CSPACE_NARROW_KERNEL.
-set(narrow_kernels ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision)
+set(narrow_kernels ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision search)
 list(TRANSFORM narrow_kernels PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/)
 list(TRANSFORM narrow_kernels APPEND .cpp)
 set(wide_files ${kernel_files})
@@ -67,9 +67,10 @@ if(has_wide_moves)
                APPEND PROPERTY COMPILE_OPTIONS -mmove-max=256 -mstore-max=256)
 endif()
 
-# Verdicts on edges are the same on every machine: no product and sum are rounded at once.
+# Verdicts on edges and nearest nodes are the same on every machine: no product and sum are rounded at once.
 if(NOT MSVC)
-  set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/collision.cpp APPEND PROPERTY COMPILE_OPTIONS -ffp-contract=off)
+  set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/collision.cpp ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/search.cpp
+               APPEND PROPERTY COMPILE_OPTIONS -ffp-contract=off)
 endif()
 
 # The library: what calls the kernels and what needs no instruction set of its own, compiled once behind plain

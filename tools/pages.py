@@ -19,6 +19,7 @@ COURSE += (
     "export",
     "shapes",
     "collision",
+    "planning",
     "maps",
     "navigation",
     "planners",

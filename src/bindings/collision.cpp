@@ -1,13 +1,12 @@
 // The compiled half of cspace.collision: robots made of spheres, scenes, and checks of one in the other.
+#include "collision.hpp"
+
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/tuple.h>
 
-#include "arrays.hpp"
-#include "arrays_in_place.hpp"
 #include "bindings.hpp"
 #include "cspace/kinematics/forward.hpp"
-#include "library/collision_checker.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -17,10 +16,6 @@ using namespace cspace::collision;
 namespace {
 
 using Integers = Plain<const std::int64_t>;
-
-void require(bool fits, const char* rule) {
-    if (!fits) throw nb::value_error(rule);
-}
 
 std::vector<std::pair<int, int>> read_pairs(const Integers& given) {
     require(given.ndim() == 2 && given.shape(1) == 2, "pairs must be an array (n, 2)");
@@ -73,18 +68,11 @@ void require_configuration(const Checker& checker, const ConstDoubles& q) {
     require(q.ndim() == 1 && q.size == checker.dof(), "a configuration must be an array (dof,)");
 }
 
-// What touches: (whether it is a link, the link, the object or other link).
-using Found = std::tuple<bool, int, int>;
-Found named_contact(const Checker& checker, const Contact& contact) {
-    return {contact.is_pair, contact.link,
-            contact.is_pair ? contact.other : checker.scene_data().owner(contact.other)};
-}
-
-std::optional<Found> find_contact(const Checker& checker, const ConstDoubles& q) {
+std::optional<NamedContact> find_contact(const Checker& checker, const ConstDoubles& q) {
     require_configuration(checker, q);
     const Checker::Borrowed memory = checker.borrow_workspace();
     if (checker.is_free(q.data, *memory)) return std::nullopt;
-    return named_contact(checker, memory->w.contact);
+    return name_contact(checker, memory->w.contact);
 }
 
 Plain<std::uint8_t> check_rows(const Checker& checker, const ConstDoubles& q, int threads) {
@@ -96,8 +84,9 @@ Plain<std::uint8_t> check_rows(const Checker& checker, const ConstDoubles& q, in
 }
 
 // Verdict, contact and its place on the edge, 0 … 1. A resolution of zero: the edge is proved.
-std::tuple<int, std::optional<Found>, double> check_edge(const Checker& checker, const ConstDoubles& from,
-                                                         const ConstDoubles& to, double resolution) {
+std::tuple<int, std::optional<NamedContact>, double> check_edge(const Checker& checker,
+                                                                const ConstDoubles& from,
+                                                                const ConstDoubles& to, double resolution) {
     require_configuration(checker, from);
     require_configuration(checker, to);
     const Checker::Borrowed memory = checker.borrow_workspace();
@@ -105,18 +94,16 @@ std::tuple<int, std::optional<Found>, double> check_edge(const Checker& checker,
                                            : checker.prove_edge(from.data, to.data, *memory);
     if (verdict != Verdict::blocked) return {int(verdict), std::nullopt, 0.0};
     const Contact& contact = memory->w.contact;
-    return {int(verdict), named_contact(checker, contact), 0.5 + 0.5 * double(contact.at)};
+    return {int(verdict), name_contact(checker, contact), 0.5 + 0.5 * double(contact.at)};
 }
 
 // Distance, gradient, whether another pair is as near, and the nearest pair.
-std::tuple<double, Doubles, bool, std::optional<Found>> find_clearance(const Checker& checker,
-                                                                       const ConstDoubles& q) {
+std::tuple<double, Doubles, bool, std::optional<NamedContact>> find_clearance(const Checker& checker,
+                                                                              const ConstDoubles& q) {
     require_configuration(checker, q);
     const Clearance found = checker.clearance(q.data);
     const Doubles gradient({npy_intp(found.gradient.size())}, found.gradient.data());
-    std::optional<Found> nearest;
-    if (found.nearest.other >= 0) nearest = named_contact(checker, found.nearest);
-    return {found.distance, gradient, found.is_crease, nearest};
+    return {found.distance, gradient, found.is_crease, name_contact(checker, found.nearest)};
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         maps,
         model,
         navigation,
+        planning,
         plot,
         robots,
         shapes,
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
+    from cspace.plan_motion import plan, plan_many
     from cspace.robot import Robot
     from cspace.robots import load_robot
     from cspace.shapes import (
@@ -68,6 +70,9 @@ __all__ = [
     "model",
     "navigate",
     "navigation",
+    "plan",
+    "plan_many",
+    "planning",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
@@ -109,6 +114,9 @@ _LATER = {
     "model": "",
     "navigate": "cspace.navigation",
     "navigation": "",
+    "plan": "cspace.plan_motion",
+    "plan_many": "cspace.plan_motion",
+    "planning": "",
     "plot": "",
     "robots": "",
     "shapes": "",

@@ -130,16 +130,21 @@ Checker::Borrowed Checker::borrow_workspace() const {
     }
     return {new WorkspaceMemory(robot(), scene_.n), {this}};
 }
+void Checker::reset_workspace(WorkspaceMemory& memory) const {
+    memory.w.blocks = 0;
+    kernels::prepare_workspace(robot(), memory.w);
+}
 void Checker::GiveBack::operator()(WorkspaceMemory* memory) const {
     const std::lock_guard<std::mutex> lock(checker->busy_);
     checker->spare_.emplace_back(memory);
 }
 
 void Checker::round_edge(const double* from, const double* to, float* a, float* b) const {
-    constexpr double turn = 6.28318530717958647692;
+    constexpr double turn = 6.28318530717958647692, half_turn = turn / 2;
     for (int k = 0; k < dof(); ++k) {
-        const double shift =
-            shifts_[std::size_t(k)] ? turn * std::round(0.5 * (from[k] + to[k]) / turn) : 0.0;
+        const double middle = 0.5 * (from[k] + to[k]);
+        const bool is_far = std::fabs(middle) > half_turn && shifts_[std::size_t(k)];
+        const double shift = is_far ? turn * std::round(middle / turn) : 0.0;
         a[k] = float(from[k] - shift), b[k] = float(to[k] - shift);
     }
 }

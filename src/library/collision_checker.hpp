@@ -55,6 +55,10 @@ class Checker {
     };
     using Borrowed = std::unique_ptr<WorkspaceMemory, GiveBack>;
     Borrowed borrow_workspace() const;
+    // Forgets what the checks before have found, so that those to come cost the same wherever they run.
+    void reset_workspace(WorkspaceMemory& memory) const;
+    // Whether 2π more in a coordinate changes nothing.
+    bool has_period(int coordinate) const { return shifts_[std::size_t(coordinate)]; }
 
     // One configuration (dof,); false and w.contact if something touches.
     bool is_free(const double* q, WorkspaceMemory& memory) const;

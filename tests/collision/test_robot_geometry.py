@@ -8,10 +8,10 @@ import pytest
 
 import cspace as cs
 from collision.cells import random_robot
+from collision.motion_bench import ROBOTS, published_robot
 from cspace.errors import CspaceError, InputError, UnknownNameError
 from cspace.model import Description, Geometry, Joint, Link
 from cspace.model.values import from_rpy
-from data import shared_data
 from model.random_robots import random_pose
 
 
@@ -185,30 +185,8 @@ def test_geometry_that_checks_cannot_use_is_named():
         assert lost.collision
 
 
-def published_robot(name):
-    """A robot of the shared data with its published spheres."""
-    data = json.loads((shared_data() / "planning" / f"robot_{name}.json").read_text())
-    links = dict.fromkeys(j[end] for j in data["joints"] for end in ("parent", "child"))
-    joints = []
-    for j in data["joints"]:
-        limits = (
-            {k: j["limit"][k] for k in ("lower", "upper")} if j["type"] in ("revolute", "prismatic") else {}
-        )
-        origin = from_rpy(tuple(j["xyz"]), tuple(j["rpy"]))
-        joints.append(
-            Joint(j["name"], j["type"], j["parent"], j["child"], origin, j.get("axis") or (0, 0, 1), **limits)
-        )
-    disabled = tuple((a, b, why) for a, b, why in data["srdf_disabled_pairs"] if a in links and b in links)
-    tree = Description(name, tuple(map(Link, links)), tuple(joints), allowed_pairs=disabled)
-    tip = next(j["child"] for j in data["joints"] if j["name"] == data["planned_joints"][-1])
-    rows = {}
-    for sphere in data["spheres"]:
-        rows.setdefault(sphere["link"], []).append([*sphere["center"], sphere["radius"]])
-    return cs.Robot(tree, tip=tip).with_spheres(rows), data
-
-
 @pytest.mark.data
-@pytest.mark.parametrize("name", ["panda", "ur5", "fetch"])
+@pytest.mark.parametrize("name", ROBOTS)
 def test_published_robots_have_the_pairs_that_their_files_leave(name):
     robot, data = published_robot(name)
     geometry = robot.collision

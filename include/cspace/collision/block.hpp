@@ -41,12 +41,19 @@ class Block {
     unsigned hit = 0;             // that touch something
     unsigned unsure = 0;          // that might within their motion
 
-    // Begins a block at the configurations q, one entry per coordinate.
-    CSPACE_INLINE void place(const Floats* q) {
-        place_frames(robot, q, frames);
+    // Begins a block: the bodies up to one are placed at the configurations q, one entry per coordinate.
+    CSPACE_INLINE void begin(const Floats* q, int body) {
+        place_frames(robot, q, 0, body, frames);
+        placed_ = body;
         ++w.stamp;
         ++w.blocks;
         hit = unsure = 0;
+    }
+    int last_placed() const { return placed_; }
+    // Places the other bodies too.
+    CSPACE_INLINE void place_rest(const Floats* q) {
+        place_frames(robot, q, placed_, robot.n_joints, frames);
+        placed_ = robot.n_joints;
     }
 
     CSPACE_INLINE const Place& body_place(int x) {
@@ -142,7 +149,8 @@ class Block {
                 const Floats gap = square_gap(scene, near.begin[k], at, radius);
                 marks.add(gap, r + radius);
             }
-            if (settle(marks) && motion.is_done(*this)) return record_primitive(l, at, r, near);
+            if (settle(marks) && motion.is_done(*this))
+                return record_primitive(l, group.first + s, at, r, near);
         }
         return false;
     }
@@ -174,11 +182,30 @@ class Block {
                     const int other = w.near_spheres[k];
                     marks.add(square_distance(at, all[other]), r + robot.spheres[other].r);
                 }
-                if (settle(marks) && motion.is_done(*this)) return record({links.a, links.b, true, 0});
+                if (settle(marks) && motion.is_done(*this))
+                    return record_pair(links, group.first + s, at, r, count);
             }
         }
         return false;
     }
+    // Whether what touched last touches again, alone: its bodies have their frames.
+    CSPACE_INLINE bool test_touch(const Touch& last) {
+        const Ball& ball = robot.spheres[last.sphere];
+        const Place at = place_ball(frames[last.body], ball);
+        float radius;
+        Floats gap;
+        if (last.other_body < 0) {
+            gap = square_gap(scene, last.other, at, radius);
+            radius += ball.r + scene.margin;
+        } else {
+            const Ball& other = robot.spheres[last.other];
+            gap = square_distance(at, place_ball(frames[last.other_body], other));
+            radius = ball.r + scene.pair_margin + other.r;
+        }
+        hit = bits_of(gap < fill_floats(radius * radius)) & wanted;
+        return hit && record(last.contact);
+    }
+
     // The spheres of a link that a ball may meet, to w.near_spheres; how many.
     template <class Growth>
     CSPACE_INLINE int list_spheres(const Link& link, const Place& ball, float r, Growth growth) {
@@ -202,6 +229,8 @@ class Block {
     }
 
   private:
+    int placed_ = 0;  // bodies 0 … placed_ have their frames
+
     // Of several tests: the lanes in which something touches, or may within its motion.
     template <class Motion>
     struct Marks {
@@ -222,14 +251,31 @@ class Block {
         return touching != 0;
     }
     // Which of the primitives a sphere touches.
-    CSPACE_COLD bool record_primitive(int l, const Place& at, float r, Candidates near) {
+    CSPACE_COLD bool record_primitive(int l, int s, const Place& at, float r, Candidates near) {
         for (int k = 0; k < near.count; ++k) {
             float radius;
             const Floats gap = square_gap(scene, near.begin[k], at, radius);
-            const float sum = r + radius;
-            if (bits_of(gap < fill_floats(sum * sum)) & wanted) return record({l, near.begin[k], false, 0});
+            if (!touches(gap, r + radius)) continue;
+            const Contact contact = {l, near.begin[k], false, 0};
+            w.touch = {robot.links[l].body, s, -1, near.begin[k], contact};
+            return record(contact);
         }
         return true;
+    }
+    // Which of the listed spheres another sphere touches.
+    CSPACE_COLD bool record_pair(const LinkPair& links, int s, const Place& at, float r, int count) {
+        const Place* all = static_cast<Place*>(w.sphere_places);
+        const Contact contact = {links.a, links.b, true, 0};
+        for (int k = 0; k < count; ++k) {
+            const int other = w.near_spheres[k];
+            if (!touches(square_distance(at, all[other]), r + robot.spheres[other].r)) continue;
+            w.touch = {robot.links[links.b].body, s, robot.links[links.a].body, other, contact};
+            break;
+        }
+        return record(contact);
+    }
+    CSPACE_INLINE bool touches(Floats gap, float r) const {
+        return bits_of(gap < fill_floats(r * r)) & wanted;
     }
     CSPACE_INLINE bool record(const Contact& contact) {
         w.contact = contact;

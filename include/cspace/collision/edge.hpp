@@ -31,8 +31,6 @@ class EdgeCheck {
             mid_[k] = 0.5f * (from[k] + to[k]);
             half_[k] = 0.5f * (to[k] - from[k]);
         }
-        bound_motion(robot.levers, robot.body_stride, w.kappa, w.reach);
-        bound_motion(robot.pair_levers, robot.pair_stride, w.pair_kappa, w.pair_reach);
     }
 
     Verdict prove() {
@@ -41,12 +39,13 @@ class EdgeCheck {
         bool is_undecided = false;
         for (int i = 0; i < float_lanes; ++i)
             now[i] = {first_half_width * float(2 * i + 1 - float_lanes), first_half_width};
-        is_first_ = true;
+        set_intervals(now, count);
+        if (begin_edge()) return Verdict::blocked;
+        place_rates(robot_, half_, block_.frames, block_.rates);
+        const Moving motion{*this, block_};
+        bool is_blocked = test_first_block(motion, first_half_width);
         while (true) {
-            place(now, count);
-            const Moving motion{*this, block_};
-            if (test_all(motion, first_half_width)) return Verdict::blocked;
-            is_first_ = false;
+            if (is_blocked) return Verdict::blocked;
             const unsigned unsure = block_.unsure;
             int open = 0;
             for (unsigned m = unsure; m; m &= m - 1) ++open;
@@ -58,23 +57,28 @@ class EdgeCheck {
             count = left < float_lanes ? left : float_lanes;
             for (int i = 0; i < count; ++i) now[i] = w_.stack[--left];
             for (int i = count; i < float_lanes; ++i) now[i] = now[0];
+            set_intervals(now, count);
+            place_next();
+            place_rates(robot_, half_, block_.frames, block_.rates);
+            is_blocked = test_all(motion);
         }
     }
 
     // Free if none of 8 n configurations at equal distances, both ends included, touches anything.
     bool sample(int n) {
         const float step = 2.0f / float(float_lanes * n - 1);
-        is_first_ = true;
-        for (int k = 0; k < n; ++k) {
-            // The middle of the rows first: it stands for all of them when candidates are chosen.
-            const int row = k == 0 ? n / 2 : k <= n / 2 ? k - 1 : k;
-            for (int i = 0; i < float_lanes; ++i)
-                middle_[i] = 0.5f * step * float(2 * (i * n + row) - (float_lanes * n - 1));
-            place_at(load_floats(middle_));
-            const float covered = k == 0 ? step * float(n / 2) : 0.0f;
-            if (test_all(Still{*this, covered}, covered)) return false;
-            if (is_first_ && is_clear()) return true;
-            is_first_ = false;
+        // The middle of the rows first: it stands for all of them when candidates are chosen.
+        const int middle = n / 2;
+        set_samples(middle, n, step);
+        if (begin_edge()) return false;
+        const float covered = step * float(middle);
+        if (test_first_block(Still{*this, covered}, covered)) return false;
+        if (is_clear()) return true;
+        for (int row = 0; row < n; ++row) {
+            if (row == middle) continue;
+            set_samples(row, n, step);
+            place_next();
+            if (test_all(Still{*this, 0.0f})) return false;
         }
         return true;
     }
@@ -86,8 +90,8 @@ class EdgeCheck {
     Block block_;
     alignas(32) float middle_[float_lanes] = {};
     alignas(32) float mid_[most_coordinates], half_[most_coordinates];
-    Floats width_, width_2_;
-    bool is_first_ = true;
+    Floats q_[most_coordinates], width_, width_2_;
+    bool is_first_ = true;  // block of the edge
 
     // By how much balls move within an interval.
     struct Moving {
@@ -151,12 +155,12 @@ class EdgeCheck {
         }
     }
 
-    CSPACE_INLINE void place_at(Floats s) {
-        Floats q[most_coordinates];
-        for (int k = 0; k < robot_.n_coordinates; ++k) q[k] = s * half_[k] + mid_[k];
-        block_.place(q);
+    CSPACE_INLINE void set_samples(int row, int n, float step) {
+        for (int i = 0; i < float_lanes; ++i)
+            middle_[i] = 0.5f * step * float(2 * (i * n + row) - (float_lanes * n - 1));
+        set_coordinates();
     }
-    CSPACE_INLINE void place(const Interval* now, int count) {
+    CSPACE_INLINE void set_intervals(const Interval* now, int count) {
         alignas(32) float width[float_lanes];
         for (int i = 0; i < float_lanes; ++i) {
             middle_[i] = now[i].middle;
@@ -165,9 +169,13 @@ class EdgeCheck {
         width_ = load_floats(width);
         width_2_ = width_ * width_;
         block_.wanted = (1u << count) - 1;
-        place_at(load_floats(middle_));
-        place_rates(robot_, half_, block_.frames, block_.rates);
+        set_coordinates();
     }
+    CSPACE_INLINE void set_coordinates() {
+        const Floats s = load_floats(middle_);
+        for (int k = 0; k < robot_.n_coordinates; ++k) q_[k] = s * half_[k] + mid_[k];
+    }
+    CSPACE_INLINE void place_next() { block_.begin(q_, robot_.n_joints); }
     bool split(const Interval& interval, int parts, int& left) {
         if (interval.half < narrowest || left + parts > w_.stack_size) return false;
         const float half = interval.half / float(parts);
@@ -185,13 +193,34 @@ class EdgeCheck {
         return true;
     }
 
+    // Begins the first block with what found a contact last, for which the last bodies need no place; true
+    // if something touches.
+    bool begin_edge() {
+        if (w_.n_order == 0) return place_next(), false;
+        const int test = w_.order[0];
+        block_.begin(q_, test < robot_.n_bodies ? test : robot_.pairs[test - robot_.n_bodies].b);
+        const bool is_blocked =
+            (w_.touch.body == block_.last_placed() && block_.test_touch(w_.touch)) || test_likely(test);
+        if (is_blocked)
+            w_.contact.at = middle_[lowest_lane(block_.hit)];
+        else
+            block_.place_rest(q_);
+        return is_blocked;
+    }
+    template <class Motion>
+    bool test_first_block(const Motion& motion, float covered) {
+        bound_motion(robot_.levers, robot_.body_stride, w_.kappa, w_.reach);
+        bound_motion(robot_.pair_levers, robot_.pair_stride, w_.pair_kappa, w_.pair_reach);
+        find_near(covered);
+        is_first_ = true;
+        const bool is_blocked = test_all(motion);
+        is_first_ = false;
+        return is_blocked;
+    }
+
     // All tests of a block; true if something touches.
     template <class Motion>
-    bool test_all(const Motion& motion, float covered) {
-        if (is_first_) {
-            if (test_likely()) return true;
-            find_near(covered);
-        }
+    bool test_all(const Motion& motion) {
         for (int k = 0; k < w_.n_order; ++k) {
             const int test = w_.order[k];
             if (test < robot_.n_bodies ? test_body(test, motion)
@@ -206,23 +235,16 @@ class EdgeCheck {
     }
 
     // The test that found a contact last, before candidates are chosen: it settles most blocked edges.
-    bool test_likely() {
+    bool test_likely(int test) {
         constexpr int most_primitives = 64;
-        if (w_.n_order == 0) return false;
-        const int test = w_.order[0];
         const Still motion{*this, 0.0f};
-        bool found = false;
-        if (test >= robot_.n_bodies) {
-            found = test_likely_pair(test - robot_.n_bodies, motion);
-        } else if (scene_.n <= most_primitives) {
-            for (int i = 0; i < scene_.n; ++i) w_.near_body[i] = i;
-            const Candidates near =
-                block_.narrow({w_.near_body, scene_.n}, block_.body_place(test),
-                              robot_.bodies[test].ball.r + scene_.margin, NoMotion{}, w_.near_body);
-            found = near.count && block_.test_links(test, near, motion);
-        }
-        if (found) w_.contact.at = middle_[lowest_lane(block_.hit)];
-        return found;
+        if (test >= robot_.n_bodies) return test_likely_pair(test - robot_.n_bodies, motion);
+        if (scene_.n > most_primitives) return false;
+        for (int i = 0; i < scene_.n; ++i) w_.near_body[i] = i;
+        const Candidates near =
+            block_.narrow({w_.near_body, scene_.n}, block_.body_place(test),
+                          robot_.bodies[test].ball.r + scene_.margin, NoMotion{}, w_.near_body);
+        return near.count && block_.test_links(test, near, motion);
     }
 
     bool test_likely_pair(int p, const Still& motion) {

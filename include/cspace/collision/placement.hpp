@@ -50,9 +50,10 @@ CSPACE_INLINE void place_joint(const Joint& joint, const Frame& parent, Frame& f
                                  parent.R[3 * r + 2] * joint.R[6 + c];
 }
 
-// Frames of all bodies; q: one entry per coordinate. Frame 0 is the identity and stays.
-CSPACE_INLINE void place_frames(const Robot& robot, const Floats* q, Frame* frames) {
-    for (int j = 0; j < robot.n_joints; ++j) {
+// Frames of the bodies that joints first … end − 1 carry, those before them being placed; q: one entry per
+// coordinate. Frame 0 is the identity and stays.
+CSPACE_INLINE void place_frames(const Robot& robot, const Floats* q, int first, int end, Frame* frames) {
+    for (int j = first; j < end; ++j) {
         const Joint& joint = robot.joints[j];
         Frame& frame = frames[j + 1];
         if (joint.parent == 0) {

@@ -22,7 +22,7 @@ inline unsigned lanes_in_collision(Block& block, const Floats* q, unsigned wante
     const Robot& robot = block.robot;
     const Apart apart;
     block.wanted = wanted;
-    block.place(q);
+    block.begin(q, robot.n_joints);
     for (int i = 0; i < block.scene.n; ++i) block.w.near[i] = i;
     for (int k = 0; k < block.w.n_order && block.wanted; ++k) {
         const int test = block.w.order[k];

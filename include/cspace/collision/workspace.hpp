@@ -19,6 +19,12 @@ struct Contact {
     float at = 0;
 };
 
+// A sphere and a primitive or another sphere: what touched last.
+struct Touch {
+    int body = -1, sphere = -1, other_body = -1, other = -1;  // other_body < 0: a primitive
+    Contact contact;
+};
+
 struct Workspace {
     // Frame, Rate per body and Place per body, link and sphere, with lanes of eight floats.
     void *frames, *rates, *body_places, *link_places, *sphere_places;
@@ -35,6 +41,7 @@ struct Workspace {
     int stack_size;
     long long blocks;  // placed so far
     Contact contact;
+    Touch touch;  // body < 0: none
 };
 
 }  // namespace cspace::collision

@@ -1,0 +1,49 @@
+// The box of configurations in floats: bounds per coordinate; joints that wrap have the period 2π, and their
+// values lie between −π and π.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "cspace/math/trig.hpp"
+
+namespace cspace::planning {
+
+struct Box {
+    int width = 0;
+    const float *lower = nullptr, *upper = nullptr;
+    const unsigned char* wraps = nullptr;  // null: no joint does
+
+    bool is_wrapping(int k) const { return wraps && wraps[k]; }
+
+    // From a to b in one coordinate, the short way round.
+    float difference(int k, float a, float b) const {
+        constexpr float half_turn = float(pi), turn = float(2 * pi);
+        const float d = b - a;
+        if (!is_wrapping(k)) return d;
+        return d > half_turn ? d - turn : d < -half_turn ? d + turn : d;
+    }
+    float distance(const float* a, const float* b) const {
+        float sum = 0;
+        for (int k = 0; k < width; ++k) {
+            const float d = difference(k, a[k], b[k]);
+            sum += d * d;
+        }
+        return std::sqrt(sum);
+    }
+    // The configuration at a share of the way from a to b.
+    void interpolate(const float* a, const float* b, float share, float* q) const {
+        constexpr float half_turn = float(pi), turn = float(2 * pi);
+        for (int k = 0; k < width; ++k) {
+            float x = a[k] + share * difference(k, a[k], b[k]);
+            if (is_wrapping(k)) x = x > half_turn ? x - turn : x < -half_turn ? x + turn : x;
+            q[k] = x;
+        }
+    }
+    // The configuration of a point of the unit cube.
+    void scale(const float* unit, float* q) const {
+        for (int k = 0; k < width; ++k) q[k] = lower[k] + unit[k] * (upper[k] - lower[k]);
+    }
+};
+
+}  // namespace cspace::planning

@@ -1,0 +1,201 @@
+"""Plans of a robot to configurations, poses and partial goals: planning to all their IK solutions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Array, whole_number
+from cspace.collision import Scene
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.wrapping import nearest_winding
+from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
+from cspace.robot import Robot
+from cspace.tables import html_table, one_line, shown
+
+Seed = int | np.random.Generator | None
+
+MOST_CAUSES: Final = 3
+"""Contacts of IK solutions that a reason names."""
+
+MOST_THREADS: Final = 1024
+"""Threads that are believed."""
+
+
+def plan(
+    robot: Robot,
+    start: ArrayLike,
+    goal: Any,
+    scene: Scene | None = None,
+    *,
+    planner: str | ArmPlanner = "rrt_connect",
+    margin: float = 0.0,
+    rng: Seed = 0,
+    **options: Any,
+) -> Plan:
+    """A free way of a robot from a start to a goal, every motion of it proved.
+
+    start: a configuration (dof,) [rad or m], or several (s, dof) to choose from. goal: a configuration (dof,)
+    or several (g, dof); a pose (4, 4) of the tip, reached by whichever of its IK solutions within the limits
+    is easiest; or the keywords of `robot.ik` as a dict, such as {"position": p}. Of redundant arms the
+    solutions are samples over the self-motion. scene: None without obstacles. planner: a name of
+    `cs.planning.PLANNERS`, or an ArmPlanner. margin [m]: everything keeps so far away from everything else.
+    rng: seed or generator; the same seed gives the same plan on every machine. options: those of the planner.
+
+    The Plan is truthy if a way was found, and says why where not: "unreachable" if no IK solution exists or
+    all of them touch something, "undetermined" if the planner's budget was used up.
+    Raises InputError for a start or a given goal that touches something or is outside the limits,
+    UnknownNameError for an unknown planner, InputTypeError for an unknown option.
+    """
+    chosen = find_planner(planner, options)
+    space = ArmSpace(robot, scene, margin)
+    starts = space.as_rows(start, "start")
+    goals = find_goals(robot, space, starts, goal)
+    if not len(goals.rows):
+        return make_negative(space, chosen, "unreachable", goals.reason)
+    found = chosen.plan(space, starts, goals.rows, rng=rng)
+    if found.status == "invalid_start":
+        raise InputError(f"{found.reason}; move it away from there, or allow the pair in the scene")
+    if found.status == "invalid_goal":
+        if goals.is_given:
+            raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
+        return make_negative(space, chosen, "unreachable", explain_goals(space, goals.rows))
+    return found
+
+
+def plan_many(
+    robot: Robot,
+    starts: ArrayLike,
+    goals: Any,
+    scene: Scene | None = None,
+    *,
+    planner: str | ArmPlanner = "rrt_connect",
+    margin: float = 0.0,
+    rng: Seed = 0,
+    threads: int = 0,
+    **options: Any,
+) -> Plans:
+    """A plan for each of many problems in one scene, on all threads; each is the same as alone.
+
+    starts (n, dof) or one (dof,) for all. goals: n configurations (n, dof), n poses (n, 4, 4), or a list of n
+    goals as `plan` takes them. threads: 0 for all. Other arguments as of plan. A problem whose start or goal
+    is not free has the status "invalid_start" or "invalid_goal" instead of an error.
+    """
+    chosen = find_planner(planner, options)
+    count = whole_number(threads, "threads", 0, MOST_THREADS, "0 for every processor")
+    space = ArmSpace(robot, scene, margin)
+    wanted = list(goals)
+    rows = space.as_rows(starts, "starts")
+    if len(rows) not in (1, len(wanted)):
+        raise InputError(f"there are {len(rows)} starts and {len(wanted)} goals; give one start, or as many")
+    rows = np.broadcast_to(rows, (len(wanted), space.dof)) if len(rows) == 1 else rows
+    sets = [find_goals(robot, space, row[None], goal) for row, goal in zip(rows, wanted, strict=True)]
+    open_rows = [k for k, each in enumerate(sets) if len(each.rows)]
+    problems = [(rows[k], sets[k].rows) for k in open_rows]
+    found = chosen.plan_each(space, problems, rng=rng, threads=count)
+    plans = [make_negative(space, chosen, "unreachable", each.reason) for each in sets]
+    for k, each in zip(open_rows, found, strict=True):
+        if each.status == "invalid_goal" and not sets[k].is_given:
+            each = replace(each, status="unreachable", reason=explain_goals(space, sets[k].rows))
+        plans[k] = each
+    return Plans(plans)
+
+
+class Plans(Sequence[Plan]):
+    """The plans of many problems: plans[k] is a Plan.
+
+    path (n, m, dof): their corners, NaN beyond the last. corners (n,): how many each has, 0 without a path.
+    status: of each. cost (n,): inf without a path. found (n,): which have one.
+    """
+
+    def __init__(self, plans: Sequence[Plan]) -> None:
+        self._plans = list(plans)
+        self.status = tuple(each.status for each in self._plans)
+        self.cost: Array = np.array([each.cost for each in self._plans])
+        self.corners = np.array([len(each) for each in self._plans], dtype=np.intp)
+        self.found = np.array([bool(each) for each in self._plans])
+
+    @property
+    def path(self) -> Array:
+        """The corners (n, m, dof), NaN beyond the last of each."""
+        dof = self._plans[0].space.dof if self._plans else 0
+        shape = (len(self), int(self.corners.max(initial=0)), dof)
+        rows: Array = np.full(shape, np.nan, dtype=np.float64)
+        for row, each in zip(rows, self._plans, strict=True):
+            row[: len(each)] = each.path
+        return rows
+
+    def __len__(self) -> int:
+        return len(self._plans)
+
+    def __getitem__(self, k: Any) -> Any:
+        return Plans(self._plans[k]) if isinstance(k, slice) else self._plans[k]
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{n} {status}" for status, n in Counter(self.status).items())
+        return one_line("Plans", f"of {len(self)} problems: {counts}")
+
+    def _repr_html_(self) -> str:
+        rows = [(str(k), p.status, str(len(p)), shown(p.cost)) for k, p in enumerate(self._plans)]
+        return html_table(repr(self)[1:-1], ("problem", "status", "corners", "cost"), rows)
+
+
+@dataclass(frozen=True, eq=False)
+class Goals:
+    """The configurations of a goal: rows (g, dof); reason: why there are none; is_given: by the caller."""
+
+    rows: Array
+    reason: str
+    is_given: bool
+
+
+def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals:
+    """The configurations of a goal as `plan` takes it, IK solutions at the turns nearest to the start."""
+    if isinstance(goal, Mapping):
+        solutions = robot.ik(**goal)
+    elif np.shape(goal) == (4, 4) and is_pose(goal):
+        solutions = robot.ik(goal)
+    else:
+        if isinstance(goal, str) or np.ndim(goal) not in (1, 2):
+            raise InputTypeError(
+                f"goal is a {type(goal).__name__}; it must be configurations (dof,) or (g, dof), a pose"
+                " (4, 4), or a dict of keywords of robot.ik"
+            )
+        return Goals(space.as_rows(goal, "goal"), "", True)
+    if not solutions:
+        return Goals(np.empty((0, space.dof)), f"no IK solution: {solutions.reason}", False)
+    inside = solutions.within(robot.limits)
+    if not inside:
+        return Goals(np.empty((0, space.dof)), f"no IK solution within limits: {inside.reason}", False)
+    lower, upper = robot.limits.lower, robot.limits.upper
+    rows = [nearest_winding(q, starts[0], robot.joint_types, lower, upper) for q in inside.q]
+    return Goals(np.ascontiguousarray(rows), "", False)
+
+
+def is_pose(goal: Any) -> bool:
+    """Whether (4, 4) numbers are a pose rather than four configurations of four joints."""
+    T = np.asarray(goal, dtype=np.float64)
+    R = T[:3, :3]
+    return bool((T[3] == (0, 0, 0, 1)).all() and np.abs(R @ R.T - np.eye(3)).max() < 1e-3)
+
+
+def explain_goals(space: ArmSpace, rows: Array) -> str:
+    """What the IK solutions touch, the most frequent pairs first."""
+    pairs: Counter[str] = Counter()
+    for q in rows:
+        pair = space.checker.core.find_contact(q)
+        pairs[" touches ".join(space.checker.name_pair(pair)) if pair else "none"] += 1
+    named = ", ".join(f"{name} ({n})" for name, n in pairs.most_common(MOST_CAUSES))
+    more = " and others" if len(pairs) > MOST_CAUSES else ""
+    return f"all {len(rows)} IK solutions within limits touch something: {named}{more}"
+
+
+def make_negative(space: ArmSpace, planner: ArmPlanner, status: str, reason: str) -> Plan:
+    """A plan without a path."""
+    path = np.empty((0, space.dof))
+    return Plan(status, reason, path, np.inf, -1, -1, False, {}, space, planner)

@@ -1,0 +1,75 @@
+"""Plan: a path of configurations, or why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.tables import one_line, shown
+
+if TYPE_CHECKING:
+    from cspace.planning.arm_planner import ArmPlanner
+    from cspace.planning.space import ArmSpace
+
+STATUSES = ("found", "unreachable", "undetermined", "invalid_start", "invalid_goal")
+"""What a plan can be: only "found" has a path; "unreachable" is proved; "undetermined" used up its budget."""
+
+CLEARANCE_STEP = 1.0 / 32.0
+"""Distance of the configurations at which `Plan.clearance` looks [L2 norm of the joints]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A way of an arm from a start to a goal; truthy if there is one.
+
+    status: one of STATUSES. reason: the verdict in words. path (m, dof) [rad or m]: the corners, joined by
+    straight motions; the first is the start and the last the goal as given (a joint that wraps ends at the
+    goal plus a multiple of 2π); (0, dof) without a path. cost: its length (L2 norm of the joints); inf
+    without. start, goal: which of those given, −1 without. certified: every motion is proved free over its
+    whole length. stats: what the search did, and seconds per stage. space, planner: as used.
+    """
+
+    status: str
+    reason: str
+    path: Array
+    cost: float
+    start: int
+    goal: int
+    certified: bool
+    stats: Mapping[str, Any]
+    space: ArmSpace
+    planner: ArmPlanner
+
+    def __bool__(self) -> bool:
+        return self.status == "found"
+
+    def __len__(self) -> int:
+        """The number of corners of the path."""
+        return len(self.path)
+
+    def sample(self, step: float = CLEARANCE_STEP) -> Array:
+        """Configurations (k, dof) along the path, at most `step` apart (L2 norm), corners included."""
+        if not len(self.path):
+            return self.path
+        rows = [self.path[:1]]
+        for a, b in zip(self.path[:-1], self.path[1:], strict=True):
+            n = max(1, int(np.ceil(np.linalg.norm(b - a) / step)))
+            rows.append(a + np.linspace(0.0, 1.0, n + 1)[1:, None] * (b - a))
+        return np.concatenate(rows)
+
+    @cached_property
+    def clearance(self) -> float:
+        """The least distance from a contact at samples along the path [m]; inf with nothing to touch."""
+        found = self.space.clearance(self.sample()).distance if len(self.path) else [np.inf]
+        return float(np.min(found))
+
+    def __repr__(self) -> str:
+        if not self:
+            return one_line("Plan", f"{self.status}: {self.reason}")
+        proof = "certified" if self.certified else "not certified"
+        return one_line("Plan", f"found: {len(self)} corners, cost {shown(self.cost)}, {proof}")

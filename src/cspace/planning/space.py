@@ -1,0 +1,119 @@
+"""ArmSpace: the configurations that an arm may take in a scene, with the checks that planners use."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Array, as_floats
+from cspace.collision import Clearance, Edge, Scene, clearance, edge
+from cspace.collision.checker import Checker, checker_of
+from cspace.collision.checks import HasGeometry
+from cspace.errors import InputError
+from cspace.math.wrapping import wrap_near
+from cspace.tables import one_line
+from cspace.tolerances import LARGEST_NUMBER
+
+TURN = 2.0 * np.pi
+"""The range of a revolute joint that has a limit on one side only."""
+
+
+class ArmSpace:
+    """Where an arm may be: within its limits, free of collisions with a scene and with itself.
+
+    robot: a Robot, or a RobotGeometry. scene: None without obstacles. margin [m]: everything keeps so far
+    away from everything else. dof: number of coordinates. lower, upper (dof,): bounds [rad or m], one turn
+    for joints that wrap. wraps (dof,): revolute joints without limits, which take the short way.
+
+    Raises InputError for a robot without collision geometry, a prismatic joint without limits, a negative
+    margin, and names of the scene that do not fit the robot.
+    """
+
+    def __init__(self, robot: HasGeometry, scene: Scene | None = None, margin: float = 0.0) -> None:
+        self.geometry, self.scene, self.margin = robot.collision, scene, margin
+        self.checker: Checker = checker_of(self.geometry, scene, margin)
+        self.dof = self.geometry.dof
+        lower, upper = self.geometry.lower.copy(), self.geometry.upper.copy()
+        open_below, open_above = np.isinf(lower), np.isinf(upper)
+        self.wraps: npt.NDArray[np.uint8] = (open_below & open_above & self._has_period()).astype(np.uint8)
+        lower[open_below & open_above], upper[open_below & open_above] = -np.pi, np.pi
+        lower[open_below & ~open_above] = upper[open_below & ~open_above] - TURN
+        upper[open_above & ~open_below] = lower[open_above & ~open_below] + TURN
+        self.lower, self.upper = lower, upper
+
+    def _has_period(self) -> npt.NDArray[np.bool_]:
+        """Which coordinates move revolute joints alone, by whole multiples."""
+        found = np.ones(self.geometry.dof, dtype=bool)
+        for row in self.geometry.joints:
+            if row[20] or row[18] != round(row[18]):
+                found[int(row[17])] = False
+        return found
+
+    @cached_property
+    def bounds(self) -> Array:
+        """The bounds (2, dof)."""
+        return np.array([self.lower, self.upper])
+
+    def edge(self, a: ArrayLike, b: ArrayLike, *, resolution: float | None = None) -> Edge:
+        """The motion from a to b (dof,), joints that wrap the short way; see collision.edge."""
+        return edge(
+            self.geometry,
+            a,
+            self.unwrap(a, b),
+            self.scene,
+            margin=self.margin,
+            resolution=resolution,
+        )
+
+    def unwrap(self, a: ArrayLike, b: ArrayLike) -> Array:
+        """b (dof,) with each joint that wraps at the multiple of 2π that is nearest to a."""
+        start, end = np.asarray(a, dtype=np.float64), np.array(b, dtype=np.float64)
+        wraps = self.wraps.astype(bool)
+        end[..., wraps] = wrap_near(end[..., wraps], start[..., wraps])
+        return end
+
+    def distance(self, a: ArrayLike, b: ArrayLike) -> float:
+        """The length of the motion from a to b (L2 norm of the joints)."""
+        return float(np.linalg.norm(self.unwrap(a, b) - np.asarray(a)))
+
+    def clearance(self, q: ArrayLike) -> Clearance:
+        """The least distance at q (..., dof); see collision.clearance."""
+        return clearance(self.geometry, q, self.scene)
+
+    def as_rows(self, q: ArrayLike, subject: str) -> Array:
+        """One configuration (dof,) or several (n, dof) as rows; InputError for another shape or NaN."""
+        rows = np.ascontiguousarray(as_floats(q, subject, last=(self.dof,), largest=LARGEST_NUMBER))
+        if rows.ndim > 2 or (not rows.size and self.dof):
+            raise InputError(
+                f"{subject} has shape {rows.shape}; give configurations ({self.dof},) or (n, {self.dof})"
+            )
+        return rows.reshape(-1, self.dof) if rows.ndim < 2 else rows
+
+    def describe_violation(self, q: Array) -> str:
+        """The first joint that is outside its limits, in words."""
+        for k in np.flatnonzero((q < self.lower) | (q > self.upper)).tolist():
+            if not self.wraps[k]:
+                low, high = self.lower[k], self.upper[k]
+                return (
+                    f"joint {self.geometry.joint_names[k]!r} is at {q[k]:.9g}, outside its limits"
+                    f" {low:.9g} to {high:.9g}"
+                )
+        return ""
+
+    def describe_contact(self, q: Array, found: tuple[bool, int, int] | None) -> str:
+        """What touches at q, and how deep, in words."""
+        if found is None:
+            return ""
+        a, b = self.checker.name_pair(found)
+        nearest = self.clearance(q)
+        if nearest.pair is not None and nearest.distance < 0.0:
+            a, b = nearest.pair
+            return f"{a} touches {b}, {1000 * -nearest.distance:.3g} mm deep"
+        return f"{a} is closer to {b} than {1000 * self.margin:.3g} mm"
+
+    def __repr__(self) -> str:
+        objects = 0 if self.scene is None else len(self.scene)
+        return one_line("ArmSpace", f"of {self.geometry.robot} with {objects} objects, {self.dof} dof")

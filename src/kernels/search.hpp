@@ -1,0 +1,7 @@
+#pragma once
+#include "cspace/search/nearest_row.hpp"
+#include "dispatch.hpp"
+
+// See cspace/search/nearest_row.hpp.
+CSPACE_NARROW_KERNEL(cspace::search, cspace::search::NearRow, find_nearest,
+                     (const float* blocks, int count, int width, const float* q, const unsigned char* wraps))
