@@ -35,15 +35,16 @@ inline NearRow find_nearest_row(const float* blocks, int count, int width, const
         least = select(is_less, sum, least);
         at = select(is_less, fill_floats(float(first / float_lanes)), at);
     }
+    // Squares are not negative: their order is that of their bits.
     alignas(32) float squares[float_lanes], places[float_lanes];
     store_floats(squares, least), store_floats(places, at);
-    NearRow best = {int(places[0]) * float_lanes, squares[0]};
-    for (int i = 1; i < float_lanes; ++i) {
-        const int row = int(places[i]) * float_lanes + i;
-        if (squares[i] < best.square || (squares[i] == best.square && row < best.row))
-            best = {row, squares[i]};
+    std::uint64_t best = ~std::uint64_t(0);
+    for (int i = 0; i < float_lanes; ++i) {
+        const std::uint32_t row = std::uint32_t(int(places[i]) * float_lanes + i);
+        const std::uint64_t key = std::uint64_t(bits_as<std::uint32_t>(squares[i])) << 32 | row;
+        best = key < best ? key : best;
     }
-    return best;
+    return {int(best & 0xffffffffu), bits_as<float>(std::uint32_t(best >> 32))};
 }
 
 }  // namespace cspace::search::inline CSPACE_ISA
