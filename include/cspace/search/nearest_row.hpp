@@ -24,10 +24,10 @@ inline NearRow find_nearest_row(const float* blocks, int count, int width, const
                                 const unsigned char* wraps) {
     constexpr float turn = float(2 * pi);
     Floats least = fill_floats(3e38f), at = fill_floats(0.0f);
-    for (int first = 0; first < count; first += float_lanes) {
+    for (int first = 0; first < count; first += float_lanes, blocks += float_lanes * width) {
         Floats sum = fill_floats(0.0f);
-        for (int k = 0; k < width; ++k, blocks += float_lanes) {
-            Floats d = load_floats(blocks) - q[k];
+        for (int k = 0; k < width; ++k) {
+            Floats d = load_floats(blocks + float_lanes * k) - q[k];
             if (any_wraps && wraps[k]) d = abs(d), d = min(d, turn - d);
             sum = sum + d * d;
         }
