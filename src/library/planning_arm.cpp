@@ -107,9 +107,8 @@ class ArmEdges {
             for (int k = 0; k < box_.width; ++k) end[k] = a[k] + box_.difference(k, a[k], b[k]);
             b = end;
         }
-        const Verdict verdict = is_search_proved_
-                                    ? checker_.prove_edge(a, b, *memory_)
-                                    : checker_.sample_edge(a, b, options_.resolution, *memory_);
+        const Verdict verdict = is_search_proved_ ? checker_.prove_edge(a, b, *memory_)
+                                                  : checker_.sample_edge(a, b, options_.resolution, *memory_);
         if (verdict == Verdict::blocked) tally_.add(memory_->w.contact);
         return verdict == Verdict::free;
     }
@@ -217,8 +216,10 @@ class ArmSearch {
         plan_.goals = report_rows(problem_.goals, goals_);
         for (const int i : starts_) trees_.add_start(round_row(start_row(i)).data());
         for (const int i : goals_) trees_.add_goal(round_row(goal_row(i)).data());
-        if (starts_.empty()) plan_.status = PlanStatus::invalid_start;
-        else if (goals_.empty()) plan_.status = PlanStatus::invalid_goals;
+        if (starts_.empty())
+            plan_.status = PlanStatus::invalid_start;
+        else if (goals_.empty())
+            plan_.status = PlanStatus::invalid_goals;
         return !starts_.empty() && !goals_.empty();
     }
     std::vector<RowReport> report_rows(std::span<const double> rows, std::vector<int>& free) {
@@ -226,9 +227,12 @@ class ArmSearch {
         for (std::size_t i = 0; i < reports.size(); ++i) {
             const double* q = &rows[i * width_];
             RowReport& report = reports[i];
-            if (!is_within_bounds(q)) report.state = RowState::out_of_bounds;
-            else if (!edges_.is_free(q, report.contact)) report.state = RowState::in_collision;
-            else free.push_back(int(i));
+            if (!is_within_bounds(q))
+                report.state = RowState::out_of_bounds;
+            else if (!edges_.is_free(q, report.contact))
+                report.state = RowState::in_collision;
+            else
+                free.push_back(int(i));
         }
         return reports;
     }

@@ -21,9 +21,9 @@ struct ArmProblem {
     std::span<const double> starts, goals;
 };
 
-// The same bits on every machine. Throws std::invalid_argument for spans of other sizes, bounds upside down or
-// not finite, joints that wrap without a period, and options out of range; and what the check of interrupts
-// throws.
+// The same bits on every machine. Throws std::invalid_argument for spans of other sizes, bounds upside down
+// or not finite, joints that wrap without a period, and options out of range; and what the check of
+// interrupts throws.
 ArmPlan plan_arm(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options);
 // Each as if alone, on so many threads (0: all).
 std::vector<ArmPlan> plan_arms(const ArmSpace& space, std::span<const ArmProblem> problems,

@@ -107,8 +107,12 @@ struct Turntable {
     explicit Turntable(double blocked, double distance) {
         const std::vector<model::Joint> joints = {{identity_pose(), -1, 0, 1, 0, false, 0}};
         const Row limits = {4.0};
-        const std::vector<double> rods = {distance * std::cos(blocked), distance * std::sin(blocked), -0.2,
-                                          distance * std::cos(blocked), distance * std::sin(blocked), 0.2,
+        const std::vector<double> rods = {distance * std::cos(blocked),
+                                          distance * std::sin(blocked),
+                                          -0.2,
+                                          distance * std::cos(blocked),
+                                          distance * std::sin(blocked),
+                                          0.2,
                                           0.03};
         checker = std::make_unique<collision::Checker>(
             std::make_shared<collision::RobotData>(joints, 1, limits, limits, std::vector<int>{1},
@@ -158,7 +162,8 @@ TEST(halton_points_fill_every_cell_of_a_base_once_and_do_not_depend_on_chunks) {
         const unsigned base = bases[std::size_t(k)], square = base * base;
         if (2 * square > 1000) continue;
         std::set<unsigned> cells;  // of the points number base² … 2 base² − 1
-        for (unsigned i = square; i < 2 * square; ++i) cells.insert(unsigned(rows[i - 1][std::size_t(k)] * float(square)));
+        for (unsigned i = square; i < 2 * square; ++i)
+            cells.insert(unsigned(rows[i - 1][std::size_t(k)] * float(square)));
         CHECK(cells.size() == square);
     }
     const auto digits = [](std::uint64_t i, unsigned base) {
@@ -359,7 +364,8 @@ TEST(a_goal_behind_walls_uses_up_the_budget_and_another_goal_is_found) {
     CHECK(none.blocker.other >= 0 && none.blocker.other < 4 && none.blocker_edges > 0);
     CHECK(none.blocker_edges <= none.stats.blocked);
     CHECK(none.approach.distance > 0 && none.approach.distance < 1.5);
-    CHECK_NEAR(row_distance(none.approach.from.data(), none.approach.to.data(), 2), none.approach.distance, 1e-5);
+    CHECK_NEAR(row_distance(none.approach.from.data(), none.approach.to.data(), 2), none.approach.distance,
+               1e-5);
     CHECK_NEAR(none.approach.to[0], 0.5, 0.15);
     CHECK_NEAR(none.approach.to[1], 0.5, 0.15);
     const Row two = {0.5, 0.5, 0.8, 0.8};

@@ -16,8 +16,8 @@ struct ArmOptions {
     EdgeTest search = EdgeTest::sampled;  // of the trees
     EdgeTest answer = EdgeTest::proved;   // of the path that is returned
     bool simplify = true;
-    std::uint64_t seed = 0;        // shifts the samples; 0: not at all
-    std::int64_t edges = 1 << 20;  // the search may check so many
+    std::uint64_t seed = 0;                                       // shifts the samples; 0: not at all
+    std::int64_t edges = 1 << 20;                                 // the search may check so many
     double time_limit = std::numeric_limits<double>::infinity();  // [s], decides only whether there is a path
     float range = 1;                                              // the longest edge of a tree [rad, m]
     float resolution = 1.0f / 32;                                 // of sampled edges [rad, m]
@@ -36,7 +36,8 @@ struct ArmStats {
     std::int64_t samples = 0, rejected = 0;           // points drawn; those outside the domain of their node
     std::int64_t edges = 0, blocked = 0, blocks = 0;  // of the search; blocks of eight configurations in all
     std::int64_t nodes = 0, removed = 0;              // of both trees; edges whose proof failed
-    std::int64_t shortcuts = 0, proofs = 0;  // edges checked for simplification; of what was left of the trees
+    std::int64_t shortcuts = 0,
+                 proofs = 0;  // edges checked for simplification; of what was left of the trees
     double search_seconds = 0, simplify_seconds = 0, proof_seconds = 0;
 };
 

@@ -17,8 +17,8 @@ struct NearRow {
 namespace cspace::search::inline CSPACE_ISA {
 
 // blocks: of eight rows each, coordinate by coordinate, the last one filled up with copies of one of its
-// rows. wraps: per coordinate whether it has the period 2π (all values within one period), or null. Of equally
-// near rows the first.
+// rows. wraps: per coordinate whether it has the period 2π (all values within one period), or null. Of
+// equally near rows the first.
 template <bool any_wraps>
 inline NearRow find_nearest_row(const float* blocks, int count, int width, const float* q,
                                 const unsigned char* wraps) {
