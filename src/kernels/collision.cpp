@@ -9,7 +9,7 @@ void prepare_workspace(const Robot& robot, Workspace& w) {
     set_identity(static_cast<Frame*>(w.frames)[0]);
     set_resting(static_cast<Rate*>(w.rates)[0]);
     w.n_order = 0;
-    w.touch = {};
+    for (Touch& touch : w.touches) touch = {};
     for (int b = robot.n_bodies - 1; b > 0; --b)
         if (robot.bodies[b].count) w.order[w.n_order++] = b;
     for (int p = 0; p < robot.n_pairs; ++p) w.order[w.n_order++] = robot.n_bodies + p;

@@ -1,5 +1,6 @@
 #include "collision_checker.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 
@@ -197,8 +198,8 @@ Verdict Checker::sample_edge(const float* from, const float* to, float resolutio
     float square = 0;
     for (int k = 0; k < dof(); ++k) square += (to[k] - from[k]) * (to[k] - from[k]);
     constexpr float most_blocks = 1e6f;
-    const float blocks = std::ceil(std::sqrt(square) / (8 * resolution));
-    const int n = int(std::fmin(std::fmax(blocks, 1.0f), most_blocks));
+    const float blocks = std::min(std::sqrt(square) / (8 * resolution), most_blocks);
+    const int whole = blocks > 1 ? int(blocks) : 1, n = whole + (float(whole) < blocks);
     return Verdict(kernels::sample_edge(robot(), scene_, memory.w, from, to, n));
 }
 Verdict Checker::prove_edge(const double* from, const double* to, WorkspaceMemory& memory) const {

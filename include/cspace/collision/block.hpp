@@ -49,7 +49,6 @@ class Block {
         ++w.blocks;
         hit = unsure = 0;
     }
-    int last_placed() const { return placed_; }
     // Places the other bodies too.
     CSPACE_INLINE void place_rest(const Floats* q) {
         place_frames(robot, q, placed_, robot.n_joints, frames);
@@ -188,22 +187,33 @@ class Block {
         }
         return false;
     }
-    // Whether what touched last touches again, alone: its bodies have their frames.
-    CSPACE_INLINE bool test_touch(const Touch& last) {
-        const Ball& ball = robot.spheres[last.sphere];
-        const Place at = place_ball(frames[last.body], ball);
+    // Whether something that touched lately touches again, as far as bodies have their frames.
+    CSPACE_INLINE bool test_touches() {
+        for (int i = 0; i < recent_touches && w.touches[i].body >= 0; ++i) {
+            const Touch touch = w.touches[i];
+            if (touch.body > placed_ || !test_touch(touch)) continue;
+            w.touches[i] = w.touches[0];
+            w.touches[0] = touch;
+            w.contact = touch.contact;
+            return true;
+        }
+        return false;
+    }
+    CSPACE_INLINE bool test_touch(const Touch& touch) {
+        const Ball& ball = robot.spheres[touch.sphere];
+        const Place at = place_ball(frames[touch.body], ball);
         float radius;
         Floats gap;
-        if (last.other_body < 0) {
-            gap = square_gap(scene, last.other, at, radius);
+        if (touch.other_body < 0) {
+            gap = square_gap(scene, touch.other, at, radius);
             radius += ball.r + scene.margin;
         } else {
-            const Ball& other = robot.spheres[last.other];
-            gap = square_distance(at, place_ball(frames[last.other_body], other));
-            radius = ball.r + scene.pair_margin + other.r;
+            const Ball& other = robot.spheres[touch.other];
+            gap = square_distance(at, place_ball(frames[touch.other_body], other));
+            radius = ball.r + other.r + scene.pair_margin;
         }
         hit = bits_of(gap < fill_floats(radius * radius)) & wanted;
-        return hit && record(last.contact);
+        return hit != 0;
     }
 
     // The spheres of a link that a ball may meet, to w.near_spheres; how many.
@@ -257,8 +267,7 @@ class Block {
             const Floats gap = square_gap(scene, near.begin[k], at, radius);
             if (!touches(gap, r + radius)) continue;
             const Contact contact = {l, near.begin[k], false, 0};
-            w.touch = {robot.links[l].body, s, -1, near.begin[k], contact};
-            return record(contact);
+            return record_touch({robot.links[l].body, s, -1, near.begin[k], contact});
         }
         return true;
     }
@@ -269,17 +278,19 @@ class Block {
         for (int k = 0; k < count; ++k) {
             const int other = w.near_spheres[k];
             if (!touches(square_distance(at, all[other]), r + robot.spheres[other].r)) continue;
-            w.touch = {robot.links[links.b].body, s, robot.links[links.a].body, other, contact};
-            break;
+            return record_touch({robot.links[links.b].body, s, robot.links[links.a].body, other, contact});
         }
-        return record(contact);
+        w.contact = contact;
+        return true;
+    }
+    bool record_touch(const Touch& touch) {
+        for (int i = recent_touches - 1; i > 0; --i) w.touches[i] = w.touches[i - 1];
+        w.touches[0] = touch;
+        w.contact = touch.contact;
+        return true;
     }
     CSPACE_INLINE bool touches(Floats gap, float r) const {
         return bits_of(gap < fill_floats(r * r)) & wanted;
-    }
-    CSPACE_INLINE bool record(const Contact& contact) {
-        w.contact = contact;
-        return true;
     }
 };
 

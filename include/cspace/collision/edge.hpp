@@ -199,8 +199,7 @@ class EdgeCheck {
         if (w_.n_order == 0) return place_next(), false;
         const int test = w_.order[0];
         block_.begin(q_, test < robot_.n_bodies ? test : robot_.pairs[test - robot_.n_bodies].b);
-        const bool is_blocked =
-            (w_.touch.body == block_.last_placed() && block_.test_touch(w_.touch)) || test_likely(test);
+        const bool is_blocked = block_.test_touches() || test_likely(test);
         if (is_blocked)
             w_.contact.at = middle_[lowest_lane(block_.hit)];
         else

@@ -19,7 +19,10 @@ struct Contact {
     float at = 0;
 };
 
-// A sphere and a primitive or another sphere: what touched last.
+// So many of the last contacts are tested first: most blocked edges of a search touch one of them.
+inline constexpr int recent_touches = 8;
+
+// A sphere and a primitive or another sphere that touched.
 struct Touch {
     int body = -1, sphere = -1, other_body = -1, other = -1;  // other_body < 0: a primitive
     Contact contact;
@@ -41,7 +44,7 @@ struct Workspace {
     int stack_size;
     long long blocks;  // placed so far
     Contact contact;
-    Touch touch;  // body < 0: none
+    Touch touches[recent_touches];  // the last of them first; body < 0: none
 };
 
 }  // namespace cspace::collision

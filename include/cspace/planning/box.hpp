@@ -34,6 +34,10 @@ struct Box {
     // The configuration at a share of the way from a to b.
     void interpolate(const float* a, const float* b, float share, float* q) const {
         constexpr float half_turn = float(pi), turn = float(2 * pi);
+        if (!wraps) {
+            for (int k = 0; k < width; ++k) q[k] = a[k] + share * (b[k] - a[k]);
+            return;
+        }
         for (int k = 0; k < width; ++k) {
             float x = a[k] + share * difference(k, a[k], b[k]);
             if (is_wrapping(k)) x = x > half_turn ? x - turn : x < -half_turn ? x + turn : x;

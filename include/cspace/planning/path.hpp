@@ -36,6 +36,12 @@ class Path {
         rows_.insert(rows_.end(), q, q + width_);
     }
 
+    // Both edges of an inner row are checked to its new place.
+    void move_row(std::size_t i, const double* q) {
+        std::copy_n(q, width_, rows_.begin() + std::ptrdiff_t(i * width_));
+        sources_[i - 1] = sources_[i] = checked;
+    }
+
     double edge_length(std::size_t edge) const { return row_distance(row(edge), row(edge + 1), width_); }
     double length() const {
         double sum = 0;
