@@ -188,10 +188,24 @@ class RobotBase(KinematicsBase):
         is not a pose, and NoClosedFormError for mimic joints, a floating base or more than sixteen joints.
         """
 
+    def collides(self, q: ArrayLike, scene: Any = None, *, margin: float = 0.0, threads: int | None = None) -> Any:
+        """
+        Whether the robot touches an obstacle or itself at q (..., dof) [rad or m].
+
+        Returns a bool, for a batch an array (...) of bool. scene: None for self-collision alone. margin [m]:
+        everything closer than this counts as touching. threads: 0 for all. See collision.collides, which also
+        names the errors.
+        """
+
     @property
     def _solver(self) -> Any: ...
     @_solver.setter
     def _solver(self, value: Any) -> None: ...
+
+    @property
+    def _checked(self) -> Any: ...
+    @_checked.setter
+    def _checked(self, value: Any) -> None: ...
 
 class SolutionsBase:
     """The compiled half of cspace.ik.Solutions."""

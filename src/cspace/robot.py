@@ -209,7 +209,6 @@ class Robot(Renamed, RobotBase, KinematicModel):
     workspace = kinematics.workspace
     if TYPE_CHECKING:
         clearance = checks.clearance
-        collides = checks.collides
         contact = checks.contact
         edge = checks.edge
         ik_many_starts = ik.ik_many_starts
@@ -231,7 +230,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         ) -> Export: ...
 
     else:
-        clearance, collides, contact, edge = (_Later("cspace.collision") for _ in range(4))
+        clearance, contact, edge = (_Later("cspace.collision") for _ in range(3))
         export = _Later("cspace.export")
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))

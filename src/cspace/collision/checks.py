@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cspace._core import RobotBase
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.collision.checker import checker_of
 from cspace.collision.robot_geometry import RobotGeometry
@@ -94,6 +95,8 @@ def collides(
     geometry = robot.collision
     checker = checker_of(geometry, scene, margin)
     rows = as_configurations(geometry, q)
+    if checker.margin == 0.0 and isinstance(robot, RobotBase):
+        robot._checked = (scene, checker.core)
     if rows.ndim == 1:
         return checker.core.find_contact(rows) is not None
     count = thread_count(threads, rows.shape[:-1])
