@@ -208,8 +208,10 @@ class EdgeCheck {
     }
     template <class Motion>
     bool test_first_block(const Motion& motion, float covered) {
-        bound_motion(robot_.levers, robot_.body_stride, w_.kappa, w_.reach);
-        bound_motion(robot_.pair_levers, robot_.pair_stride, w_.pair_kappa, w_.pair_reach);
+        if (Motion::is_moving || covered > 0) {  // a configuration alone does not move
+            bound_motion(robot_.levers, robot_.body_stride, w_.kappa, w_.reach);
+            bound_motion(robot_.pair_levers, robot_.pair_stride, w_.pair_kappa, w_.pair_reach);
+        }
         find_near(covered);
         is_first_ = true;
         const bool is_blocked = test_all(motion);
