@@ -351,7 +351,7 @@ class CollisionChecker:
 class ArmOptions:
     """Options of plans of arms."""
 
-    def __init__(self, proves_search: bool, proves_answer: bool, simplify: bool, seed: int, edges: int, time_limit: float, range: float, resolution: float) -> None: ...
+    def __init__(self, proves_search: bool, proves_answer: bool, simplify: bool, seed: int, edges: int, improve: int, time_limit: float, range: float, resolution: float) -> None: ...
 
 class ArmPlan:
     """A plan of an arm."""

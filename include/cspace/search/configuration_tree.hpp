@@ -19,6 +19,8 @@ class ConfigurationTree {
     const float* blocks() const { return blocks_.data(); }
     int parent(int node) const { return parents_[std::size_t(node)]; }
     float cost(int node) const { return costs_[std::size_t(node)]; }
+    // Of all nodes, filled up to whole blocks with a number beyond any cost.
+    const float* costs() const { return costs_.data(); }
     void copy_row(int node, float* q) const {
         const float* at = blocks_.data() + place(node);
         for (int k = 0; k < width_; ++k) q[k] = at[lanes * k];
@@ -26,15 +28,17 @@ class ConfigurationTree {
 
     // The number of the new node.
     int add(const float* q, int parent, float cost) {
+        constexpr float beyond = 3e38f;
         const int node = size();
         if (node % lanes == 0) {
+            costs_.insert(costs_.end(), lanes, beyond);
             for (int k = 0; k < width_; ++k) blocks_.insert(blocks_.end(), lanes, q[k]);
         } else {
             float* at = blocks_.data() + place(node);
             for (int k = 0; k < width_; ++k) at[lanes * k] = q[k];
         }
         parents_.push_back(parent);
-        costs_.push_back(cost);
+        costs_[std::size_t(node)] = cost;
         return node;
     }
 

@@ -70,6 +70,10 @@ class RRTConnect(ArmPlanner):
 
     def core_options(self, rng: Seed) -> ArmOptions:
         """The options as the core takes them."""
+        return self.make_options(rng)
+
+    def make_options(self, rng: Seed, improve: int = 0) -> ArmOptions:
+        """The options as the core takes them. improve: motions that may be checked for shorter paths."""
         proved = self.search == "proved"
         return ArmOptions(
             proved,
@@ -77,6 +81,7 @@ class RRTConnect(ArmPlanner):
             self.simplify,
             draw_seed(rng),
             self.edges,
+            improve,
             self.time_limit,
             self.range,
             self.resolution,
