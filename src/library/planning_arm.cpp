@@ -232,6 +232,7 @@ class ArmSearch {
     std::vector<RowReport> report_rows(std::span<const double> rows, std::vector<int>& free) {
         std::vector<RowReport> reports(rows.size() / width_);
         for (std::size_t i = 0; i < reports.size(); ++i) {
+            edges_.has_time();  // polls
             const double* q = &rows[i * width_];
             RowReport& report = reports[i];
             if (!is_within_bounds(q))

@@ -13,8 +13,8 @@ namespace cspace::planning {
 enum class EdgeTest { sampled, proved };
 
 struct ArmOptions {
-    EdgeTest search = EdgeTest::sampled;  // of the trees
-    EdgeTest answer = EdgeTest::proved;   // of the path that is returned
+    EdgeTest search = EdgeTest::proved;  // of the trees
+    EdgeTest answer = EdgeTest::proved;  // of the path that is returned
     bool simplify = true;
     std::uint64_t seed = 0;                                       // shifts the samples; 0: not at all
     std::int64_t edges = 1 << 20;                                 // the search may check so many

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/planning/box.hpp"
 #include "cspace/planning/dynamic_domain.hpp"
 #include "cspace/search/configuration_tree.hpp"
@@ -126,13 +127,15 @@ class RrtConnect {
     void list_straight_edges() {
         std::vector<std::pair<float, std::pair<int, int>>> pairs;
         Row a, b;
+        InterruptPoll poll(1024);
         for (int s = 0; s < nodes(0).size(); ++s)
             for (int g = 0; g < nodes(1).size(); ++g) {
+                poll.step();
                 nodes(0).copy_row(s, a.data()), nodes(1).copy_row(g, b.data());
                 pairs.push_back({box_.distance(a.data(), b.data()), {s, g}});
                 note_distance(pairs.back().first, a.data(), b.data());
             }
-        std::sort(pairs.begin(), pairs.end());
+        sort_polled(pairs);
         for (const auto& pair : pairs) straight_.push_back(pair.second);
     }
     bool try_straight_edge() {

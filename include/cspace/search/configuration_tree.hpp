@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
+
 namespace cspace::search {
 
 class ConfigurationTree {
@@ -46,7 +48,9 @@ class ConfigurationTree {
     std::vector<int> remove_branch(int node) {
         constexpr int removed = -2;
         std::vector<int> numbers(parents_.size()), kept;
+        InterruptPoll poll(1024);
         for (int i = 0; i < size(); ++i) {
+            poll.step();
             const int above = parent(i);  // before i
             const bool goes = i == node || (above >= 0 && numbers[std::size_t(above)] == removed);
             numbers[std::size_t(i)] = goes ? removed : int(kept.size());
@@ -55,6 +59,7 @@ class ConfigurationTree {
         ConfigurationTree left(width_);
         std::vector<float> q(static_cast<std::size_t>(width_));
         for (const int i : kept) {
+            poll.step();
             copy_row(i, q.data());
             const int above = parent(i);
             left.add(q.data(), above < 0 ? no_parent : numbers[std::size_t(above)], cost(i));
