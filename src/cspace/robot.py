@@ -295,7 +295,9 @@ class Robot(Renamed, RobotBase, KinematicModel):
         if self._solver is None:
             from cspace.ik import solver_of_robot
 
-            self._solver = solver_of_robot(self)
+            made = solver_of_robot(self)
+            made._robot = self
+            self._solver = made
         return cast("ik.Solver", self._solver)
 
     def with_tool(self, T_tip_tool: PoseLike) -> Robot:

@@ -35,7 +35,7 @@ class RRTConnect(ArmPlanner):
     summary = "two trees from start and goal; the default"
 
     search: str = option(
-        "sampled", "how the trees check motions", choices=("sampled", "proved"), subject="kind of check"
+        "proved", "how the trees check motions", choices=("proved", "sampled"), subject="kind of check"
     )
     resolution: float = option(1.0 / 32.0, "distance of samples", unit="rad or m", above=0.0, maximum=1e3)
     range: float = option(1.0, "longest motion of a tree", unit="rad or m", above=0.0, maximum=1e3)
