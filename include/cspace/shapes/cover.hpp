@@ -1,0 +1,201 @@
+// A few spheres that contain a solid, or a surface, and stick out of it by no more than a given length.
+//
+// Candidates are balls near the medial axis whose radius exceeds the depth of their centre by that length.
+// Greedy set cover and exchange choose some that hold all pieces of the surface; what they leave inside is
+// found by division into cells and covered likewise; each sphere is shrunk to what it alone holds.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cspace/shapes/cover_check.hpp"
+#include "cspace/shapes/cover_items.hpp"
+#include "cspace/shapes/cover_watch.hpp"
+#include "cspace/shapes/medial_balls.hpp"
+#include "cspace/shapes/set_cover.hpp"
+#include "cspace/shapes/stick_out.hpp"
+#include "cspace/shapes/triangle_surface.hpp"
+
+namespace cspace::shapes {
+
+struct CoverGoal {
+    double within;        // the largest stick-out [m]
+    bool solid;           // the surface is closed: centres may lie inside it
+    bool inside;          // the inside is covered too
+    std::size_t most;     // pieces, cells and runs in memory
+};
+
+class CoverSearch {
+  public:
+    CoverSearch(const TriangleSurface& surface, const CoverGoal& goal, Watch& watch)
+        : surface_(surface),
+          goal_(goal),
+          watch_(watch),
+          margin_(margin_share * goal.within),
+          rounding_(surface_rounding * surface.extent()) {}
+
+    std::vector<Ball> find() {
+        find_candidates();
+        const CoverItems<Triangle> pieces(
+            split_triangles(surface_.triangles(), piece_side * goal_.within, goal_.most, watch_));
+        std::vector<Ball> balls = cover_items(pieces);
+        if (goal_.solid && goal_.inside) cover_inside(balls);
+        return balls;
+    }
+    // What CoverCheck is given: everything this near to the surface lies in the spheres that hold its pieces.
+    double layer() const { return layer_share * goal_.within; }
+
+  private:
+    // Shares of the largest stick-out. A piece counts as held only if it lies this deep in a sphere; the
+    // layer is thinner, so that no rounding matters.
+    static constexpr double margin_share = 1.0 / 16, layer_share = 1.0 / 20;
+    static constexpr double piece_side = 1.0 / 3;
+    static constexpr double sample_side = 2.0, surface_sample_side = 0.5;  // between candidates
+    static constexpr double cell_radius = 1.0 / 6;  // of the largest cells of what the spheres leave inside
+    static constexpr int climb_steps = 12;
+
+    const TriangleSurface& surface_;
+    const CoverGoal& goal_;
+    Watch& watch_;
+    double margin_, rounding_;
+    std::vector<Ball> candidates_;
+
+    // One candidate or two per sample of the surface; samples are the middles of its parts, one in each cell
+    // of a grid.
+    void find_candidates() {
+        const double side = (goal_.solid ? sample_side : surface_sample_side) * goal_.within;
+        const std::vector<Triangle> parts = split_triangles(surface_.triangles(), side, goal_.most, watch_);
+        std::vector<std::pair<std::array<double, 3>, std::uint32_t>> cells;
+        for (const Triangle& t : parts) {
+            const Vec3d at = (1.0 / 3) * (t[0] + t[1] + t[2]) - surface_.bounds().low;
+            const double grid = side / 2;
+            cells.push_back({{std::floor(at.x / grid), std::floor(at.y / grid), std::floor(at.z / grid)},
+                             std::uint32_t(cells.size())});
+        }
+        sort_polled(cells);
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            if (k > 0 && cells[k].first == cells[k - 1].first) continue;
+            watch_.look();
+            add_candidates(parts[cells[k].second]);
+        }
+    }
+    void add_candidates(const Triangle& part) {
+        const Vec3d at = (1.0 / 3) * (part[0] + part[1] + part[2]);
+        const Vec3d n = cross(part[1] - part[0], part[2] - part[0]);
+        const double length = norm(n);
+        if (!goal_.solid || !(length > 0)) return add_candidate(at);
+        const Ball first = touching_ball(surface_, at, (-1 / length) * n, surface_.extent());
+        const bool found = add_inner(first.center);
+        const Ball deepest = climb(surface_, first.center, goal_.within, climb_steps);
+        if (!(add_inner(deepest.center) || found)) add_candidate(at);
+    }
+    bool add_inner(const Vec3d& center) {
+        if (surface_.winding(center) < 1) return false;
+        add_candidate(center);
+        return true;
+    }
+    void add_candidate(const Vec3d& center) {
+        const double radius = goal_.within - rounding_ - signed_distance(surface_, goal_.solid, center);
+        if (radius > margin_) candidates_.push_back({center, radius});
+    }
+
+    // Balls that hold all items, each with a margin.
+    template <class Item>
+    std::vector<Ball> cover_items(const CoverItems<Item>& items) {
+        const ItemSets sets = list_items(items);
+        SetCover cover(sets, weigh(items), watch_);
+        std::vector<Ball> balls;
+        for (const std::uint32_t k : cover.choose()) balls.push_back(candidates_[k]);
+        for (std::size_t k = 0; k < items.size(); ++k)
+            if (cover.counts()[k] == 0) balls.push_back(own_ball(items[k]));
+        shrink(items, balls);
+        return balls;
+    }
+    template <class Item>
+    ItemSets list_items(const CoverItems<Item>& items) {
+        ItemSets sets;
+        for (const Ball& b : candidates_) {
+            items.find_inside(b.center, b.radius - margin_, sets.runs);
+            sets.close_set();
+            watch_.look();
+            if (sets.runs.size() > goal_.most) throw TooFine();
+        }
+        return sets;
+    }
+    // Whole numbers in proportion to the sizes of items: sums of them do not depend on their order.
+    template <class Item>
+    static std::vector<std::uint32_t> weigh(const CoverItems<Item>& items) {
+        constexpr double largest = 0x1p30;
+        double total = 0;
+        for (std::size_t k = 0; k < items.size(); ++k) total += size_of(items[k]);
+        const double scale = total > 0 ? largest / total : 0;
+        std::vector<std::uint32_t> weights;
+        weights.reserve(items.size());
+        for (std::size_t k = 0; k < items.size(); ++k)
+            weights.push_back(1 + std::uint32_t(scale * size_of(items[k])));
+        return weights;
+    }
+    static double size_of(const Triangle& t) { return area_of(t); }
+    static double size_of(const Box& b) {
+        const Vec3d side = b.high - b.low;
+        return side.x * side.y * side.z;
+    }
+    Ball own_ball(const Triangle& t) const {
+        const Vec3d center = (1.0 / 3) * (t[0] + t[1] + t[2]);
+        return {center, std::sqrt(farthest_square(t, center)) + 2 * margin_};
+    }
+    Ball own_ball(const Box& b) const {
+        const Vec3d center = middle_of(b);
+        return {center, std::sqrt(farthest_square(b, center)) + 2 * margin_};
+    }
+
+    // Gives each ball, the last first, the radius that what it alone holds needs.
+    template <class Item>
+    void shrink(const CoverItems<Item>& items, std::vector<Ball>& balls) {
+        std::vector<std::uint32_t> count(items.size(), 0);
+        std::vector<Run> runs;
+        const auto visit_held = [&](const Ball& ball, const auto& visit) {
+            runs.clear();
+            items.find_inside(ball.center, ball.radius - margin_, runs);
+            for (const Run& run : runs)
+                for (std::size_t k = run.begin; k < run.end; ++k) visit(k);
+            watch_.look();
+        };
+        for (const Ball& ball : balls) visit_held(ball, [&](std::size_t k) { ++count[k]; });
+        for (std::size_t i = balls.size(); i-- > 0;) {
+            Ball& ball = balls[i];
+            double square = 0;
+            visit_held(ball, [&](std::size_t k) {
+                if (count[k]-- == 1) square = std::max(square, farthest_square(items[k], ball.center));
+            });
+            constexpr double more = 1 + 0x1p-40;  // so that what is farthest counts as held again
+            ball.radius = std::min(ball.radius, std::sqrt(square) * more + margin_);
+            visit_held(ball, [&](std::size_t k) { ++count[k]; });
+        }
+        std::erase_if(balls, [&](const Ball& ball) { return !(ball.radius > margin_); });
+    }
+
+    // Adds balls for what is left inside.
+    void cover_inside(std::vector<Ball>& balls) {
+        constexpr int most_rounds = 4;
+        for (int round = 0; round < most_rounds; ++round) {
+            CoverCheck check(surface_, balls, {layer(), layer(), goal_.most}, watch_);
+            std::vector<Box> open = check.find_open_cells(cell_radius * goal_.within);
+            if (open.empty()) return;
+            for (const Box& cell : open) {
+                watch_.look();
+                add_candidate(climb(surface_, middle_of(cell), goal_.within, climb_steps).center);
+            }
+            const CoverItems<Box> cells(std::move(open));
+            const std::vector<Ball> more = cover_items(cells);
+            balls.insert(balls.end(), more.begin(), more.end());
+        }
+    }
+};
+
+}  // namespace cspace::shapes
