@@ -47,6 +47,6 @@
 #include "cspace/navigation/sampling/rrt.hpp"
 #include "cspace/navigation/visibility/search.hpp"
 #include "cspace/navigation/voronoi/roadmap.hpp"
+#include "cspace/shapes/cover.hpp"
 #include "cspace/shapes/distance.hpp"
-#include "cspace/shapes/smallest_ball.hpp"
 #include "cspace/version.hpp"

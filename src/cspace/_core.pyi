@@ -306,6 +306,16 @@ class PolygonCore:
     def path_clearance(self, path: numpy.typing.NDArray[numpy.float64]) -> float:
         """The least distance from a path to a wall."""
 
+def find_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.typing.NDArray[numpy.int32], solid: bool, within: float, inside: bool, seconds: float) -> tuple[str, numpy.typing.NDArray[numpy.float64], float, float, int]:
+    """
+    Outcome, spheres (n, 4), bounds of the stick-out and of the uncovered depth, parts of the proof.
+    """
+
+def measure_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.typing.NDArray[numpy.int32], solid: bool, spheres: numpy.typing.NDArray[numpy.float64], inside: bool, tolerance: float, seconds: float) -> tuple[str, tuple[float, float], tuple[float, float], tuple[float, float]]:
+    """
+    Outcome, and two bounds each of stick-out, uncovered depth and uncovered share.
+    """
+
 class RouteBase:
     """The compiled half of cspace.navigation.Route."""
 

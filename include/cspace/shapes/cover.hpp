@@ -24,10 +24,11 @@
 namespace cspace::shapes {
 
 struct CoverGoal {
-    double within;        // the largest stick-out [m]
-    bool solid;           // the surface is closed: centres may lie inside it
-    bool inside;          // the inside is covered too
-    std::size_t most;     // pieces, cells and runs in memory
+    double within;  // the largest stick-out [m]
+    bool solid;     // the surface is closed: centres may lie inside it
+    bool inside;    // the inside is covered too
+    // Of what is in memory: pieces of the surface, cells and candidates; runs of pieces that candidates hold.
+    std::size_t most_pieces, most_runs;
 };
 
 class CoverSearch {
@@ -42,7 +43,7 @@ class CoverSearch {
     std::vector<Ball> find() {
         find_candidates();
         const CoverItems<Triangle> pieces(
-            split_triangles(surface_.triangles(), piece_side * goal_.within, goal_.most, watch_));
+            split_triangles(surface_.triangles(), piece_side * goal_.within, goal_.most_pieces, watch_));
         std::vector<Ball> balls = cover_items(pieces);
         if (goal_.solid && goal_.inside) cover_inside(balls);
         return balls;
@@ -69,7 +70,7 @@ class CoverSearch {
     // of a grid.
     void find_candidates() {
         const double side = (goal_.solid ? sample_side : surface_sample_side) * goal_.within;
-        const std::vector<Triangle> parts = split_triangles(surface_.triangles(), side, goal_.most, watch_);
+        const std::vector<Triangle> parts = split_triangles(surface_.triangles(), side, goal_.most_pieces, watch_);
         std::vector<std::pair<std::array<double, 3>, std::uint32_t>> cells;
         for (const Triangle& t : parts) {
             const Vec3d at = (1.0 / 3) * (t[0] + t[1] + t[2]) - surface_.bounds().low;
@@ -123,7 +124,7 @@ class CoverSearch {
             items.find_inside(b.center, b.radius - margin_, sets.runs);
             sets.close_set();
             watch_.look();
-            if (sets.runs.size() > goal_.most) throw TooFine();
+            if (sets.runs.size() > goal_.most_runs) throw TooFine();
         }
         return sets;
     }
@@ -183,8 +184,9 @@ class CoverSearch {
     // Adds balls for what is left inside.
     void cover_inside(std::vector<Ball>& balls) {
         constexpr int most_rounds = 4;
+        constexpr std::size_t most_cells = std::size_t(1) << 25;
         for (int round = 0; round < most_rounds; ++round) {
-            CoverCheck check(surface_, balls, {layer(), layer(), goal_.most}, watch_);
+            CoverCheck check(surface_, balls, {layer(), layer(), most_cells}, watch_);
             std::vector<Box> open = check.find_open_cells(cell_radius * goal_.within);
             if (open.empty()) return;
             for (const Box& cell : open) {

@@ -67,7 +67,8 @@ class CoverItems {
     static std::vector<Box> boxes_of(const std::vector<Item>& items) {
         std::vector<Box> boxes;
         boxes.reserve(items.size());
-        for (const Item& item : items) boxes.push_back(box_around(item));
+        InterruptPoll poll(1 << 12);
+        for (const Item& item : items) boxes.push_back(box_around(item)), poll.step();
         return boxes;
     }
 };

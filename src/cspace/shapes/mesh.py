@@ -11,6 +11,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.shapes.hull import Hull
+from cspace.shapes.mesh_cover import SphereCover, cover_mesh
 from cspace.shapes.mesh_files import read_mesh
 from cspace.shapes.shape import ORIGIN, Shape, check_points, find_bounds
 from cspace.shapes.solids import measure_points
@@ -108,8 +109,18 @@ class Mesh(Shape):
         """The convex hull of the mesh, with its pose and name. InputError for a flat mesh."""
         return Hull(self.vertices, self.pose, self.name)
 
+    def cover(self, within: float = 0.01, inside: bool = True) -> SphereCover:
+        """Few spheres that contain the mesh and stick out of it by at most `within` [m]: see cover_mesh.
+
+        The result has centers (n, 3), radii (n,) and stick_out. inside: False covers the surface alone.
+        """
+        return cover_mesh(self, within, inside)
+
     def _measure(self, local: Array) -> tuple[Array, Array]:
         return measure_mesh(local, self.vertices[self.faces], self.solid)
+
+    def _surface(self) -> tuple[Array, Faces, bool]:
+        return self.vertices, self.faces, self.solid
 
     def _sizes(self) -> str:
         what = "solid" if self.solid else "surface"
