@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -56,7 +56,8 @@ class CoverSearch {
     // layer is thinner, so that no rounding matters.
     static constexpr double margin_share = 1.0 / 16, layer_share = 1.0 / 20;
     static constexpr double piece_side = 1.0 / 3;
-    static constexpr double sample_side = 2.0, surface_sample_side = 0.5;  // between candidates
+    static constexpr double sample_side = 1.5, surface_sample_side = 0.5;  // of parts, one sample each
+    static constexpr double candidate_cell = 0.5;
     static constexpr double cell_radius = 1.0 / 6;  // of the largest cells of what the spheres leave inside
     static constexpr int climb_steps = 12;
 
@@ -66,27 +67,50 @@ class CoverSearch {
     double margin_, rounding_;
     std::vector<Ball> candidates_;
 
-    // One candidate or two per sample of the surface; samples are the middles of its parts, one in each cell
-    // of a grid.
+    // One candidate or two per sample of the surface. Samples are the middles of its parts, one in each cell
+    // of a grid; of candidates the largest in each cell are kept.
     void find_candidates() {
         const double side = (goal_.solid ? sample_side : surface_sample_side) * goal_.within;
-        const std::vector<Triangle> parts = split_triangles(surface_.triangles(), side, goal_.most_pieces, watch_);
-        std::vector<std::pair<std::array<double, 3>, std::uint32_t>> cells;
-        for (const Triangle& t : parts) {
-            const Vec3d at = (1.0 / 3) * (t[0] + t[1] + t[2]) - surface_.bounds().low;
-            const double grid = side / 2;
-            cells.push_back({{std::floor(at.x / grid), std::floor(at.y / grid), std::floor(at.z / grid)},
-                             std::uint32_t(cells.size())});
+        std::vector<Triangle> parts = split_triangles(surface_.triangles(), side, goal_.most_pieces, watch_);
+        thin_out(
+            parts, side / 2, [](const Triangle& t) { return middle_of(t); },
+            [](const Triangle&, const Triangle&) { return false; });
+        for (const Triangle& part : parts) watch_.look(), add_candidates(part);
+        if (!goal_.solid) return;
+        thin_out(
+            candidates_, candidate_cell * goal_.within, [](const Ball& b) { return b.center; },
+            [](const Ball& a, const Ball& b) { return a.radius > b.radius; });
+    }
+    static Vec3d middle_of(const Triangle& t) { return (1.0 / 3) * (t[0] + t[1] + t[2]); }
+
+    // Keeps of the items in each cell of a grid the best one, the first of equal ones.
+    template <class Item, class Place, class Better>
+    void thin_out(std::vector<Item>& items, double grid, const Place& place, const Better& is_better) {
+        struct Entry {
+            double x, y, z;
+            std::uint32_t item;
+            bool shares_cell(const Entry& e) const { return x == e.x && y == e.y && z == e.z; }
+        };
+        std::vector<Entry> entries;
+        entries.reserve(items.size());
+        for (const Item& item : items) {
+            const Vec3d at = (1 / grid) * (place(item) - surface_.bounds().low);
+            entries.push_back(
+                {std::floor(at.x), std::floor(at.y), std::floor(at.z), std::uint32_t(entries.size())});
+            watch_.step();
         }
-        sort_polled(cells);
-        for (std::size_t k = 0; k < cells.size(); ++k) {
-            if (k > 0 && cells[k].first == cells[k - 1].first) continue;
-            watch_.look();
-            add_candidates(parts[cells[k].second]);
-        }
+        sort_polled(entries, [&](const Entry& a, const Entry& b) {
+            if (!a.shares_cell(b)) return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+            if (is_better(items[a.item], items[b.item])) return true;
+            return !is_better(items[b.item], items[a.item]) && a.item < b.item;
+        });
+        std::vector<Item> kept;
+        for (std::size_t k = 0; k < entries.size(); ++k)
+            if (k == 0 || !entries[k].shares_cell(entries[k - 1])) kept.push_back(items[entries[k].item]);
+        items = std::move(kept);
     }
     void add_candidates(const Triangle& part) {
-        const Vec3d at = (1.0 / 3) * (part[0] + part[1] + part[2]);
+        const Vec3d at = middle_of(part);
         const Vec3d n = cross(part[1] - part[0], part[2] - part[0]);
         const double length = norm(n);
         if (!goal_.solid || !(length > 0)) return add_candidate(at);
@@ -147,11 +171,11 @@ class CoverSearch {
         return side.x * side.y * side.z;
     }
     Ball own_ball(const Triangle& t) const {
-        const Vec3d center = (1.0 / 3) * (t[0] + t[1] + t[2]);
+        const Vec3d center = middle_of(t);
         return {center, std::sqrt(farthest_square(t, center)) + 2 * margin_};
     }
     Ball own_ball(const Box& b) const {
-        const Vec3d center = middle_of(b);
+        const Vec3d center = shapes::middle_of(b);
         return {center, std::sqrt(farthest_square(b, center)) + 2 * margin_};
     }
 
@@ -191,7 +215,7 @@ class CoverSearch {
             if (open.empty()) return;
             for (const Box& cell : open) {
                 watch_.look();
-                add_candidate(climb(surface_, middle_of(cell), goal_.within, climb_steps).center);
+                add_candidate(climb(surface_, shapes::middle_of(cell), goal_.within, climb_steps).center);
             }
             const CoverItems<Box> cells(std::move(open));
             const std::vector<Ball> more = cover_items(cells);
