@@ -161,8 +161,7 @@ TEST(chosen_sets_hold_every_item_and_none_is_redundant) {
         for (int k = 0; k < 80; ++k) {
             const auto begin = std::uint32_t(random.below(int(items)));
             const auto end = std::min(items, begin + 1 + std::uint32_t(random.below(8)));
-            sets.runs.push_back({begin, end});
-            sets.close_set();
+            sets.add(std::array{Run{begin, end}});
             for (std::uint32_t i = begin; i < end; ++i) ++held[i];
         }
         Watch watch(infinite);

@@ -43,9 +43,9 @@ inline double square_of(const Vec3d& v) { return dot(v, v); }
 
 // The square of the distance from a point to the nearest place of a box; 0 inside.
 inline double nearest_square(const Box& box, const Vec3d& p) {
-    const double x = std::max({box.low.x - p.x, p.x - box.high.x, 0.0});
-    const double y = std::max({box.low.y - p.y, p.y - box.high.y, 0.0});
-    const double z = std::max({box.low.z - p.z, p.z - box.high.z, 0.0});
+    const double x = std::max(std::max(box.low.x - p.x, p.x - box.high.x), 0.0);
+    const double y = std::max(std::max(box.low.y - p.y, p.y - box.high.y), 0.0);
+    const double z = std::max(std::max(box.low.z - p.z, p.z - box.high.z), 0.0);
     return x * x + y * y + z * z;
 }
 // The same to the farthest corner.
@@ -71,6 +71,7 @@ class BoxTree {
         middles.reserve(boxes.size());
         InterruptPoll poll(poll_stride);
         for (const Box& box : boxes) middles.push_back(middle_of(box)), poll.step();
+        nodes_.reserve(boxes.size() * 4 / leaf_size + 1);  // leaves are at least half full
         if (!boxes.empty()) build(boxes, middles, 0, std::uint32_t(boxes.size()), leaf_size, poll);
     }
 

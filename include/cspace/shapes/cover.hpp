@@ -57,7 +57,6 @@ class CoverSearch {
     static constexpr double margin_share = 1.0 / 16, layer_share = 1.0 / 20;
     static constexpr double piece_side = 1.0 / 3;
     static constexpr double sample_side = 1.5, surface_sample_side = 0.5;  // of parts, one sample each
-    static constexpr double candidate_cell = 0.5;
     static constexpr double cell_radius = 1.0 / 6;  // of the largest cells of what the spheres leave inside
     static constexpr int climb_steps = 12;
 
@@ -65,6 +64,7 @@ class CoverSearch {
     const CoverGoal& goal_;
     Watch& watch_;
     double margin_, rounding_;
+    double candidate_cell_ = 0.5;  // share of the stick-out
     std::vector<Ball> candidates_;
 
     // One candidate or two per sample of the surface. Samples are the middles of its parts, one in each cell
@@ -76,9 +76,11 @@ class CoverSearch {
             parts, side / 2, [](const Triangle& t) { return middle_of(t); },
             [](const Triangle&, const Triangle&) { return false; });
         for (const Triangle& part : parts) watch_.look(), add_candidates(part);
-        if (!goal_.solid) return;
+        if (goal_.solid) thin_out_candidates();
+    }
+    void thin_out_candidates() {
         thin_out(
-            candidates_, candidate_cell * goal_.within, [](const Ball& b) { return b.center; },
+            candidates_, candidate_cell_ * goal_.within, [](const Ball& b) { return b.center; },
             [](const Ball& a, const Ball& b) { return a.radius > b.radius; });
     }
     static Vec3d middle_of(const Triangle& t) { return (1.0 / 3) * (t[0] + t[1] + t[2]); }
@@ -105,8 +107,9 @@ class CoverSearch {
             return !is_better(items[b.item], items[a.item]) && a.item < b.item;
         });
         std::vector<Item> kept;
+        kept.reserve(entries.size());
         for (std::size_t k = 0; k < entries.size(); ++k)
-            if (k == 0 || !entries[k].shares_cell(entries[k - 1])) kept.push_back(items[entries[k].item]);
+            if (k == 0 || !entries[k].shares_cell(entries[k - 1])) kept.push_back(items[entries[k].item]), watch_.step();
         items = std::move(kept);
     }
     void add_candidates(const Triangle& part) {
@@ -132,37 +135,54 @@ class CoverSearch {
     // Balls that hold all items, each with a margin.
     template <class Item>
     std::vector<Ball> cover_items(const CoverItems<Item>& items) {
-        const ItemSets sets = list_items(items);
+        ItemSets sets = list_items(items);
         SetCover cover(sets, weigh(items), watch_);
         std::vector<Ball> balls;
         for (const std::uint32_t k : cover.choose()) balls.push_back(candidates_[k]);
         for (std::size_t k = 0; k < items.size(); ++k)
             if (cover.counts()[k] == 0) balls.push_back(own_ball(items[k]));
+        sets.release(watch_);
         shrink(items, balls);
         return balls;
     }
+    // What each candidate holds; where that needs too much memory, fewer candidates are kept.
     template <class Item>
     ItemSets list_items(const CoverItems<Item>& items) {
+        constexpr double coarser = 1.5;
         ItemSets sets;
-        for (const Ball& b : candidates_) {
-            items.find_inside(b.center, b.radius - margin_, sets.runs);
-            sets.close_set();
-            watch_.look();
-            if (sets.runs.size() > goal_.most_runs) throw TooFine();
+        while (!list_items(items, sets)) {
+            if (candidates_.size() < 2) throw TooFine();
+            candidate_cell_ *= coarser;
+            thin_out_candidates();
         }
         return sets;
     }
+    // false: there are too many runs.
+    template <class Item>
+    bool list_items(const CoverItems<Item>& items, ItemSets& sets) {
+        sets.release(watch_);
+        std::vector<Run> runs;
+        for (const Ball& b : candidates_) {
+            items.find_inside(b.center, b.radius - margin_, runs);
+            sets.add(runs);
+            watch_.look();
+            if (sets.count_runs() > goal_.most_runs) return false;
+        }
+        return true;
+    }
     // Whole numbers in proportion to the sizes of items: sums of them do not depend on their order.
     template <class Item>
-    static std::vector<std::uint32_t> weigh(const CoverItems<Item>& items) {
+    std::vector<std::uint32_t> weigh(const CoverItems<Item>& items) {
         constexpr double largest = 0x1p30;
         double total = 0;
-        for (std::size_t k = 0; k < items.size(); ++k) total += size_of(items[k]);
+        for (std::size_t k = 0; k < items.size(); ++k) total += size_of(items[k]), watch_.step();
         const double scale = total > 0 ? largest / total : 0;
         std::vector<std::uint32_t> weights;
         weights.reserve(items.size());
-        for (std::size_t k = 0; k < items.size(); ++k)
+        for (std::size_t k = 0; k < items.size(); ++k) {
             weights.push_back(1 + std::uint32_t(scale * size_of(items[k])));
+            watch_.step();
+        }
         return weights;
     }
     static double size_of(const Triangle& t) { return area_of(t); }
@@ -185,7 +205,6 @@ class CoverSearch {
         std::vector<std::uint32_t> count(items.size(), 0);
         std::vector<Run> runs;
         const auto visit_held = [&](const Ball& ball, const auto& visit) {
-            runs.clear();
             items.find_inside(ball.center, ball.radius - margin_, runs);
             for (const Run& run : runs)
                 for (std::size_t k = run.begin; k < run.end; ++k) visit(k);

@@ -34,17 +34,18 @@ class CoverItems {
   public:
     explicit CoverItems(std::vector<Item> items) : tree_(boxes_of(items), leaf_size) {
         items_.reserve(items.size());
-        for (const std::uint32_t k : tree_.order()) items_.push_back(items[k]);
+        InterruptPoll poll(poll_stride);
+        for (const std::uint32_t k : tree_.order()) items_.push_back(items[k]), poll.step();
     }
     std::size_t size() const { return items_.size(); }
     const Item& operator[](std::size_t k) const { return items_[k]; }
 
-    // Appends the items that lie whole in a ball.
+    // The items that lie whole in a ball.
     void find_inside(const Vec3d& center, double radius, std::vector<Run>& runs) const {
-        const std::size_t first = runs.size();
+        runs.clear();
         const double square = radius > 0 ? radius * radius : -1;
         const auto append = [&](std::uint32_t begin, std::uint32_t end) {
-            if (runs.size() > first && runs.back().end == begin)
+            if (!runs.empty() && runs.back().end == begin)
                 runs.back().end = end;
             else
                 runs.push_back({begin, end});
@@ -61,13 +62,14 @@ class CoverItems {
 
   private:
     static constexpr std::size_t leaf_size = 4;
+    static constexpr std::uint32_t poll_stride = 1 << 10;
     BoxTree tree_;
     std::vector<Item> items_;
 
     static std::vector<Box> boxes_of(const std::vector<Item>& items) {
         std::vector<Box> boxes;
         boxes.reserve(items.size());
-        InterruptPoll poll(1 << 12);
+        InterruptPoll poll(poll_stride);
         for (const Item& item : items) boxes.push_back(box_around(item)), poll.step();
         return boxes;
     }
@@ -75,11 +77,10 @@ class CoverItems {
 
 inline double area_of(const Triangle& t) { return 0.5 * norm(cross(t[1] - t[0], t[2] - t[0])); }
 
-// The triangles of a surface, halved across their longest sides until none is longer than `side`. Throws
-// TooFine for more than `most`.
-inline std::vector<Triangle> split_triangles(std::span<const Triangle> triangles, double side,
-                                             std::size_t most, Watch& watch) {
-    std::vector<Triangle> pieces, waiting;
+// Halves triangles across their longest sides until none is longer than `side`, and visits the parts.
+template <class Visit>
+void visit_parts(std::span<const Triangle> triangles, double side, Watch& watch, const Visit& visit) {
+    std::vector<Triangle> waiting;
     for (const Triangle& whole : triangles) {
         waiting.push_back(whole);
         while (!waiting.empty()) {
@@ -93,8 +94,7 @@ inline std::vector<Triangle> split_triangles(std::span<const Triangle> triangles
                 if (square[k] > square[longest]) longest = k;
             }
             if (square[longest] <= side * side) {
-                pieces.push_back(t);
-                if (pieces.size() > most) throw TooFine();
+                visit(t);
                 continue;
             }
             const Vec3d &a = t[longest], &b = t[(longest + 1) % 3], &c = t[(longest + 2) % 3];
@@ -103,7 +103,19 @@ inline std::vector<Triangle> split_triangles(std::span<const Triangle> triangles
             waiting.push_back({half, b, c});
         }
     }
-    return pieces;
+}
+
+// These parts. Throws TooFine for more than `most`.
+inline std::vector<Triangle> split_triangles(std::span<const Triangle> triangles, double side,
+                                             std::size_t most, Watch& watch) {
+    std::size_t count = 0;
+    visit_parts(triangles, side, watch, [&](const Triangle&) {
+        if (++count > most) throw TooFine();
+    });
+    std::vector<Triangle> parts;
+    parts.reserve(count);  // a vector that grows is copied, which takes long
+    visit_parts(triangles, side, watch, [&](const Triangle& t) { parts.push_back(t); });
+    return parts;
 }
 
 }  // namespace cspace::shapes

@@ -17,10 +17,11 @@ class Watch {
     // seconds: of the search from now on; infinite without a limit.
     explicit Watch(double seconds) : begin_(Clock::now()), seconds_(seconds) {}
     double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-    // Called every few microseconds: polls for interrupts, and looks at the clock now and then.
+    // Called every few microseconds: looks now and then.
     void step() {
         if (--left_ == 0) look();
     }
+    // Polls for interrupts and looks at the clock: called at least every few milliseconds.
     void look() {
         left_ = stride;
         poll_interrupts();

@@ -85,7 +85,8 @@ class TriangleSurface {
                                      std::span<const std::array<std::int32_t, 3>> faces) {
         std::vector<Box> boxes;
         boxes.reserve(faces.size());
-        for (const auto& face : faces) boxes.push_back(box_of(corners_of(vertices, face)));
+        InterruptPoll poll(poll_stride);
+        for (const auto& face : faces) boxes.push_back(box_of(corners_of(vertices, face))), poll.step();
         return boxes;
     }
     static Facet facet_of(const Triangle& t) {
