@@ -48,7 +48,8 @@ Mesh star(check::Random& random, int divisions, double least, double most) {
 Mesh box(const Vec3d& half) {
     Mesh mesh;
     for (int k = 0; k < 8; ++k)
-        mesh.vertices.push_back({k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z});
+        mesh.vertices.push_back(
+            {k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z});
     mesh.faces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
     return mesh;
@@ -69,8 +70,8 @@ Mesh ring(int sides, double radius, double half) {
     return mesh;
 }
 std::vector<Mesh> solids(check::Random& random) {
-    return {star(random, 0, 0.05, 0.2), star(random, 2, 0.1, 0.12),      star(random, 2, 0.06, 0.14),
-            box({0.1, 0.05, 0.02}),     box({0.15, 0.15, 0.001}),        ring(24, 0.1, 0.02),
+    return {star(random, 0, 0.05, 0.2), star(random, 2, 0.1, 0.12),    star(random, 2, 0.06, 0.14),
+            box({0.1, 0.05, 0.02}),     box({0.15, 0.15, 0.001}),      ring(24, 0.1, 0.02),
             ring(7, 0.05, 0.03),        star(random, 3, 0.15, 0.15001)};
 }
 Mesh open_half(Mesh mesh) {
@@ -107,7 +108,8 @@ double slow_winding(const Mesh& mesh, const Vec3d& p) {
         const Vec3d a = mesh.vertices[std::size_t(i)] - p, b = mesh.vertices[std::size_t(j)] - p,
                     c = mesh.vertices[std::size_t(k)] - p;
         const double la = norm(a), lb = norm(b), lc = norm(c);
-        total += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+        total +=
+            std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
     }
     return total / 6.283185307179586;
 }

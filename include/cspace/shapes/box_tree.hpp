@@ -141,9 +141,9 @@ class BoxTree {
         nodes_.push_back({box, begin, end, 0});
         if (end - begin <= leaf_size) return;
         const Vec3d size = centers.high - centers.low;
-        double Vec3d::*const axis = size.x >= size.y && size.x >= size.z ? &Vec3d::x
-                                    : size.y >= size.z                   ? &Vec3d::y
-                                                                         : &Vec3d::z;
+        double Vec3d::* const axis = size.x >= size.y && size.x >= size.z ? &Vec3d::x
+                                     : size.y >= size.z                   ? &Vec3d::y
+                                                                          : &Vec3d::z;
         const std::uint32_t half = begin + (end - begin) / 2;
         std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
                          [&](std::uint32_t a, std::uint32_t b) {

@@ -109,7 +109,8 @@ class CoverSearch {
         std::vector<Item> kept;
         kept.reserve(entries.size());
         for (std::size_t k = 0; k < entries.size(); ++k)
-            if (k == 0 || !entries[k].shares_cell(entries[k - 1])) kept.push_back(items[entries[k].item]), watch_.step();
+            if (k == 0 || !entries[k].shares_cell(entries[k - 1]))
+                kept.push_back(items[entries[k].item]), watch_.step();
         items = std::move(kept);
     }
     void add_candidates(const Triangle& part) {

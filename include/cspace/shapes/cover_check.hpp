@@ -181,8 +181,8 @@ class CoverCheck {
         const double bound = spheres_.bound(t, list) + around_;
         if (is_settled(bound)) return;
         const Vec3d half[] = {0.5 * (t[0] + t[1]), 0.5 * (t[1] + t[2]), 0.5 * (t[2] + t[0])};
-        const double side = std::sqrt(
-            std::max({square_of(t[1] - t[0]), square_of(t[2] - t[1]), square_of(t[0] - t[2])}));
+        const double side =
+            std::sqrt(std::max({square_of(t[1] - t[0]), square_of(t[2] - t[1]), square_of(t[0] - t[2])}));
         if (side < settings_.tolerance / 4) {
             found_.upper = std::max(found_.upper, bound);
             return;

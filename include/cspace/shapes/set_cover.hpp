@@ -14,8 +14,8 @@
 
 namespace cspace::shapes {
 
-// Sets of items, each as runs of consecutive numbers, in blocks of memory: a long vector that grows is copied,
-// which takes long.
+// Sets of items, each as runs of consecutive numbers, in blocks of memory: a long vector that grows is
+// copied, which takes long.
 class ItemSets {
   public:
     void add(std::span<const Run> runs) {

@@ -71,12 +71,12 @@ class StickOut {
         if (nearest_square(cell, ball.center) > ball.radius * ball.radius) return;
         const Vec3d middle = middle_of(cell), d = middle - ball.center;
         const double from_center = norm(d);
-        const Vec3d place = from_center > ball.radius ? ball.center + (ball.radius / from_center) * d : middle;
+        const Vec3d place =
+            from_center > ball.radius ? ball.center + (ball.radius / from_center) * d : middle;
         const double rounding = surface_rounding * surface_.extent();
         const double at_place = signed_distance(surface_, solid_, place);
         found_.lower = std::max(found_.lower, at_place - rounding);
-        const double bound =
-            std::min(known, at_place + std::sqrt(farthest_square(cell, place)) + rounding);
+        const double bound = std::min(known, at_place + std::sqrt(farthest_square(cell, place)) + rounding);
         if (bound <= 0 || is_settled(bound)) return;
         for (int k = 0; k < 8; ++k) measure_cell(ball, octant_of(cell, middle, k), bound);
     }

@@ -126,7 +126,7 @@ class TriangleSurface {
 
     // Adds the signed crossings of the ray from p along an axis; false where rounding leaves one open.
     bool count_crossings(const Vec3d& p, int axis, int& crossings) const {
-        double Vec3d::*const parts[] = {&Vec3d::x, &Vec3d::y, &Vec3d::z, &Vec3d::x, &Vec3d::y};
+        double Vec3d::* const parts[] = {&Vec3d::x, &Vec3d::y, &Vec3d::z, &Vec3d::x, &Vec3d::y};
         const auto u = parts[axis + 1], v = parts[axis + 2], w = parts[axis];
         bool sure = true;
         tree_.walk([&](const BoxTree::Node& node) {
@@ -142,8 +142,8 @@ class TriangleSurface {
         return sure;
     }
 
-    static bool add_crossing(const Vec3d& p, const Triangle& t, double Vec3d::*u, double Vec3d::*v,
-                             double Vec3d::*w, int& crossings) {
+    static bool add_crossing(const Vec3d& p, const Triangle& t, double Vec3d::* u, double Vec3d::* v,
+                             double Vec3d::* w, int& crossings) {
         // Of a sum of products of differences, over the sum of their magnitudes: a few roundings of 2⁻⁵³.
         constexpr double rounding = 0x1p-49;
         const Vec3d d[] = {t[0] - p, t[1] - p, t[2] - p};

@@ -49,7 +49,7 @@ def find_key(vertices: Array, faces: np.ndarray, *settings: object) -> str:
 
 
 def load_cover(key: str) -> tuple[Array, float, int] | None:
-    """Spheres (n, 4), stick-out and number of parts under a key; None without a file, or with a broken one."""
+    """Spheres (n, 4), stick-out and number of parts under a key; None without a file that can be used."""
     folder = cache_folder()
     if folder is None:
         return None

@@ -49,7 +49,9 @@ class SphereCover:
 
     def __repr__(self) -> str:
         what = "solid" if self.solid else "surface"
-        text = f"{len(self)} spheres of {shown(self.radii.min())} to {shown(self.radii.max())} m around a {what}"
+        text = (
+            f"{len(self)} spheres of {shown(self.radii.min())} to {shown(self.radii.max())} m around a {what}"
+        )
         proof = f"stick out ≤ {shown(self.stick_out)} m, nothing uncovered ({self.parts} parts)"
         return one_line(type(self).__name__, f"{text}, {proof}")
 
@@ -80,9 +82,9 @@ class CoverMeasure:
         return self.uncovered_depth.upper == 0.0
 
     def __repr__(self) -> str:
-        text = f"stick-out {show_bounds(self.stick_out)} m, uncovered: {show_bounds(self.uncovered_share)} of the"
+        out, depth, share = map(show_bounds, (self.stick_out, self.uncovered_depth, self.uncovered_share))
         return one_line(
-            type(self).__name__, f"{text} surface, up to {show_bounds(self.uncovered_depth)} m deep"
+            type(self).__name__, f"stick-out {out} m, uncovered: {share} of the surface, up to {depth} m"
         )
 
 
@@ -100,8 +102,8 @@ def cover_mesh(
     candidates near the medial axis: the largest ball that touches the surface at a sample (Ma, Bae and Choi
     2012), and the deepest place nearby. Greedy set cover and exchange choose few of them that contain every
     piece of the surface; what they leave inside is covered likewise; each sphere is shrunk to what it alone
-    contains. A second program then proves the cover: it divides the surface into triangles and the inside into
-    cells until each lies whole in one sphere. The same mesh gives the same spheres everywhere.
+    contains. A second program then proves the cover: it divides the surface into triangles and the inside
+    into cells until each lies whole in one sphere. The same mesh gives the same spheres everywhere.
 
     inside: False covers the surface of a solid alone. A mesh with solid=False has no inside: the spheres lie
     along its surface, and many more are needed. time_limit [s]. cache: covers are kept in files, by a hash of
@@ -178,7 +180,7 @@ def find_surface(mesh: Any) -> tuple[Array, np.ndarray, bool]:
     surface = mesh._surface() if isinstance(mesh, Shape) else None
     if surface is None:
         raise InputTypeError(
-            f"mesh is a {type(mesh).__name__}; give a Mesh, a Hull or a HeightField (cover_shape takes others)"
+            f"mesh is a {type(mesh).__name__}; give a Mesh, a Hull or a HeightField (or use cover_shape)"
         )
     vertices, faces, solid = surface
     return np.ascontiguousarray(vertices), np.ascontiguousarray(faces, dtype=np.int32), solid
@@ -201,7 +203,9 @@ def check_time_limit(value: float | None) -> float:
 def refuse_outcome(outcome: str, subject: str, value: float, time_limit: float | None) -> None:
     """The error of a search that did not end."""
     if outcome == "out_of_time":
-        raise TimeLimitError(f"the cover took longer than time_limit, {time_limit:g} s; use a larger {subject}")
+        raise TimeLimitError(
+            f"the cover took longer than time_limit, {time_limit:g} s; use a larger {subject}"
+        )
     if outcome == "too_fine":
         raise InputError(f"{subject} is {value:g} m; the cover needs too many pieces, use a larger one")
 
