@@ -153,8 +153,8 @@ def measure_cover(
     the diagonal of the bounding box; those of the share are 0.01 apart. Bounds are valid but farther apart
     where that would take too many parts. time_limit [s].
 
-    Raises InputError for no spheres, radii that are negative, NaN and arrays that do not match, InputTypeError
-    for other shapes, TimeLimitError after `time_limit`.
+    Raises InputError for no spheres, radii that are negative, NaN and arrays that do not match,
+    InputTypeError for other shapes, TimeLimitError after `time_limit`.
     """
     limit = check_time_limit(time_limit)
     vertices, faces, solid = find_surface(mesh)
