@@ -12,7 +12,7 @@ namespace cspace::shapes {
 
 namespace {
 
-constexpr std::size_t most_pieces = std::size_t(1) << 21;  // about 400 megabytes
+constexpr std::size_t most_pieces = std::size_t(1) << 20;  // about 350 megabytes
 constexpr std::size_t most_runs = std::size_t(1) << 25;    // 270 megabytes
 constexpr std::size_t most_parts = std::size_t(1) << 25;   // of a check: half a minute
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -42,8 +43,7 @@ class CoverSearch {
 
     std::vector<Ball> find() {
         find_candidates();
-        const CoverItems<Triangle> pieces(
-            split_triangles(surface_.triangles(), piece_side * goal_.within, goal_.most_pieces, watch_));
+        const CoverItems<Triangle> pieces(split_surface());
         std::vector<Ball> balls = cover_items(pieces);
         if (goal_.solid && goal_.inside) cover_inside(balls);
         return balls;
@@ -55,7 +55,7 @@ class CoverSearch {
     // Shares of the largest stick-out. A piece counts as held only if it lies this deep in a sphere; the
     // layer is thinner, so that no rounding matters.
     static constexpr double margin_share = 1.0 / 16, layer_share = 1.0 / 20;
-    static constexpr double piece_side = 1.0 / 3;
+    static constexpr double piece_sides[] = {1.0 / 3, 1.0 / 2, 3.0 / 4};   // the first that memory allows
     static constexpr double sample_side = 1.5, surface_sample_side = 0.5;  // of parts, one sample each
     static constexpr double cell_radius = 1.0 / 6;  // of the largest cells of what the spheres leave inside
     static constexpr int climb_steps = 12;
@@ -67,6 +67,17 @@ class CoverSearch {
     double candidate_cell_ = 0.5;  // share of the stick-out
     std::vector<Ball> candidates_;
 
+    std::vector<Triangle> split_surface() const {
+        std::size_t k = 0;
+        while (true) {
+            const double side = piece_sides[k] * goal_.within;
+            try {
+                return split_triangles(surface_.triangles(), side, goal_.most_pieces, watch_);
+            } catch (const TooFine&) {
+                if (++k == std::size(piece_sides)) throw;
+            }
+        }
+    }
     // One candidate or two per sample of the surface. Samples are the middles of its parts, one in each cell
     // of a grid; of candidates the largest in each cell are kept.
     void find_candidates() {
@@ -233,10 +244,15 @@ class CoverSearch {
             CoverCheck check(surface_, balls, {layer(), layer(), most_cells}, watch_);
             std::vector<Box> open = check.find_open_cells(cell_radius * goal_.within);
             if (open.empty()) return;
-            for (const Box& cell : open) {
+            std::vector<Box> seeds = open;
+            thin_out(
+                seeds, candidate_cell_ * goal_.within, [](const Box& b) { return shapes::middle_of(b); },
+                [](const Box& a, const Box& b) { return size_of(a) > size_of(b); });
+            for (const Box& cell : seeds) {
                 watch_.look();
                 add_candidate(climb(surface_, shapes::middle_of(cell), goal_.within, climb_steps).center);
             }
+            thin_out_candidates();
             const CoverItems<Box> cells(std::move(open));
             const std::vector<Ball> more = cover_items(cells);
             balls.insert(balls.end(), more.begin(), more.end());
