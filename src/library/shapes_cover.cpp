@@ -16,13 +16,13 @@ constexpr std::size_t most_pieces = std::size_t(1) << 20;  // about 350 megabyte
 constexpr std::size_t most_runs = std::size_t(1) << 25;    // 270 megabytes
 constexpr std::size_t most_parts = std::size_t(1) << 25;   // of a check: half a minute
 
-TriangleSurface make_surface(const SurfaceData& data) {
+TriangleSurface make_surface(const SurfaceData& data, Watch& watch) {
     const auto count = std::int64_t(data.vertices.size());
     for (const auto& face : data.faces)
         for (const std::int32_t v : face)
             if (v < 0 || v >= count) throw std::invalid_argument("a face names no vertex");
     if (data.faces.empty()) throw std::invalid_argument("a surface needs a face");
-    return TriangleSurface(data.vertices, data.faces);
+    return TriangleSurface(data.vertices, data.faces, watch);
 }
 
 Bounds join_bounds(const Bounds& a, const Bounds& b) {
@@ -52,7 +52,7 @@ Result finish(const Work& work) {
 FoundCover find_cover(const SurfaceData& data, double within, bool inside, double seconds) {
     return finish<FoundCover>([&](FoundCover& found) {
         Watch watch(seconds);
-        const TriangleSurface surface = make_surface(data);
+        const TriangleSurface surface = make_surface(data, watch);
         const bool whole = data.solid && inside;
         const CoverGoal goal = {within, data.solid, whole, most_pieces, most_runs};
         CoverSearch search(surface, goal, watch);
@@ -72,7 +72,7 @@ MeasuredCover measure_cover(const SurfaceData& data, std::span<const SphereRow> 
                             double tolerance, double seconds) {
     return finish<MeasuredCover>([&](MeasuredCover& found) {
         Watch watch(seconds);
-        const TriangleSurface surface = make_surface(data);
+        const TriangleSurface surface = make_surface(data, watch);
         std::vector<Ball> balls;
         for (const SphereRow& s : spheres) balls.push_back({{s[0], s[1], s[2]}, s[3]});
         const double layer = tolerance / 2;

@@ -17,7 +17,10 @@ using Face = std::array<std::int32_t, 3>;
 struct Mesh {
     std::vector<Vec3d> vertices;
     std::vector<Face> faces;
-    TriangleSurface surface() const { return {vertices, faces}; }
+    TriangleSurface surface() const {
+        Watch watch;
+        return {vertices, faces, watch};
+    }
     SurfaceData data(bool solid) const { return {vertices, faces, solid}; }
 };
 
@@ -166,7 +169,7 @@ TEST(chosen_sets_hold_every_item_and_none_is_redundant) {
             sets.add(std::array{Run{begin, end}});
             for (std::uint32_t i = begin; i < end; ++i) ++held[i];
         }
-        Watch watch(infinite);
+        Watch watch;
         SetCover cover(sets, std::vector<std::uint32_t>(items, 1), watch);
         const auto chosen = cover.choose();
         std::vector<int> count(items, 0);
@@ -245,7 +248,7 @@ TEST(what_spheres_leave_inside_is_found_and_covered) {
             for (int z = -10; z <= 10; ++z)
                 if (std::max({std::abs(x), std::abs(y), std::abs(z)}) == 10)
                     balls.push_back({0.01 * Vec3d{double(x), double(y), double(z)}, 0.012});
-    Watch watch(infinite);
+    Watch watch;
     CoverCheck check(surface, balls, {0.001, 0.002, 1 << 24}, watch);
     CHECK(check.check_surface(0.001).upper <= 0);
     const Bounds depth = check.check_inside();  // the middle is 0.1 − 0.012 away

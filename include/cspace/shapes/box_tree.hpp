@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "cspace/math/interrupts.hpp"
 #include "cspace/math/vec.hpp"
+#include "cspace/shapes/watch.hpp"
 
 namespace cspace::shapes {
 
@@ -65,14 +65,14 @@ class BoxTree {
         std::uint32_t second;  // the second child; 0: a leaf
     };
 
-    explicit BoxTree(std::span<const Box> boxes, std::size_t leaf_size = 4) : order_(boxes.size()) {
+    // leaf_size: the most items of a leaf, at least 2.
+    BoxTree(std::span<const Box> boxes, std::size_t leaf_size, Watch& watch) : order_(boxes.size()) {
         std::iota(order_.begin(), order_.end(), 0u);
         std::vector<Vec3d> middles;
         middles.reserve(boxes.size());
-        InterruptPoll poll(poll_stride);
-        for (const Box& box : boxes) middles.push_back(middle_of(box)), poll.step();
+        for (const Box& box : boxes) middles.push_back(middle_of(box)), watch.step();
         nodes_.reserve(boxes.size() * 4 / leaf_size + 1);  // leaves are at least half full
-        if (!boxes.empty()) build(boxes, middles, 0, std::uint32_t(boxes.size()), leaf_size, poll);
+        if (!boxes.empty()) build(boxes, middles, 0, std::uint32_t(boxes.size()), leaf_size, watch);
     }
 
     std::span<const std::uint32_t> order() const { return order_; }
@@ -126,15 +126,14 @@ class BoxTree {
 
   private:
     static constexpr std::size_t deepest = 72;  // halves of 2³² items, twice over
-    static constexpr std::uint32_t poll_stride = 1 << 12;
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 
     void build(std::span<const Box> boxes, std::span<const Vec3d> middles, std::uint32_t begin,
-               std::uint32_t end, std::size_t leaf_size, InterruptPoll& poll) {
+               std::uint32_t end, std::size_t leaf_size, Watch& watch) {
         const std::size_t at = nodes_.size();
         Box box = nothing, centers = nothing;
-        for (std::uint32_t k = begin; k < end; ++k, poll.step()) {
+        for (std::uint32_t k = begin; k < end; ++k, watch.step()) {
             box = join(box, boxes[order_[k]]);
             centers = join(centers, {middles[order_[k]], middles[order_[k]]});
         }
@@ -147,13 +146,13 @@ class BoxTree {
         const std::uint32_t half = begin + (end - begin) / 2;
         std::nth_element(order_.begin() + begin, order_.begin() + half, order_.begin() + end,
                          [&](std::uint32_t a, std::uint32_t b) {
-                             poll.step();
+                             watch.step();
                              const double x = middles[a].*axis, y = middles[b].*axis;
                              return x < y || (x == y && a < b);
                          });
-        build(boxes, middles, begin, half, leaf_size, poll);
+        build(boxes, middles, begin, half, leaf_size, watch);
         const auto second = std::uint32_t(nodes_.size());
-        build(boxes, middles, half, end, leaf_size, poll);
+        build(boxes, middles, half, end, leaf_size, watch);
         nodes_[at].second = second;
     }
 };

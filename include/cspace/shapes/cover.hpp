@@ -16,11 +16,11 @@
 
 #include "cspace/shapes/cover_check.hpp"
 #include "cspace/shapes/cover_items.hpp"
-#include "cspace/shapes/cover_watch.hpp"
 #include "cspace/shapes/medial_balls.hpp"
 #include "cspace/shapes/set_cover.hpp"
 #include "cspace/shapes/stick_out.hpp"
 #include "cspace/shapes/triangle_surface.hpp"
+#include "cspace/shapes/watch.hpp"
 
 namespace cspace::shapes {
 
@@ -43,7 +43,7 @@ class CoverSearch {
 
     std::vector<Ball> find() {
         find_candidates();
-        const CoverItems<Triangle> pieces(split_surface());
+        const CoverItems<Triangle> pieces(split_surface(fine_piece, coarse_piece), watch_);
         std::vector<Ball> balls = cover_items(pieces);
         if (goal_.solid && goal_.inside) cover_inside(balls);
         return balls;
@@ -55,7 +55,7 @@ class CoverSearch {
     // Shares of the largest stick-out. A piece counts as held only if it lies this deep in a sphere; the
     // layer is thinner, so that no rounding matters.
     static constexpr double margin_share = 1.0 / 16, layer_share = 1.0 / 20;
-    static constexpr double piece_sides[] = {1.0 / 3, 1.0 / 2, 3.0 / 4};   // the first that memory allows
+    static constexpr double fine_piece = 1.0 / 3, coarse_piece = 2.0 / 3;  // sides
     static constexpr double sample_side = 1.5, surface_sample_side = 0.5;  // of parts, one sample each
     static constexpr double cell_radius = 1.0 / 6;  // of the largest cells of what the spheres leave inside
     static constexpr int climb_steps = 12;
@@ -67,22 +67,24 @@ class CoverSearch {
     double candidate_cell_ = 0.5;  // share of the stick-out
     std::vector<Ball> candidates_;
 
-    std::vector<Triangle> split_surface() const {
-        std::size_t k = 0;
-        while (true) {
-            const double side = piece_sides[k] * goal_.within;
-            try {
-                return split_triangles(surface_.triangles(), side, goal_.most_pieces, watch_);
-            } catch (const TooFine&) {
-                if (++k == std::size(piece_sides)) throw;
-            }
+    // Parts of the surface with sides of a share of the largest stick-out: the finer share, if memory allows.
+    std::vector<Triangle> split_surface(double fine, double coarse) const {
+        const auto split = [&](double share) {
+            return split_triangles(surface_.triangles(), share * goal_.within, goal_.most_pieces, watch_);
+        };
+        try {
+            return split(fine);
+        } catch (const TooFine&) {
+            return split(coarse);
         }
     }
+
     // One candidate or two per sample of the surface. Samples are the middles of its parts, one in each cell
     // of a grid; of candidates the largest in each cell are kept.
     void find_candidates() {
-        const double side = (goal_.solid ? sample_side : surface_sample_side) * goal_.within;
-        std::vector<Triangle> parts = split_triangles(surface_.triangles(), side, goal_.most_pieces, watch_);
+        const double share = goal_.solid ? sample_side : surface_sample_side;
+        const double side = share * goal_.within;
+        std::vector<Triangle> parts = split_surface(share, 2 * share);
         thin_out(
             parts, side / 2, [](const Triangle& t) { return middle_of(t); },
             [](const Triangle&, const Triangle&) { return false; });
@@ -253,7 +255,7 @@ class CoverSearch {
                 add_candidate(climb(surface_, shapes::middle_of(cell), goal_.within, climb_steps).center);
             }
             thin_out_candidates();
-            const CoverItems<Box> cells(std::move(open));
+            const CoverItems<Box> cells(open, watch_);
             const std::vector<Ball> more = cover_items(cells);
             balls.insert(balls.end(), more.begin(), more.end());
         }

@@ -16,8 +16,8 @@
 
 #include "cspace/shapes/box_tree.hpp"
 #include "cspace/shapes/cover_items.hpp"
-#include "cspace/shapes/cover_watch.hpp"
 #include "cspace/shapes/triangle_surface.hpp"
+#include "cspace/shapes/watch.hpp"
 
 namespace cspace::shapes {
 

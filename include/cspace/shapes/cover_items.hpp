@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cspace/shapes/box_tree.hpp"
-#include "cspace/shapes/cover_watch.hpp"
 #include "cspace/shapes/smallest_ball.hpp"
 #include "cspace/shapes/triangle_surface.hpp"
+#include "cspace/shapes/watch.hpp"
 
 namespace cspace::shapes {
 
@@ -32,10 +32,10 @@ inline double farthest_square(const Triangle& t, const Vec3d& p) {
 template <class Item>
 class CoverItems {
   public:
-    explicit CoverItems(std::vector<Item> items) : tree_(boxes_of(items), leaf_size) {
+    CoverItems(const std::vector<Item>& items, Watch& watch)
+        : tree_(boxes_of(items, watch), leaf_size, watch) {
         items_.reserve(items.size());
-        InterruptPoll poll(poll_stride);
-        for (const std::uint32_t k : tree_.order()) items_.push_back(items[k]), poll.step();
+        for (const std::uint32_t k : tree_.order()) items_.push_back(items[k]), watch.step();
     }
     std::size_t size() const { return items_.size(); }
     const Item& operator[](std::size_t k) const { return items_[k]; }
@@ -62,15 +62,13 @@ class CoverItems {
 
   private:
     static constexpr std::size_t leaf_size = 4;
-    static constexpr std::uint32_t poll_stride = 1 << 10;
     BoxTree tree_;
     std::vector<Item> items_;
 
-    static std::vector<Box> boxes_of(const std::vector<Item>& items) {
+    static std::vector<Box> boxes_of(const std::vector<Item>& items, Watch& watch) {
         std::vector<Box> boxes;
         boxes.reserve(items.size());
-        InterruptPoll poll(poll_stride);
-        for (const Item& item : items) boxes.push_back(box_around(item)), poll.step();
+        for (const Item& item : items) boxes.push_back(box_around(item)), watch.step();
         return boxes;
     }
 };

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cspace/shapes/cover_items.hpp"
-#include "cspace/shapes/cover_watch.hpp"
+#include "cspace/shapes/watch.hpp"
 
 namespace cspace::shapes {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cspace/shapes/cover_check.hpp"
-#include "cspace/shapes/cover_watch.hpp"
 #include "cspace/shapes/triangle_surface.hpp"
+#include "cspace/shapes/watch.hpp"
 
 namespace cspace::shapes {
 

@@ -9,8 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/math/vec.hpp"
 #include "cspace/shapes/box_tree.hpp"
+#include "cspace/shapes/watch.hpp"
 
 namespace cspace::shapes {
 
@@ -29,14 +31,14 @@ class TriangleSurface {
     };
 
     // faces: numbers of vertices, at least one face.
-    TriangleSurface(std::span<const Vec3d> vertices, std::span<const std::array<std::int32_t, 3>> faces)
-        : tree_(boxes_of(vertices, faces)) {
+    TriangleSurface(std::span<const Vec3d> vertices, std::span<const std::array<std::int32_t, 3>> faces,
+                    Watch& watch)
+        : tree_(boxes_of(vertices, faces, watch), leaf_size, watch) {
         triangles_.reserve(faces.size()), facets_.reserve(faces.size());
-        InterruptPoll poll(poll_stride);
         for (const std::uint32_t f : tree_.order()) {
             triangles_.push_back(corners_of(vertices, faces[f]));
             facets_.push_back(facet_of(triangles_.back()));
-            poll.step();
+            watch.step();
         }
     }
 
@@ -72,7 +74,7 @@ class TriangleSurface {
         Vec3d along[3];  // unit vectors of the sides, zero for sides of no length
         double length[3];
     };
-    static constexpr std::uint32_t poll_stride = 1 << 10;
+    static constexpr std::size_t leaf_size = 4;
     BoxTree tree_;
     std::vector<Triangle> triangles_;
     std::vector<Facet> facets_;
@@ -82,11 +84,10 @@ class TriangleSurface {
                 vertices[std::size_t(face[2])]};
     }
     static std::vector<Box> boxes_of(std::span<const Vec3d> vertices,
-                                     std::span<const std::array<std::int32_t, 3>> faces) {
+                                     std::span<const std::array<std::int32_t, 3>> faces, Watch& watch) {
         std::vector<Box> boxes;
         boxes.reserve(faces.size());
-        InterruptPoll poll(poll_stride);
-        for (const auto& face : faces) boxes.push_back(box_of(corners_of(vertices, face))), poll.step();
+        for (const auto& face : faces) boxes.push_back(box_of(corners_of(vertices, face))), watch.step();
         return boxes;
     }
     static Facet facet_of(const Triangle& t) {
@@ -169,7 +170,7 @@ class TriangleSurface {
 
     // Solid angles over 4π (van Oosterom & Strackee 1983).
     double sum_angles(const Vec3d& p) const {
-        InterruptPoll poll(poll_stride);
+        InterruptPoll poll(1 << 10);
         double total = 0;
         for (const Triangle& t : triangles_) {
             const Vec3d a = t[0] - p, b = t[1] - p, c = t[2] - p;

@@ -1,8 +1,9 @@
-// Ends the search for a cover after a given time.
+// Ends a long computation after a given time, or at an interrupt.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 
 #include "cspace/math/interrupts.hpp"
 
@@ -14,8 +15,9 @@ struct OutOfTime {};
 class Watch {
   public:
     using Clock = std::chrono::steady_clock;
-    // seconds: of the search from now on; infinite without a limit.
-    explicit Watch(double seconds) : begin_(Clock::now()), seconds_(seconds) {}
+    // seconds: from now on; infinite without a limit.
+    explicit Watch(double seconds = std::numeric_limits<double>::infinity())
+        : begin_(Clock::now()), seconds_(seconds) {}
     double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
     // Called every few microseconds: looks now and then.
     void step() {
