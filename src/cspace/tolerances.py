@@ -458,4 +458,8 @@ MOST_COVER_CELLS: Final = 200_000
 """Most cells of a cover by spheres that are evaluated at once: a link needs some thousand, and checks against
 more spheres are slower than those against the mesh."""
 
+MEASURE_TOLERANCE: Final = 1.0 / 2000.0
+"""Share of the diagonal of a mesh by which the bounds of a measured cover may be apart: 0.1 mm of a link of
+20 cm, below the tolerance of its casting."""
+
 __all__ = [name for name in globals() if name.isupper()]

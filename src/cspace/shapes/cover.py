@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
 from cspace.errors import InputError
+from cspace.shapes.mesh_cover import cover_mesh
 from cspace.shapes.point_cloud import PointCloud
 from cspace.shapes.shape import IDENTITY, Shape
 from cspace.shapes.solids import Capsule, Cylinder, HalfSpace, Sphere
@@ -46,9 +47,10 @@ def cover_shape(shape: Shape, excess: float = 0.02) -> Cover:
 
     A sphere is its own cover. A capsule (r, L) becomes n + 1 balls on its axis, L / n apart, of the radius
     √(r² + (L/2n)²); a cylinder n balls on its axis of the same radius, where that sticks out of its ends by
-    no more than asked. Every other shape is divided into the cells of an octree: a cell without a point of
-    the shape is dropped, a cell whose ball sticks out too far is divided; few balls that contain those of the
-    cells are chosen greedily. The result has its own bound `excess`, and spheres (n, 4).
+    no more than asked. Meshes, hulls and height fields are covered by cover_mesh. Every other shape is
+    divided into the cells of an octree: a cell without a point of the shape is dropped, a cell whose ball
+    sticks out too far is divided; few balls that contain those of the cells are chosen greedily. The result
+    has its own bound `excess`, and spheres (n, 4).
 
     Raises InputError for a half space, an excess that is not positive, and one that needs more than
     tolerances.MOST_COVER_CELLS cells.
@@ -63,6 +65,9 @@ def cover_shape(shape: Shape, excess: float = 0.02) -> Cover:
         cover = Cover(np.column_stack([local.points, np.full(len(local.points), local.radius)]), 0.0)
     elif isinstance(local, Capsule):
         cover = cover_capsule(local, most)
+    elif local._surface() is not None:
+        found_spheres = cover_mesh(local, most)
+        cover = Cover(found_spheres.spheres, found_spheres.stick_out)
     elif isinstance(local, Cylinder) and (found := cover_cylinder(local, most)).excess <= most:
         cover = found
     else:
