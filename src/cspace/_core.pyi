@@ -321,6 +321,16 @@ class PolygonCore:
     def path_clearance(self, path: numpy.typing.NDArray[numpy.float64]) -> float:
         """The least distance from a path to a wall."""
 
+def find_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.typing.NDArray[numpy.int32], solid: bool, within: float, inside: bool, seconds: float) -> tuple[str, numpy.typing.NDArray[numpy.float64], float, float, int]:
+    """
+    Outcome, spheres (n, 4), bounds of the stick-out and of the uncovered depth, parts of the proof.
+    """
+
+def measure_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.typing.NDArray[numpy.int32], solid: bool, spheres: numpy.typing.NDArray[numpy.float64], inside: bool, tolerance: float, seconds: float) -> tuple[str, tuple[float, float], tuple[float, float], tuple[float, float]]:
+    """
+    Outcome, and two bounds each of stick-out, uncovered depth and uncovered share.
+    """
+
 class CollisionRobot:
     """A robot made of spheres."""
 
@@ -400,15 +410,6 @@ def plan_arm(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float
 
 def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, threads: int) -> list[ArmPlan]:
     """A plan per pair of starts and goals; the checker must outlive them."""
-def find_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.typing.NDArray[numpy.int32], solid: bool, within: float, inside: bool, seconds: float) -> tuple[str, numpy.typing.NDArray[numpy.float64], float, float, int]:
-    """
-    Outcome, spheres (n, 4), bounds of the stick-out and of the uncovered depth, parts of the proof.
-    """
-
-def measure_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.typing.NDArray[numpy.int32], solid: bool, spheres: numpy.typing.NDArray[numpy.float64], inside: bool, tolerance: float, seconds: float) -> tuple[str, tuple[float, float], tuple[float, float], tuple[float, float]]:
-    """
-    Outcome, and two bounds each of stick-out, uncovered depth and uncovered share.
-    """
 
 class RouteBase:
     """The compiled half of cspace.navigation.Route."""

@@ -454,10 +454,6 @@ operations lose less than sixteen times 2^-53."""
 MESH_BYTES: Final = 256 * 2**20
 """Largest mesh file that is read (bytes): five million triangles, a hundred times a detailed robot link."""
 
-MOST_COVER_CELLS: Final = 200_000
-"""Most cells of a cover by spheres that are evaluated at once: a link needs some thousand, and checks against
-more spheres are slower than those against the mesh."""
-
 MEASURE_TOLERANCE: Final = 1.0 / 2000.0
 """Share of the diagonal of a mesh by which the bounds of a measured cover may be apart: 0.1 mm of a link of
 20 cm, below the tolerance of its casting."""
