@@ -58,7 +58,9 @@ def plan(
         return make_negative(space, chosen, "unreachable", goals.reason)
     found = chosen.plan(space, starts, goals.rows, rng=rng)
     if found.status == "invalid_start":
-        raise InputError(f"{found.reason}; move it away from there, or allow the pair in the scene")
+        raise InputError(
+            f"{found.reason}; robot.escape leads away from there, or allow the pair in the scene"
+        )
     if found.status == "invalid_goal":
         if goals.is_given:
             raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
