@@ -55,9 +55,9 @@ def escape(
 ) -> Escape:
     """Leads a robot that touches something to a configuration that keeps `margin` [m] from everything.
 
-    It follows the gradient of the clearance, dq = n (d* − d) / |∇d| with n = ∇d / |∇d|, in small steps within
-    the limits, and gives up after a motion of the length `most` [L2 norm of the joints], or where the gradient
-    vanishes. The way begins in collision: it is not checked, and what touches is slowly parted. q (dof,).
+    It follows the gradient of the clearance in small steps within the limits: dq = n (d* − d) / |∇d| with
+    n = ∇d / |∇d|. It gives up after a motion of the length `most` [L2 norm of the joints], and where the
+    gradient vanishes. The way begins in collision, so it is not checked. q (dof,).
 
     Raises InputError for a robot without collision geometry, a wrong shape, NaN and a negative margin.
     """
