@@ -36,6 +36,12 @@ struct Piece {
         larger.radius += by;
         return larger;
     }
+    Piece moved(Point by) const {
+        Piece other = *this;
+        for (Point& corner : other.corners) corner = corner + by;
+        other.center = center + by;
+        return other;
+    }
 };
 
 // Of corners that are counterclockwise and different from their neighbours.

@@ -50,15 +50,17 @@ class Space {
     Space(const Arm& arm, std::span<const Piece> obstacles) : arm_(arm) {
         const double reach = arm.length_1 + arm.length_2;
         for (const Piece& obstacle : obstacles) {
-            const Piece piece = obstacle.grown(arm.radius);
-            if (distance(piece.center, arm.base) - piece.extent > piece.radius + reach) continue;
-            if (contains(piece, arm.base)) buried_in_ = std::int32_t(pieces_.size());
+            const Piece piece = obstacle.moved(-1 * arm.base).grown(arm.radius);
+            if (norm(piece.center) - piece.extent > piece.radius + reach) continue;
+            if (contains(piece, {})) buried_in_ = std::int32_t(pieces_.size());
             pieces_.push_back(piece);
         }
+        arm_.base = {};
         if (buried_in_ == no_obstacle) find_link_1();
     }
 
     const Arm& arm() const { return arm_; }
+    // What may touch the arm: each grown by the radius of the links, the base at the origin.
     const std::vector<Piece>& pieces() const { return pieces_; }
     std::int32_t obstacle_of(std::int32_t piece) const {
         return piece < 0 ? no_obstacle : pieces_[std::size_t(piece)].obstacle;
@@ -84,11 +86,14 @@ class Space {
     void visit_link_2(double q_1, const Visit& visit) const {
         if (arm_.length_2 == 0) return;  // the elbow is a part of link 1
         const Point elbow = arm_.elbow(q_1);
-        const double angle_1 = arm_.joint_1.angle(q_1);
         for (std::size_t k = 0; k < pieces_.size(); ++k) {
             const BlockedArc arc = find_blocked_arc(pieces_[k], elbow, arm_.length_2);
-            if (!arc.is_empty) visit(interval_of(arc, arm_.joint_2, angle_1, std::int32_t(k)));
+            if (!arc.is_empty) visit(interval_of_link_2(arc, q_1, std::int32_t(k)));
         }
+    }
+    // An arc of directions of link 2 as coordinates of joint 2.
+    BlockedInterval interval_of_link_2(const BlockedArc& arc, double q_1, std::int32_t piece) const {
+        return interval_of(arc, arm_.joint_2, arm_.joint_1.angle(q_1), piece);
     }
     // A piece that the arm touches, or none.
     std::int32_t blocks(double q_1, double q_2) const {

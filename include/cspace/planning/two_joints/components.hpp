@@ -1,0 +1,204 @@
+// The connected components of the free configurations of two joints, with proofs.
+//
+// Free boxes of neighbouring slabs that overlap are connected. Boxes that may be free and do not even touch
+// are not. Where both agree the components are proved; where one possible region contains several free ones,
+// a passage narrower than the slabs resolve may connect them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "cspace/planning/two_joints/sweep.hpp"
+
+namespace cspace::planning {
+
+struct Component {
+    std::int32_t region = 0;    // components in different regions are proved to be separate
+    bool is_proved = false;     // no other component lies in the region
+    double least_area = 0;      // of what is proved free [rad²]
+    double greatest_area = 0;   // of what may be free
+    double q_1 = 0, q_2 = 0;    // the middle of its largest box
+};
+
+namespace detail {
+
+// Sets of numbers that merge (Tarjan 1975).
+class DisjointSets {
+  public:
+    explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+    std::size_t find(std::size_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void unite(std::size_t i, std::size_t j) { parent_[find(i)] = find(j); }
+
+  private:
+    std::vector<std::size_t> parent_;
+};
+
+}  // namespace detail
+
+class Components {
+  public:
+    static constexpr std::int32_t blocked = -1, unresolved = -2;
+
+    explicit Components(Sweep& sweep) : sweep_(sweep) {
+        const auto free_of = [](const Slab& slab) -> auto& { return slab.free; };
+        const auto possible_of = [](const Slab& slab) -> auto& { return slab.possible; };
+        first_free_ = number_boxes(free_of), first_possible_ = number_boxes(possible_of);
+        detail::DisjointSets free(first_free_.back()), possible(first_possible_.back());
+        unite_neighbours(first_free_, free_of, false, free);
+        unite_neighbours(first_possible_, possible_of, true, possible);
+        name_components(free, possible);
+        add_areas(possible);
+        sort_by_area();
+    }
+
+    const std::vector<Component>& all() const { return all_; }
+    // The components of the free boxes of a slab, in their order.
+    std::int32_t component_of(std::size_t slab, std::size_t box) const {
+        return component_[first_free_[slab] + box];
+    }
+
+    // The number of the component that contains a configuration.
+    std::int32_t find_component(double q_1, double q_2) {
+        const Joint &joint_1 = sweep_.space().arm().joint_1, &joint_2 = sweep_.space().arm().joint_2;
+        if (joint_1.wraps) q_1 = wrap_above(q_1, joint_1.lower);
+        if (joint_2.wraps) q_2 = wrap_above(q_2, joint_2.lower);
+        const SweepRow row = sweep_.make_row(q_1);
+        const auto gap = std::find_if(row.gaps.begin(), row.gaps.end(),
+                                      [&](const Gap& g) { return sweep_.finder().contains(g, q_2); });
+        if (gap == row.gaps.end() || q_1 < joint_1.lower || q_1 > joint_1.upper) return blocked;
+        for (const std::size_t slab : slabs_at(q_1))
+            for (std::size_t i = 0; i < sweep_.slabs()[slab].free.size(); ++i)
+                if (sweep_.finder().overlap(*gap, sweep_.slabs()[slab].free[i]).is_open())
+                    return component_of(slab, i);
+        return unresolved;
+    }
+
+  private:
+    Sweep& sweep_;
+    std::vector<std::size_t> first_free_, first_possible_;  // the number of the first box of each slab
+    std::vector<std::int32_t> component_;                   // of each free box
+    std::vector<Component> all_;
+
+    template <class BoxesOf>
+    std::vector<std::size_t> number_boxes(const BoxesOf& boxes_of) const {
+        std::vector<std::size_t> first{0};
+        for (const Slab& slab : sweep_.slabs()) first.push_back(first.back() + boxes_of(slab).size());
+        return first;
+    }
+    double width_of(std::size_t slab) const {
+        return sweep_.rows()[slab + 1].q_1 - sweep_.rows()[slab].q_1;
+    }
+    // The slabs that contain an angle: two at a row.
+    std::vector<std::size_t> slabs_at(double q_1) const {
+        const auto& rows = sweep_.rows();
+        std::vector<std::size_t> found;
+        const auto above = std::upper_bound(rows.begin(), rows.end(), q_1,
+                                            [](double q, const SweepRow& row) { return q < row.q_1; });
+        const auto after = std::size_t(above - rows.begin());
+        if (after > 0 && after < rows.size()) found.push_back(after - 1);
+        if (after > 1 && rows[after - 1].q_1 == q_1) found.push_back(after - 2);
+        return found;
+    }
+
+    // Unites boxes of neighbouring slabs: those that overlap, or also those that touch.
+    template <class BoxesOf>
+    void unite_neighbours(const std::vector<std::size_t>& first, const BoxesOf& boxes_of, bool touching,
+                          detail::DisjointSets& sets) const {
+        const auto& slabs = sweep_.slabs();
+        InterruptPoll poll(64);
+        const auto unite = [&](std::size_t s, std::size_t t) {
+            poll.step();
+            const auto &here = boxes_of(slabs[s]), &there = boxes_of(slabs[t]);
+            for (std::size_t i = 0; i < here.size(); ++i)
+                for (std::size_t j = 0; j < there.size(); ++j) {
+                    const Overlap both = sweep_.finder().overlap(here[i], there[j]);
+                    if (both.is_open() || (touching && both.low <= both.high + detail::arc_slack))
+                        sets.unite(first[s] + i, first[t] + j);
+                }
+        };
+        for (std::size_t s = 0; s + 1 < slabs.size(); ++s) unite(s, s + 1);
+        if (sweep_.space().arm().joint_1.wraps && !slabs.empty()) unite(slabs.size() - 1, 0);
+    }
+
+    void name_components(detail::DisjointSets& free, detail::DisjointSets& possible) {
+        std::vector<std::int32_t> named(first_free_.back(), -1);
+        component_.resize(first_free_.back());
+        for (std::size_t s = 0; s < sweep_.slabs().size(); ++s) {
+            const Slab& slab = sweep_.slabs()[s];
+            for (std::size_t i = 0; i < slab.free.size(); ++i) {
+                const std::size_t box = first_free_[s] + i;
+                std::int32_t& name = named[free.find(box)];
+                if (name < 0) {
+                    name = std::int32_t(all_.size());
+                    all_.push_back({std::int32_t(possible.find(region_of(s, slab.free[i])))});
+                }
+                component_[box] = name;
+            }
+        }
+        for (Component& one : all_)
+            one.is_proved = std::count_if(all_.begin(), all_.end(), [&](const Component& other) {
+                                return other.region == one.region;
+                            }) == 1;
+    }
+    // The box that may be free around one that is.
+    std::size_t region_of(std::size_t s, const Gap& free) const {
+        const auto& possible = sweep_.slabs()[s].possible;
+        std::size_t i = 0;
+        while (i + 1 < possible.size() && !sweep_.finder().overlap(possible[i], free).is_open()) ++i;
+        return first_possible_[s] + i;
+    }
+
+    void add_areas(detail::DisjointSets& possible) {
+        std::vector<double> possible_area(first_possible_.back()), largest(all_.size());
+        for (std::size_t s = 0; s < sweep_.slabs().size(); ++s) {
+            const Slab& slab = sweep_.slabs()[s];
+            for (std::size_t i = 0; i < slab.possible.size(); ++i)
+                possible_area[possible.find(first_possible_[s] + i)] +=
+                    width_of(s) * (slab.possible[i].high - slab.possible[i].low);
+            for (std::size_t i = 0; i < slab.free.size(); ++i) {
+                const auto name = std::size_t(component_of(s, i));
+                const Gap& box = slab.free[i];
+                const double area = width_of(s) * (box.high - box.low);
+                all_[name].least_area += area;
+                if (area <= largest[name]) continue;
+                largest[name] = area;
+                all_[name].q_1 = sweep_.rows()[s].q_1 + 0.5 * width_of(s);
+                all_[name].q_2 = 0.5 * (box.low + box.high);
+            }
+        }
+        for (Component& one : all_) {
+            double others = 0;
+            for (const Component& other : all_)
+                if (&other != &one && other.region == one.region) others += other.least_area;
+            one.greatest_area = possible_area[std::size_t(one.region)] - others;
+        }
+    }
+    // Largest first; regions are numbered in the order of their largest components.
+    void sort_by_area() {
+        std::vector<std::int32_t> order(all_.size()), place(all_.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+            return all_[std::size_t(a)].least_area > all_[std::size_t(b)].least_area;
+        });
+        std::vector<Component> sorted;
+        std::vector<std::int32_t> regions(first_possible_.back(), -1);
+        std::int32_t count = 0;
+        for (const std::int32_t old : order) {
+            place[std::size_t(old)] = std::int32_t(sorted.size());
+            sorted.push_back(all_[std::size_t(old)]);
+            std::int32_t& region = regions[std::size_t(sorted.back().region)];
+            if (region < 0) region = count++;
+            sorted.back().region = region;
+        }
+        all_ = std::move(sorted);
+        for (std::int32_t& name : component_) name = place[std::size_t(name)];
+    }
+};
+
+}  // namespace cspace::planning

@@ -1,0 +1,102 @@
+// The gaps that intervals leave of the range of joint 2.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cspace/planning/two_joints/space.hpp"
+
+namespace cspace::planning {
+
+// What bounds a gap: a piece where the link touches it, a limit of the joint, or nothing where the gap is a
+// whole turn.
+struct GapEnd {
+    static constexpr std::int32_t limit = -1, nothing = -2;
+    std::int32_t piece = nothing;
+    Feature feature;
+    friend constexpr bool operator==(const GapEnd&, const GapEnd&) = default;
+};
+
+// Coordinates of joint 2 from low to high. Where the joint wraps, low lies within its range, and high is up
+// to a turn beyond.
+struct Gap {
+    double low, high;
+    GapEnd at_low, at_high;
+};
+
+// Where two gaps overlap; none where low is not below high.
+struct Overlap {
+    double low, high;
+    bool is_open() const { return low < high; }
+    double middle() const { return 0.5 * (low + high); }
+};
+
+class GapFinder {
+  public:
+    explicit GapFinder(const Joint& joint) : joint_(joint) {}
+
+    // The gaps, in order, between intervals and their copies that are multiples of a turn away. An interval
+    // whose high end is below its low end is none.
+    void find(std::span<const BlockedInterval> blocked, std::vector<Gap>& gaps) {
+        gaps.clear(), copies_.clear();
+        for (const BlockedInterval& interval : blocked) {
+            if (!(interval.low <= interval.high)) continue;
+            if (interval.high - interval.low >= turn) return;
+            add_copies(interval);
+        }
+        std::sort(copies_.begin(), copies_.end(),
+                  [](const BlockedInterval& a, const BlockedInterval& b) { return a.low < b.low; });
+        joint_.wraps ? find_around(gaps) : find_between_limits(gaps);
+    }
+    // The part of a that b overlaps, in the coordinates of a.
+    Overlap overlap(const Gap& a, const Gap& b) const {
+        if (!joint_.wraps) return {std::max(a.low, b.low), std::min(a.high, b.high)};
+        const double low = wrap_above(b.low, a.low), width = b.high - b.low;
+        if (low < a.high) return {low, std::min(a.high, low + width)};
+        return {a.low, std::min(a.high, low + width - turn)};
+    }
+    // Whether a gap contains a coordinate.
+    bool contains(const Gap& gap, double q) const {
+        return joint_.wraps ? wrap_above(q, gap.low) <= gap.high : gap.low <= q && q <= gap.high;
+    }
+
+  private:
+    Joint joint_;
+    std::vector<BlockedInterval> copies_;
+
+    void add_copies(BlockedInterval interval) {
+        const double width = interval.high - interval.low;
+        double low = wrap_above(interval.low, joint_.lower);
+        if (!joint_.wraps && low + width - turn >= joint_.lower) low -= turn;
+        for (; low <= joint_.upper; low += turn) {
+            interval.low = low, interval.high = low + width;
+            copies_.push_back(interval);
+            if (joint_.wraps) return;
+        }
+    }
+    void find_around(std::vector<Gap>& gaps) const {
+        if (copies_.empty()) return gaps.push_back({joint_.lower, joint_.upper, {}, {}});
+        const auto last = std::max_element(
+            copies_.begin(), copies_.end(),
+            [](const BlockedInterval& a, const BlockedInterval& b) { return a.high < b.high; });
+        find_from(last->high - turn, {last->piece, last->at_high}, gaps);
+        for (Gap& gap : gaps)
+            if (gap.low < joint_.lower) gap.low += turn, gap.high += turn;
+    }
+    void find_between_limits(std::vector<Gap>& gaps) const {
+        const auto [from, end] = find_from(joint_.lower, {GapEnd::limit, {}}, gaps);
+        if (from < joint_.upper) gaps.push_back({from, joint_.upper, end, {GapEnd::limit, {}}});
+    }
+    // The gaps between the copies from a coordinate on, and what comes last.
+    std::pair<double, GapEnd> find_from(double from, GapEnd end, std::vector<Gap>& gaps) const {
+        for (const BlockedInterval& next : copies_) {
+            if (next.low > from) gaps.push_back({from, next.low, end, {next.piece, next.at_low}});
+            if (next.high >= from) from = next.high, end = {next.piece, next.at_high};
+        }
+        return {from, end};
+    }
+};
+
+}  // namespace cspace::planning
