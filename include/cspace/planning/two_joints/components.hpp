@@ -1,8 +1,9 @@
 // The connected components of the free configurations of two joints, with proofs.
 //
-// Free boxes of neighbouring slabs that overlap are connected. Boxes that may be free and do not even touch
-// are not. Where both agree the components are proved; where one possible region contains several free ones,
-// a passage narrower than the slabs resolve may connect them.
+// Free boxes of neighbouring slabs are connected if they share a gap of the row between them. Boxes that may
+// be free, which are a little larger than that, are not connected if they do not overlap. Where both agree
+// the components are proved; where one possible region contains several free ones, a passage narrower than
+// the slabs resolve may connect them.
 #pragma once
 
 #include <algorithm>
@@ -46,12 +47,13 @@ class Components {
     static constexpr std::int32_t blocked = -1, unresolved = -2;
 
     explicit Components(Sweep& sweep) : sweep_(sweep) {
-        const auto free_of = [](const Slab& slab) -> auto& { return slab.free; };
-        const auto possible_of = [](const Slab& slab) -> auto& { return slab.possible; };
-        first_free_ = number_boxes(free_of), first_possible_ = number_boxes(possible_of);
+        first_free_ = number_boxes([](const Slab& slab) { return slab.free.size(); });
+        first_possible_ = number_boxes([](const Slab& slab) { return slab.possible.size(); });
         detail::DisjointSets free(first_free_.back()), possible(first_possible_.back());
-        unite_neighbours(first_free_, free_of, false, free);
-        unite_neighbours(first_possible_, possible_of, true, possible);
+        visit_neighbours([&](std::size_t s, std::size_t t, const SweepRow& row) {
+            unite_free(s, t, row, free);
+            unite_possible(s, t, possible);
+        });
         name_components(free, possible);
         add_areas(possible);
         sort_by_area();
@@ -85,10 +87,10 @@ class Components {
     std::vector<std::int32_t> component_;                   // of each free box
     std::vector<Component> all_;
 
-    template <class BoxesOf>
-    std::vector<std::size_t> number_boxes(const BoxesOf& boxes_of) const {
+    template <class Count>
+    std::vector<std::size_t> number_boxes(const Count& count) const {
         std::vector<std::size_t> first{0};
-        for (const Slab& slab : sweep_.slabs()) first.push_back(first.back() + boxes_of(slab).size());
+        for (const Slab& slab : sweep_.slabs()) first.push_back(first.back() + count(slab));
         return first;
     }
     double width_of(std::size_t slab) const {
@@ -106,24 +108,32 @@ class Components {
         return found;
     }
 
-    // Unites boxes of neighbouring slabs: those that overlap, or also those that touch.
-    template <class BoxesOf>
-    void unite_neighbours(const std::vector<std::size_t>& first, const BoxesOf& boxes_of, bool touching,
-                          detail::DisjointSets& sets) const {
-        const auto& slabs = sweep_.slabs();
+    // Calls visit with each slab, the next one, and the row between them.
+    template <class Visit>
+    void visit_neighbours(const Visit& visit) const {
+        const std::size_t count = sweep_.slabs().size();
         InterruptPoll poll(64);
-        const auto unite = [&](std::size_t s, std::size_t t) {
-            poll.step();
-            const auto &here = boxes_of(slabs[s]), &there = boxes_of(slabs[t]);
-            for (std::size_t i = 0; i < here.size(); ++i)
-                for (std::size_t j = 0; j < there.size(); ++j) {
-                    const Overlap both = sweep_.finder().overlap(here[i], there[j]);
-                    if (both.is_open() || (touching && both.low <= both.high + detail::arc_slack))
-                        sets.unite(first[s] + i, first[t] + j);
+        for (std::size_t s = 0; s + 1 < count; ++s) poll.step(), visit(s, s + 1, sweep_.rows()[s + 1]);
+        if (sweep_.space().arm().joint_1.wraps && count > 0) visit(count - 1, 0, sweep_.rows().front());
+    }
+    void unite_free(std::size_t s, std::size_t t, const SweepRow& row, detail::DisjointSets& sets) const {
+        for (const Gap& gap : row.gaps) {
+            std::size_t first = first_free_.back();
+            for (const std::size_t slab : {s, t})
+                for (std::size_t i = 0; i < sweep_.slabs()[slab].free.size(); ++i) {
+                    if (!sweep_.finder().overlap(gap, sweep_.slabs()[slab].free[i]).is_open()) continue;
+                    const std::size_t box = first_free_[slab] + i;
+                    if (first < first_free_.back()) sets.unite(first, box);
+                    first = box;
                 }
-        };
-        for (std::size_t s = 0; s + 1 < slabs.size(); ++s) unite(s, s + 1);
-        if (sweep_.space().arm().joint_1.wraps && !slabs.empty()) unite(slabs.size() - 1, 0);
+        }
+    }
+    void unite_possible(std::size_t s, std::size_t t, detail::DisjointSets& sets) const {
+        const auto &here = sweep_.slabs()[s].possible, &there = sweep_.slabs()[t].possible;
+        for (std::size_t i = 0; i < here.size(); ++i)
+            for (std::size_t j = 0; j < there.size(); ++j)
+                if (sweep_.finder().overlap(here[i], there[j]).is_open())
+                    sets.unite(first_possible_[s] + i, first_possible_[t] + j);
     }
 
     void name_components(detail::DisjointSets& free, detail::DisjointSets& possible) {
