@@ -16,10 +16,10 @@ namespace cspace::planning {
 
 enum class Contact : std::uint8_t { side_on_corner, tip_on_corner, tip_on_side };
 
-// Where the link touches: the corner, or the side that begins there.
+// Where the link touches: the name of the corner or of the side.
 struct Feature {
     Contact contact = Contact::side_on_corner;
-    std::int32_t corner = 0;
+    std::int32_t name = 0;
     friend constexpr bool operator==(const Feature&, const Feature&) = default;
 };
 
@@ -45,7 +45,7 @@ constexpr Point turned_left(Point p) { return {-p.y, p.x}; }
 struct Tangent {
     Point toward;
     double squared_length = 0;
-    std::int32_t corner = 0;
+    std::size_t corner = 0;
 };
 inline Tangent find_tangent(const Piece& piece, Point start, double side) {
     const double r = piece.radius;
@@ -56,7 +56,7 @@ inline Tangent find_tangent(const Piece& piece, Point start, double side) {
         const Point toward = r > 0 ? std::sqrt(squared) * w + side * r * turned_left(w) : w;
         const double past = side * cross(best.toward, toward);
         if (i == 0 || past > 0 || (past == 0 && squared < best.squared_length))
-            best = {toward, squared, std::int32_t(i)};
+            best = {toward, squared, i};
     }
     return best;
 }
@@ -87,19 +87,20 @@ class TipContacts {
         const double half = std::sqrt(squared), begin = dot(w, u);
         for (const double along : {-half, half})
             if (along >= begin - slack_ && along <= begin + piece_.lengths[i] + slack_)
-                add(away * n + along * u, {Contact::tip_on_side, std::int32_t(i)});
+                add(away * n + along * u, {Contact::tip_on_side, piece_.side_names[i]});
     }
     void meet_corner(std::size_t i) {
         const Point w = piece_.corners[i] - start_;
-        const double squared = squared_norm(w), r = piece_.radius;
-        // The foot of the common chord is the part `foot` of the way to the corner.
-        const double foot = 0.5 * (length_ * length_ - r * r + squared) / squared;
-        const double chord = length_ * length_ / squared - foot * foot;
+        const double squared = squared_norm(w), d = std::sqrt(squared), l = length_, r = piece_.radius;
+        // The foot of the common chord lies beyond the corner by this part of the way to it; differences of
+        // lengths, not of squares, because the radius may be tiny.
+        const double beyond = ((l - d) * (l + d) - r * r) / (2 * squared);
+        const double chord = (r + (l - d)) * (r - (l - d)) * (l + d + r) * (l + d - r);
         if (!(chord >= 0)) return;
-        const double half = std::sqrt(chord);
+        const double half = std::sqrt(chord) / (2 * squared);
         for (const double along : {-half, half}) {
-            const Point tip = foot * w + along * turned_left(w);
-            if (is_round(i, tip - w)) add(tip, {Contact::tip_on_corner, std::int32_t(i)});
+            const Point away = beyond * w + along * turned_left(w);
+            if (is_round(i, away)) add(w + away, {Contact::tip_on_corner, piece_.corner_names[i]});
         }
     }
     // Whether a direction lies between the normals of the sides that meet in a corner.
@@ -122,17 +123,16 @@ inline BlockedArc find_blocked_arc(const Piece& piece, Point start, double lengt
     if (squared_norm(piece.center - start) > reach * reach) return {};
     const detail::Tangent low = detail::find_tangent(piece, start, -1),
                           high = detail::find_tangent(piece, start, 1);
-    const auto on_corner = [](const detail::Tangent& t) {
-        return ArcEnd{t.toward, {Contact::side_on_corner, t.corner}};
+    const auto on_corner = [&](const detail::Tangent& t) {
+        return ArcEnd{t.toward, {Contact::side_on_corner, piece.corner_names[t.corner]}};
     };
     const bool low_is_near = low.squared_length <= length * length;
     const bool high_is_near = high.squared_length <= length * length;
     if (low_is_near && high_is_near) return {false, on_corner(low), on_corner(high)};
     const detail::TipContacts tip(piece, start, length);
-    if (!tip.found) {  // out of reach, or no more than touched
-        if (low_is_near == high_is_near) return {};
-        const ArcEnd end = on_corner(low_is_near ? low : high);
-        return {false, end, end};
+    if (!tip.found) {  // out of reach; where a tangent is not, rounding has hidden the contacts of the tip
+        if (!low_is_near && !high_is_near) return {};
+        return {false, on_corner(low), on_corner(high)};
     }
     return {false, low_is_near ? on_corner(low) : tip.clockwise,
             high_is_near ? on_corner(high) : tip.counterclockwise};

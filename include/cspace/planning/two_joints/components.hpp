@@ -16,6 +16,10 @@
 
 namespace cspace::planning {
 
+// Free pieces smaller than this [rad²] are no components: they are the tips of larger ones, cut off by slabs
+// that are not halved any more.
+inline constexpr double least_component = 1e-12;
+
 struct Component {
     std::int32_t region = 0;    // components in different regions are proved to be separate
     bool is_proved = false;     // no other component lies in the region
@@ -46,7 +50,7 @@ class Components {
   public:
     static constexpr std::int32_t blocked = -1, unresolved = -2;
 
-    explicit Components(Sweep& sweep) : sweep_(sweep) {
+    explicit Components(const Sweep& sweep) : sweep_(sweep) {
         first_free_ = number_boxes([](const Slab& slab) { return slab.free.size(); });
         first_possible_ = number_boxes([](const Slab& slab) { return slab.possible.size(); });
         detail::DisjointSets free(first_free_.back()), possible(first_possible_.back());
@@ -56,46 +60,17 @@ class Components {
         });
         name_components(free, possible);
         add_areas(possible);
-        sort_by_area();
+        keep_large();
+        add_greatest_areas();
     }
 
     const std::vector<Component>& all() const { return all_; }
-    // The components of the free boxes of a slab, in their order.
-    std::int32_t component_of(std::size_t slab, std::size_t box) const {
-        return component_[first_free_[slab] + box];
+    // Free boxes are numbered through, slab by slab.
+    std::size_t boxes() const { return component_.size(); }
+    std::uint32_t box_number(std::size_t slab, std::size_t box) const {
+        return std::uint32_t(first_free_[slab] + box);
     }
-
-    // The number of the component that contains a configuration.
-    std::int32_t find_component(double q_1, double q_2) {
-        const Joint &joint_1 = sweep_.space().arm().joint_1, &joint_2 = sweep_.space().arm().joint_2;
-        if (joint_1.wraps) q_1 = wrap_above(q_1, joint_1.lower);
-        if (joint_2.wraps) q_2 = wrap_above(q_2, joint_2.lower);
-        const SweepRow row = sweep_.make_row(q_1);
-        const auto gap = std::find_if(row.gaps.begin(), row.gaps.end(),
-                                      [&](const Gap& g) { return sweep_.finder().contains(g, q_2); });
-        if (gap == row.gaps.end() || q_1 < joint_1.lower || q_1 > joint_1.upper) return blocked;
-        for (const std::size_t slab : slabs_at(q_1))
-            for (std::size_t i = 0; i < sweep_.slabs()[slab].free.size(); ++i)
-                if (sweep_.finder().overlap(*gap, sweep_.slabs()[slab].free[i]).is_open())
-                    return component_of(slab, i);
-        return unresolved;
-    }
-
-  private:
-    Sweep& sweep_;
-    std::vector<std::size_t> first_free_, first_possible_;  // the number of the first box of each slab
-    std::vector<std::int32_t> component_;                   // of each free box
-    std::vector<Component> all_;
-
-    template <class Count>
-    std::vector<std::size_t> number_boxes(const Count& count) const {
-        std::vector<std::size_t> first{0};
-        for (const Slab& slab : sweep_.slabs()) first.push_back(first.back() + count(slab));
-        return first;
-    }
-    double width_of(std::size_t slab) const {
-        return sweep_.rows()[slab + 1].q_1 - sweep_.rows()[slab].q_1;
-    }
+    std::int32_t component_at(std::uint32_t number) const { return component_[number]; }
     // The slabs that contain an angle: two at a row.
     std::vector<std::size_t> slabs_at(double q_1) const {
         const auto& rows = sweep_.rows();
@@ -108,6 +83,38 @@ class Components {
         return found;
     }
 
+    // The number of the component that contains a configuration.
+    std::int32_t find_component(double q_1, double q_2) const {
+        const Joint &joint_1 = sweep_.space().arm().joint_1, &joint_2 = sweep_.space().arm().joint_2;
+        if (joint_1.wraps) q_1 = wrap_above(q_1, joint_1.lower);
+        if (joint_2.wraps) q_2 = wrap_above(q_2, joint_2.lower);
+        const SweepRow row = sweep_.make_row(q_1);
+        const auto gap = std::find_if(row.gaps.begin(), row.gaps.end(),
+                                      [&](const Gap& g) { return sweep_.finder().contains(g, q_2); });
+        if (gap == row.gaps.end() || q_1 < joint_1.lower || q_1 > joint_1.upper) return blocked;
+        for (const std::size_t slab : slabs_at(q_1))
+            for (std::size_t i = 0; i < sweep_.slabs()[slab].free.size(); ++i)
+                if (sweep_.finder().overlap(*gap, sweep_.slabs()[slab].free[i]).is_open())
+                    return component_at(box_number(slab, i));
+        return unresolved;
+    }
+
+  private:
+    const Sweep& sweep_;
+    std::vector<std::size_t> first_free_, first_possible_;  // the number of the first box of each slab
+    std::vector<std::int32_t> component_;                   // of each free box
+    std::vector<Component> all_;
+    std::vector<double> possible_area_;  // of each region
+
+    template <class Count>
+    std::vector<std::size_t> number_boxes(const Count& count) const {
+        std::vector<std::size_t> first{0};
+        for (const Slab& slab : sweep_.slabs()) first.push_back(first.back() + count(slab));
+        return first;
+    }
+    double width_of(std::size_t slab) const {
+        return sweep_.rows()[slab + 1].q_1 - sweep_.rows()[slab].q_1;
+    }
     // Calls visit with each slab, the next one, and the row between them.
     template <class Visit>
     void visit_neighbours(const Visit& visit) const {
@@ -151,10 +158,6 @@ class Components {
                 component_[box] = name;
             }
         }
-        for (Component& one : all_)
-            one.is_proved = std::count_if(all_.begin(), all_.end(), [&](const Component& other) {
-                                return other.region == one.region;
-                            }) == 1;
     }
     // The box that may be free around one that is.
     std::size_t region_of(std::size_t s, const Gap& free) const {
@@ -165,14 +168,15 @@ class Components {
     }
 
     void add_areas(detail::DisjointSets& possible) {
-        std::vector<double> possible_area(first_possible_.back()), largest(all_.size());
+        std::vector<double> largest(all_.size());
+        possible_area_.resize(first_possible_.back());
         for (std::size_t s = 0; s < sweep_.slabs().size(); ++s) {
             const Slab& slab = sweep_.slabs()[s];
             for (std::size_t i = 0; i < slab.possible.size(); ++i)
-                possible_area[possible.find(first_possible_[s] + i)] +=
+                possible_area_[possible.find(first_possible_[s] + i)] +=
                     width_of(s) * (slab.possible[i].high - slab.possible[i].low);
             for (std::size_t i = 0; i < slab.free.size(); ++i) {
-                const auto name = std::size_t(component_of(s, i));
+                const auto name = std::size_t(component_at(box_number(s, i)));
                 const Gap& box = slab.free[i];
                 const double area = width_of(s) * (box.high - box.low);
                 all_[name].least_area += area;
@@ -182,32 +186,43 @@ class Components {
                 all_[name].q_2 = 0.5 * (box.low + box.high);
             }
         }
-        for (Component& one : all_) {
-            double others = 0;
-            for (const Component& other : all_)
-                if (&other != &one && other.region == one.region) others += other.least_area;
-            one.greatest_area = possible_area[std::size_t(one.region)] - others;
-        }
     }
-    // Largest first; regions are numbered in the order of their largest components.
-    void sort_by_area() {
-        std::vector<std::int32_t> order(all_.size()), place(all_.size());
+    // Sorts by size, largest first, and drops what is too small. Regions get numbers in the same order.
+    void keep_large() {
+        std::vector<std::size_t> order(all_.size());
         std::iota(order.begin(), order.end(), 0);
-        std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-            return all_[std::size_t(a)].least_area > all_[std::size_t(b)].least_area;
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return all_[a].least_area > all_[b].least_area;
         });
-        std::vector<Component> sorted;
-        std::vector<std::int32_t> regions(first_possible_.back(), -1);
-        std::int32_t count = 0;
-        for (const std::int32_t old : order) {
-            place[std::size_t(old)] = std::int32_t(sorted.size());
-            sorted.push_back(all_[std::size_t(old)]);
-            std::int32_t& region = regions[std::size_t(sorted.back().region)];
-            if (region < 0) region = count++;
-            sorted.back().region = region;
+        std::vector<Component> kept;
+        std::vector<std::int32_t> place(all_.size(), unresolved), number(first_possible_.back(), -1);
+        std::vector<double> area;  // of each region
+        for (const std::size_t old : order) {
+            if (all_[old].least_area < least_component) break;
+            place[old] = std::int32_t(kept.size());
+            kept.push_back(all_[old]);
+            const auto region = std::size_t(all_[old].region);
+            if (number[region] < 0) {
+                number[region] = std::int32_t(area.size());
+                area.push_back(possible_area_[region]);
+            }
+            kept.back().region = number[region];
         }
-        all_ = std::move(sorted);
+        all_ = std::move(kept), possible_area_ = std::move(area);
         for (std::int32_t& name : component_) name = place[std::size_t(name)];
+    }
+    void add_greatest_areas() {
+        std::vector<int> count(possible_area_.size());
+        std::vector<double> least(possible_area_.size());
+        for (const Component& one : all_) {
+            ++count[std::size_t(one.region)];
+            least[std::size_t(one.region)] += one.least_area;
+        }
+        for (Component& one : all_) {
+            const auto region = std::size_t(one.region);
+            one.is_proved = count[region] == 1;
+            one.greatest_area = possible_area_[region] - (least[region] - one.least_area);
+        }
     }
 };
 

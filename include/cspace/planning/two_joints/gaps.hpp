@@ -16,7 +16,10 @@ struct GapEnd {
     static constexpr std::int32_t limit = -1, nothing = -2;
     std::int32_t piece = nothing;
     Feature feature;
-    friend constexpr bool operator==(const GapEnd&, const GapEnd&) = default;
+    // Whether the contact is the same; two pieces may have it.
+    friend constexpr bool operator==(const GapEnd& a, const GapEnd& b) {
+        return a.piece < 0 || b.piece < 0 ? a.piece == b.piece : a.feature == b.feature;
+    }
 };
 
 // Coordinates of joint 2 from low to high. Where the joint wraps, low lies within its range, and high is up
@@ -39,16 +42,17 @@ class GapFinder {
 
     // The gaps, in order, between intervals and their copies that are multiples of a turn away. An interval
     // whose high end is below its low end is none.
-    void find(std::span<const BlockedInterval> blocked, std::vector<Gap>& gaps) {
-        gaps.clear(), copies_.clear();
+    void find(std::span<const BlockedInterval> blocked, std::vector<Gap>& gaps) const {
+        gaps.clear();
+        std::vector<BlockedInterval> copies;
         for (const BlockedInterval& interval : blocked) {
             if (!(interval.low <= interval.high)) continue;
             if (interval.high - interval.low >= turn) return;
-            add_copies(interval);
+            add_copies(interval, copies);
         }
-        std::sort(copies_.begin(), copies_.end(),
+        std::sort(copies.begin(), copies.end(),
                   [](const BlockedInterval& a, const BlockedInterval& b) { return a.low < b.low; });
-        joint_.wraps ? find_around(gaps) : find_between_limits(gaps);
+        joint_.wraps ? find_around(copies, gaps) : find_between_limits(copies, gaps);
     }
     // The part of a that b overlaps, in the coordinates of a.
     Overlap overlap(const Gap& a, const Gap& b) const {
@@ -63,35 +67,35 @@ class GapFinder {
     }
 
   private:
+    using Copies = std::vector<BlockedInterval>;
     Joint joint_;
-    std::vector<BlockedInterval> copies_;
 
-    void add_copies(BlockedInterval interval) {
+    void add_copies(BlockedInterval interval, Copies& copies) const {
         const double width = interval.high - interval.low;
         double low = wrap_above(interval.low, joint_.lower);
         if (!joint_.wraps && low + width - turn >= joint_.lower) low -= turn;
         for (; low <= joint_.upper; low += turn) {
             interval.low = low, interval.high = low + width;
-            copies_.push_back(interval);
+            copies.push_back(interval);
             if (joint_.wraps) return;
         }
     }
-    void find_around(std::vector<Gap>& gaps) const {
-        if (copies_.empty()) return gaps.push_back({joint_.lower, joint_.upper, {}, {}});
+    void find_around(const Copies& copies, std::vector<Gap>& gaps) const {
+        if (copies.empty()) return gaps.push_back({joint_.lower, joint_.upper, {}, {}});
         const auto last = std::max_element(
-            copies_.begin(), copies_.end(),
+            copies.begin(), copies.end(),
             [](const BlockedInterval& a, const BlockedInterval& b) { return a.high < b.high; });
-        find_from(last->high - turn, {last->piece, last->at_high}, gaps);
+        find_from(copies, last->high - turn, {last->piece, last->at_high}, gaps);
         for (Gap& gap : gaps)
             if (gap.low < joint_.lower) gap.low += turn, gap.high += turn;
     }
-    void find_between_limits(std::vector<Gap>& gaps) const {
-        const auto [from, end] = find_from(joint_.lower, {GapEnd::limit, {}}, gaps);
+    void find_between_limits(const Copies& copies, std::vector<Gap>& gaps) const {
+        const auto [from, end] = find_from(copies, joint_.lower, {GapEnd::limit, {}}, gaps);
         if (from < joint_.upper) gaps.push_back({from, joint_.upper, end, {GapEnd::limit, {}}});
     }
     // The gaps between the copies from a coordinate on, and what comes last.
-    std::pair<double, GapEnd> find_from(double from, GapEnd end, std::vector<Gap>& gaps) const {
-        for (const BlockedInterval& next : copies_) {
+    static std::pair<double, GapEnd> find_from(const Copies& copies, double from, GapEnd end, std::vector<Gap>& gaps) {
+        for (const BlockedInterval& next : copies) {
             if (next.low > from) gaps.push_back({from, next.low, end, {next.piece, next.at_low}});
             if (next.high >= from) from = next.high, end = {next.piece, next.at_high};
         }

@@ -8,7 +8,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cspace/math/plane.hpp"
@@ -20,6 +23,8 @@ struct Piece {
     std::vector<Point> corners;   // counterclockwise
     std::vector<Point> normals;   // unit, outward, of the side from each corner to the next
     std::vector<double> lengths;  // of the sides
+    // What tells corners from each other, and sides: pieces of one obstacle may share them.
+    std::vector<std::int32_t> corner_names, side_names;
     double radius = 0;
     Point center;       // of the corners
     double extent = 0;  // the farthest corner from the centre
@@ -57,7 +62,25 @@ inline Piece make_piece(std::span<const Point> corners, double radius, std::int3
         piece.normals.push_back(length > 0 ? (1 / length) * Point{side.y, -side.x} : Point{});
         piece.extent = std::max(piece.extent, distance(corners[i], piece.center));
     }
+    piece.corner_names.assign(piece.size(), 0), piece.side_names = piece.corner_names;
     return piece;
+}
+
+// Numbers the corners and sides of pieces. Corners of one obstacle at one place share a name.
+inline void name_corners(std::span<Piece> pieces) {
+    std::map<std::tuple<std::int32_t, double, double, double>, std::int32_t> corners;
+    std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> sides;
+    for (Piece& piece : pieces) {
+        for (std::size_t i = 0; i < piece.size(); ++i) {
+            const auto [x, y] = piece.corners[i];
+            const std::tuple corner{piece.obstacle, x, y, piece.radius};
+            piece.corner_names[i] = corners.try_emplace(corner, std::int32_t(corners.size())).first->second;
+        }
+        for (std::size_t i = 0; i < piece.size(); ++i) {
+            const std::pair side{piece.corner_names[i], piece.corner_names[piece.next(i)]};
+            piece.side_names[i] = sides.try_emplace(side, std::int32_t(sides.size())).first->second;
+        }
+    }
 }
 
 // The distance from a point to the hull of the corners, zero inside.

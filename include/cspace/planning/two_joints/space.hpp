@@ -56,6 +56,7 @@ class Space {
             pieces_.push_back(piece);
         }
         arm_.base = {};
+        name_corners(pieces_);
         if (buried_in_ == no_obstacle) find_link_1();
     }
 

@@ -90,7 +90,7 @@ class Sweep {
     const std::vector<double>& edges() const { return edges_; }
     bool is_complete() const { return int(rows_.size()) < settings_.most_rows; }
 
-    SweepRow make_row(double q_1) {
+    SweepRow make_row(double q_1) const {
         SweepRow row;
         row.q_1 = q_1, row.blocks_link_1 = space_.blocks_link_1(q_1);
         if (row.blocks_link_1 != no_obstacle) return row;
@@ -194,7 +194,7 @@ class Sweep {
         rows_.push_back(std::move(next));
     }
 
-    // Whether every box that may be free contains one that is.
+    // Whether every box that may be free contains one that is, and so does every gap of the two rows.
     bool find_boxes(const SweepRow& a, const SweepRow& b, Slab& slab) {
         const bool has_edge_inside = has_edge(a.q_1, b.q_1);
         if (!has_edge_inside && a.blocks_link_1 != no_obstacle) return true;
@@ -203,12 +203,14 @@ class Sweep {
         if (!has_edge_inside) finder_.find(outer_, slab.free);
         finder_.find(inner_, slab.possible);
         if (slab.free.size() != slab.possible.size()) return false;
-        for (const Gap& possible : slab.possible)
-            if (std::none_of(slab.free.begin(), slab.free.end(), [&](const Gap& free) {
-                    return finder_.overlap(possible, free).is_open();
-                }))
-                return false;
-        return true;
+        const auto has_free = [&](const Gap& gap) {
+            return std::any_of(slab.free.begin(), slab.free.end(),
+                               [&](const Gap& free) { return finder_.overlap(gap, free).is_open(); });
+        };
+        const auto all_have_free = [&](const std::vector<Gap>& gaps) {
+            return std::all_of(gaps.begin(), gaps.end(), has_free);
+        };
+        return all_have_free(slab.possible) && all_have_free(a.gaps) && all_have_free(b.gaps);
     }
     // What each piece blocks in some row of the slab, and what in all of them.
     void bound_arcs(const SweepRow& a, const SweepRow& b) {
