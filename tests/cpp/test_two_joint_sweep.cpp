@@ -9,7 +9,7 @@
 #include "two_link_arms.hpp"
 
 using namespace cspace;
-using namespace cspace::planning;
+using namespace cspace::planning::two_joints;
 
 namespace {
 

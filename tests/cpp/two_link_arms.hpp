@@ -9,7 +9,7 @@
 namespace check {
 
 using cspace::Point;
-using namespace cspace::planning;
+using namespace cspace::planning::two_joints;
 
 inline double distance_between(Point a, Point b, Point c, Point d) {
     if (cspace::do_cross({a, b}, {c, d})) return 0;
@@ -49,7 +49,7 @@ inline Piece random_piece(Random& random, double far, std::int32_t obstacle) {
     std::vector<Point> corners;
     const double start = random.uniform(0, 7);
     for (int i = 0; i < count; ++i) {
-        const double angle = start + cspace::planning::turn * (i + random.uniform(-0.3, 0.3)) / count;
+        const double angle = start + cspace::planning::two_joints::turn * (i + random.uniform(-0.3, 0.3)) / count;
         corners.push_back(center + size * Point{std::cos(angle), std::sin(angle)});
     }
     return make_piece(corners, count < 3 ? size / 3 : random.below(2) * 0.05, obstacle);

@@ -8,7 +8,7 @@
 #include "cspace/math/interrupts.hpp"
 #include "cspace/planning/two_joints/space.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 // The centres of equal cells from lower to upper.
 class Cells {
@@ -53,4 +53,4 @@ void draw_bitmap(const Space& space, int rows, int columns, Cell* cells, const M
     }
 }
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

@@ -12,7 +12,7 @@
 #include "cspace/math/wrapping.hpp"
 #include "cspace/planning/two_joints/piece.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 enum class Contact : std::uint8_t { side_on_corner, tip_on_corner, tip_on_side };
 
@@ -148,4 +148,4 @@ inline Angles angles_of(const BlockedArc& arc) {
     return {std::atan2(from.y, from.x), std::atan2(std::max(cross(from, to), 0.0), dot(from, to))};
 }
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

@@ -10,7 +10,7 @@
 
 #include "cspace/planning/two_joints/sweep.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 enum class BoundaryKind : std::int8_t { side_on_corner, tip_on_corner, tip_on_side, link_1, limit };
 
@@ -99,4 +99,4 @@ inline std::vector<BoundaryCurve> trace_boundaries(const Sweep& sweep) {
     return std::move(detail::BoundaryTracer(sweep).curves);
 }
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

@@ -1,12 +1,13 @@
 // The connected components of the free configurations of two joints, with proofs.
 //
-// Free boxes of neighbouring slabs are connected if they share a gap of the row between them. Boxes that may
-// be free, which are a little larger than that, are not connected if they do not overlap. Where both agree
-// the components are proved; where one possible region contains several free ones, a passage narrower than
-// the slabs resolve may connect them.
+// Boxes of neighbouring slabs are connected if they share a gap of the row between them: free boxes one that
+// is surely a gap, boxes that may be free one that rounding may have closed. Where both agree the components
+// are proved; where one possible region contains several free ones, a passage narrower than the slabs resolve
+// may connect them.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -14,7 +15,7 @@
 
 #include "cspace/planning/two_joints/sweep.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 // Free pieces smaller than this [rad²] are no components: they are the tips of larger ones, cut off by slabs
 // that are not halved any more.
@@ -55,8 +56,14 @@ class Components {
         first_possible_ = number_boxes([](const Slab& slab) { return slab.possible.size(); });
         detail::DisjointSets free(first_free_.back()), possible(first_possible_.back());
         visit_neighbours([&](std::size_t s, std::size_t t, const SweepRow& row) {
-            unite_free(s, t, row, free);
-            unite_possible(s, t, possible);
+            for (const Gap& gap : row.gaps) {
+                const auto boxes = [&](std::size_t slab) -> auto& { return sweep_.slabs()[slab].free; };
+                unite_across(gap, boxes, first_free_, {s, t}, free);
+            }
+            for (const Gap& gap : sweep_.find_possible_gaps(row)) {
+                const auto boxes = [&](std::size_t slab) -> auto& { return sweep_.slabs()[slab].possible; };
+                unite_across(gap, boxes, first_possible_, {s, t}, possible);
+            }
         });
         name_components(free, possible);
         add_areas(possible);
@@ -123,24 +130,17 @@ class Components {
         for (std::size_t s = 0; s + 1 < count; ++s) poll.step(), visit(s, s + 1, sweep_.rows()[s + 1]);
         if (sweep_.space().arm().joint_1.wraps && count > 0) visit(count - 1, 0, sweep_.rows().front());
     }
-    void unite_free(std::size_t s, std::size_t t, const SweepRow& row, detail::DisjointSets& sets) const {
-        for (const Gap& gap : row.gaps) {
-            std::size_t first = first_free_.back();
-            for (const std::size_t slab : {s, t})
-                for (std::size_t i = 0; i < sweep_.slabs()[slab].free.size(); ++i) {
-                    if (!sweep_.finder().overlap(gap, sweep_.slabs()[slab].free[i]).is_open()) continue;
-                    const std::size_t box = first_free_[slab] + i;
-                    if (first < first_free_.back()) sets.unite(first, box);
-                    first = box;
-                }
-        }
-    }
-    void unite_possible(std::size_t s, std::size_t t, detail::DisjointSets& sets) const {
-        const auto &here = sweep_.slabs()[s].possible, &there = sweep_.slabs()[t].possible;
-        for (std::size_t i = 0; i < here.size(); ++i)
-            for (std::size_t j = 0; j < there.size(); ++j)
-                if (sweep_.finder().overlap(here[i], there[j]).is_open())
-                    sets.unite(first_possible_[s] + i, first_possible_[t] + j);
+    // Unites the boxes of two slabs that a gap of the row between them connects.
+    template <class BoxesOf>
+    void unite_across(const Gap& gap, const BoxesOf& boxes_of, const std::vector<std::size_t>& first,
+                      const std::array<std::size_t, 2>& slabs, detail::DisjointSets& sets) const {
+        std::size_t last = first.back();
+        for (const std::size_t slab : slabs)
+            for (std::size_t i = 0; i < boxes_of(slab).size(); ++i) {
+                if (!sweep_.finder().overlap(gap, boxes_of(slab)[i]).is_open()) continue;
+                if (last < first.back()) sets.unite(last, first[slab] + i);
+                last = first[slab] + i;
+            }
     }
 
     void name_components(detail::DisjointSets& free, detail::DisjointSets& possible) {
@@ -226,4 +226,4 @@ class Components {
     }
 };
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

@@ -12,7 +12,7 @@
 
 #include "cspace/planning/two_joints/space.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 // Angles of joint 1 in the plane, less than 2π apart or all.
 struct AngleRange {
@@ -141,4 +141,4 @@ inline std::vector<AngleRange> find_critical_angles(const Arm& arm, const Piece&
     return detail::CriticalAngles(arm, piece).found;
 }
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

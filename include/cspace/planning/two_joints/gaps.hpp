@@ -8,7 +8,7 @@
 
 #include "cspace/planning/two_joints/space.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 // What bounds a gap: a piece where the link touches it, a limit of the joint, or nothing where the gap is a
 // whole turn.
@@ -103,4 +103,4 @@ class GapFinder {
     }
 };
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

@@ -14,7 +14,7 @@
 #include "cspace/planning/two_joints/components.hpp"
 #include "cspace/search/best_first.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 namespace detail {
 
@@ -199,4 +199,4 @@ class PathFinder {
     }
 };
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

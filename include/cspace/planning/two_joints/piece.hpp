@@ -16,7 +16,7 @@
 
 #include "cspace/math/plane.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 // All points within `radius` of the convex hull of corners: of one corner a disc, of two a capsule.
 struct Piece {
@@ -96,4 +96,4 @@ inline double distance_to_corners(const Piece& piece, Point p) {
 }
 inline bool contains(const Piece& piece, Point p) { return distance_to_corners(piece, p) <= piece.radius; }
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

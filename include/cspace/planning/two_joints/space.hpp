@@ -12,7 +12,7 @@
 #include "cspace/math/wrapping.hpp"
 #include "cspace/planning/two_joints/blocked_arc.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 inline constexpr double turn = 2 * pi;
 inline constexpr std::int32_t no_obstacle = -1;
@@ -131,4 +131,4 @@ class Space {
     }
 };
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints

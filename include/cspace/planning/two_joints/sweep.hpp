@@ -15,7 +15,7 @@
 #include "cspace/planning/two_joints/critical_angles.hpp"
 #include "cspace/planning/two_joints/gaps.hpp"
 
-namespace cspace::planning {
+namespace cspace::planning::two_joints {
 
 // A row of the space at one angle of joint 1: the arcs that link 2 may not enter, and the gaps between them.
 struct SweepRow {
@@ -98,6 +98,16 @@ class Sweep {
         space_.visit_link_2(q_1, [&](const BlockedInterval& arc) { row.arcs.push_back(arc); });
         finder_.find(row.arcs, row.gaps);
         return row;
+    }
+
+    // The gaps of a row, a little larger, and those that rounding may have closed.
+    std::vector<Gap> find_possible_gaps(const SweepRow& row) const {
+        std::vector<Gap> gaps;
+        if (row.blocks_link_1 != no_obstacle) return gaps;
+        std::vector<BlockedInterval> arcs = row.arcs;
+        for (BlockedInterval& arc : arcs) arc.low += detail::arc_slack, arc.high -= detail::arc_slack;
+        finder_.find(arcs, gaps);
+        return gaps;
     }
 
   private:
@@ -273,4 +283,4 @@ class Sweep {
     }
 };
 
-}  // namespace cspace::planning
+}  // namespace cspace::planning::two_joints
