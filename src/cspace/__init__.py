@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         maps,
         model,
         navigation,
+        planning,
         plot,
         robots,
         shapes,
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
+    from cspace.planning import configuration_space
     from cspace.robot import Robot
     from cspace.robots import load_robot
     from cspace.shapes import (
@@ -60,6 +62,7 @@ __all__ = [
     "Scene",
     "__version__",
     "collision",
+    "configuration_space",
     "export",
     "ik",
     "kinematics",
@@ -68,6 +71,7 @@ __all__ = [
     "model",
     "navigate",
     "navigation",
+    "planning",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
@@ -101,6 +105,7 @@ _LATER = {
     "Sphere": "cspace.shapes",
     "__version__": "cspace._core",
     "collision": "",
+    "configuration_space": "cspace.planning",
     "export": "",
     "ik": "",
     "kinematics": "",
@@ -109,6 +114,7 @@ _LATER = {
     "model": "",
     "navigate": "cspace.navigation",
     "navigation": "",
+    "planning": "",
     "plot": "",
     "robots": "",
     "shapes": "",
