@@ -1,7 +1,8 @@
 // A path between two configurations through the free boxes of a sweep: proved free all along.
 //
-// Boxes are searched by Dijkstra's algorithm, each entered at its point nearest to where the one before was
-// entered. The row of boxes that it finds is pulled taut.
+// Boxes are searched by A*, each entered at its point nearest to where the one before was entered; of two
+// ways into a box the one counts that leads to the goal on the shorter way if nothing stood between. The row
+// of boxes that it finds is pulled taut. So a path is short, but not always the shortest.
 #pragma once
 
 #include <algorithm>
@@ -22,13 +23,14 @@ namespace detail {
 struct PlacedBox {
     double shift_1 = 0, low = 0, high = 0;
     Point at;
+    double length = 0;  // of the way up to there
     double nearest(double y) const { return std::clamp(y, low, high); }
 };
 
 class BoxSearch {
   public:
-    BoxSearch(const Sweep& sweep, std::size_t boxes, std::uint32_t goal)
-        : ways(boxes), placed(boxes), sweep_(sweep), goal_(goal) {
+    BoxSearch(const Sweep& sweep, std::size_t boxes, std::uint32_t goal, Point goal_at)
+        : ways(boxes), placed(boxes), sweep_(sweep), goal_(goal), goal_at_(goal_at) {
         for (std::size_t s = 0; s < sweep.slabs().size(); ++s)
             for (std::size_t i = 0; i < sweep.slabs()[s].free.size(); ++i)
                 slab_.push_back(s), box_.push_back(&sweep.slabs()[s].free[i]);
@@ -68,6 +70,7 @@ class BoxSearch {
   private:
     const Sweep& sweep_;
     const std::uint32_t goal_;
+    const Point goal_at_;
     std::vector<std::size_t> slab_, first_;
     std::vector<const Gap*> box_;
 
@@ -81,6 +84,13 @@ class BoxSearch {
             visit(sweep_.rows()[s], is_first ? count - 1 : s - 1, is_first ? -turn : 0.0);
         if (!is_last || wraps) visit(sweep_.rows()[s + 1], is_last ? 0 : s + 1, is_last ? turn : 0.0);
     }
+    // The distance to the nearest copy of the goal.
+    double distance_to_goal(Point at) const {
+        const Arm& arm = sweep_.space().arm();
+        const Point off = goal_at_ - at;
+        return std::hypot(arm.joint_1.wraps ? short_way(off.x) : off.x,
+                          arm.joint_2.wraps ? short_way(off.y) : off.y);
+    }
     void reach(std::uint32_t box, std::uint32_t next, const Gap& gap, double q_1, double shift_1,
                search::PriorityQueue& queue) {
         const PlacedBox& from = placed[box];
@@ -92,7 +102,8 @@ class BoxSearch {
             shift_2 = from.low - box_[box]->low - in_gap(*box_[box]) + in_gap(*box_[next]);
         PlacedBox to = place(next, shift_1, shift_2);
         to.at = {q_1, to.nearest(from.at.y)};
-        const double cost = ways.cost(box) + distance(from.at, to.at);
+        to.length = from.length + distance(from.at, to.at);
+        const double cost = to.length + distance_to_goal(to.at);
         if (!ways.improve(next, cost, box)) return;
         placed[next] = to;
         queue.push({cost, 0, next});
@@ -111,7 +122,7 @@ class PathFinder {
         const std::optional<Entry> start = enter(from), goal = enter(to);
         if (!start || !goal || components_.component_at(start->box) != components_.component_at(goal->box))
             return {};
-        detail::BoxSearch space(sweep_, components_.boxes(), goal->box);
+        detail::BoxSearch space(sweep_, components_.boxes(), goal->box, goal->q);
         space.placed[start->box] = space.place(start->box, 0, start->q.y - start->in_box.y);
         space.placed[start->box].at = {start->q.x, start->at.y};
         space.ways.improve(start->box, 0, search::no_node);
