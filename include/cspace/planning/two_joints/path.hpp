@@ -1,13 +1,12 @@
 // A path between two configurations through the free boxes of a sweep: proved free all along.
 //
-// Boxes are searched by A*, each entered at its point nearest to where the one before was entered; of two
-// ways into a box the one counts that leads to the goal on the shorter way if nothing stood between. The row
-// of boxes that it finds is pulled taut. So a path is short, but not always the shortest.
+// Boxes are cut along joint 2 into cells, which A* searches: each is entered at its point nearest to where
+// the one before was entered. The row of boxes that it finds is pulled taut. So a path is short, but not
+// always the shortest.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -19,94 +18,160 @@ namespace cspace::planning::two_joints {
 
 namespace detail {
 
-// A copy of a box in coordinates that do not wrap, and where the way enters it.
-struct PlacedBox {
-    double shift_1 = 0, low = 0, high = 0;
-    Point at;
-    double length = 0;  // of the way up to there
-    double nearest(double y) const { return std::clamp(y, low, high); }
+// The widest cell [rad].
+inline constexpr double widest_cell = 0.2;
+// An end [rad] of the interval of a box that is a whole turn: farther than any path goes.
+inline constexpr double far_away = 1e3;
+
+// A free box of a sweep.
+struct Box {
+    const Gap* gap;
+    std::size_t slab;
+    std::uint32_t first_cell;
+    int cells;
+    bool is_whole() const { return gap->at_low.piece == GapEnd::nothing; }
+    double side() const { return (gap->high - gap->low) / cells; }
+    int cell_at(double y) const { return std::clamp(int((y - gap->low) / side()), 0, cells - 1); }
 };
 
-class BoxSearch {
+// A cell where its coordinates are those of the space plus shifts, and where the way enters it.
+struct PlacedCell {
+    Point shift, at;
+    double length = 0;  // of the way up to there
+};
+
+class CellSearch {
   public:
-    BoxSearch(const Sweep& sweep, std::size_t boxes, std::uint32_t goal, Point goal_at)
-        : ways(boxes), placed(boxes), sweep_(sweep), goal_(goal), goal_at_(goal_at) {
-        for (std::size_t s = 0; s < sweep.slabs().size(); ++s)
-            for (std::size_t i = 0; i < sweep.slabs()[s].free.size(); ++i)
-                slab_.push_back(s), box_.push_back(&sweep.slabs()[s].free[i]);
+    CellSearch(const Sweep& sweep, std::uint32_t goal_box, Point goal)
+        : sweep_(sweep), boxes_(list_boxes(sweep)), goal_(goal) {
+        for (std::uint32_t b = 0; b < boxes_.size(); ++b) {
+            boxes_[b].first_cell = std::uint32_t(box_of_.size());
+            box_of_.insert(box_of_.end(), std::size_t(boxes_[b].cells), b);
+        }
         first_.push_back(0);
         for (const Slab& slab : sweep.slabs()) first_.push_back(first_.back() + slab.free.size());
+        goal_cell_ = boxes_[goal_box].first_cell + std::uint32_t(boxes_[goal_box].cell_at(goal.y));
+        ways_.emplace(box_of_.size());
+        placed_.resize(box_of_.size());
     }
-    search::Ways ways;
-    std::vector<PlacedBox> placed;
+    // From a place in a box; false if the goal is not reached.
+    bool run(std::uint32_t box, Point at, double shift_2) {
+        queue_.clear();
+        const auto cell = std::uint32_t(boxes_[box].cell_at(at.y - shift_2));
+        reach(search::no_node, boxes_[box].first_cell + cell, {{0, shift_2}, at, 0});
+        search::Effort effort;
+        return search::best_first(*this, queue_, effort) != search::no_node;
+    }
+    // The cells from the start to the goal.
+    std::vector<std::uint32_t> row_of_cells() const {
+        std::vector<std::uint32_t> cells{goal_cell_};
+        while (ways_->before(cells.back()) != search::no_node) cells.push_back(ways_->before(cells.back()));
+        std::reverse(cells.begin(), cells.end());
+        return cells;
+    }
+    const PlacedCell& placed(std::uint32_t cell) const { return placed_[cell]; }
+    const Box& box_of(std::uint32_t cell) const { return boxes_[box_of_[cell]]; }
+    // The interval of the whole box of a cell.
+    Overlap interval_of(std::uint32_t cell) const {
+        const Box& box = box_of(cell);
+        const double shift = placed_[cell].shift.y;
+        if (box.is_whole()) return {-far_away, far_away};
+        return {box.gap->low + shift, box.gap->high + shift};
+    }
+    // Whether the way from a cell leaves its slab upwards.
+    bool is_upper_row(std::uint32_t from, std::uint32_t to) const {
+        const std::size_t s = box_of(from).slab;
+        const double middle = 0.5 * (sweep_.rows()[s].q_1 + sweep_.rows()[s + 1].q_1);
+        return placed_[to].at.x > middle + placed_[from].shift.x;
+    }
 
-    bool settle(std::uint32_t box) { return ways.settle(box); }
-    bool is_goal(std::uint32_t box) const { return box == goal_; }
-    void expand(std::uint32_t box, search::PriorityQueue& queue) {
-        visit_exits(box, [&](const SweepRow& row, std::size_t across, double shift) {
-            const auto gap = std::find_if(row.gaps.begin(), row.gaps.end(), [&](const Gap& g) {
-                return sweep_.finder().overlap(g, *box_[box]).is_open();
-            });
-            if (gap == row.gaps.end()) return;
-            const PlacedBox from = placed[box];
-            const double q_1 = row.q_1 + from.shift_1;
-            for (const std::size_t slab : {slab_[box], across})
-                for (std::size_t next = first_[slab]; next < first_[slab + 1]; ++next)
-                    if (next != box && sweep_.finder().overlap(*gap, *box_[next]).is_open())
-                        reach(box, std::uint32_t(next), *gap, q_1,
-                              slab == across ? from.shift_1 + shift : from.shift_1, queue);
+    bool settle(std::uint32_t cell) { return ways_->settle(cell); }
+    bool is_goal(std::uint32_t cell) const { return cell == goal_cell_; }
+    void expand(std::uint32_t cell, search::PriorityQueue&) {
+        const Box& box = box_of(cell);
+        const int number = int(cell - box.first_cell);
+        for (const int step : {-1, 1}) enter_beside(cell, box, number + step);
+        visit_exits(box.slab, [&](const SweepRow& row, std::size_t across, double shift) {
+            for (const Gap& gap : row.gaps) {
+                if (!sweep_.finder().overlap(gap, *box.gap).is_open()) continue;
+                enter_across(cell, gap, row.q_1, box.slab, 0);
+                if (across != box.slab) enter_across(cell, gap, row.q_1, across, shift);
+                return;
+            }
         });
     }
-    // A box where its coordinates are those of the space, or a turn beside them.
-    PlacedBox place(std::uint32_t box, double shift_1, double shift_2) const {
-        constexpr double far = 1e3;  // [rad], for a box that is a whole turn
-        if (is_whole(*box_[box])) return {shift_1, -far, far, {}};
-        return {shift_1, box_[box]->low + shift_2, box_[box]->high + shift_2, {}};
-    }
-    std::size_t slab_of(std::uint32_t box) const { return slab_[box]; }
-    const Gap& box_at(std::uint32_t box) const { return *box_[box]; }
-    static bool is_whole(const Gap& gap) { return gap.at_low.piece == GapEnd::nothing; }
 
   private:
     const Sweep& sweep_;
-    const std::uint32_t goal_;
-    const Point goal_at_;
-    std::vector<std::size_t> slab_, first_;
-    std::vector<const Gap*> box_;
+    std::vector<Box> boxes_;
+    std::vector<std::uint32_t> box_of_;  // of each cell
+    std::vector<std::size_t> first_;     // box of each slab
+    const Point goal_;
+    std::uint32_t goal_cell_;
+    std::optional<search::Ways> ways_;
+    std::vector<PlacedCell> placed_;
+    search::PriorityQueue queue_;
 
-    // Calls visit(row, slab across it, shift of joint 1 there) for the rows at which a box ends.
+    static std::vector<Box> list_boxes(const Sweep& sweep) {
+        std::vector<Box> boxes;
+        for (std::size_t s = 0; s < sweep.slabs().size(); ++s)
+            for (const Gap& gap : sweep.slabs()[s].free)
+                boxes.push_back({&gap, s, 0, 1 + int((gap.high - gap.low) / widest_cell)});
+        return boxes;
+    }
+    // Calls visit(row, slab across it, shift of joint 1 there) for the rows at which a slab ends.
     template <class Visit>
-    void visit_exits(std::uint32_t box, const Visit& visit) const {
-        const std::size_t s = slab_[box], count = sweep_.slabs().size();
+    void visit_exits(std::size_t s, const Visit& visit) const {
+        const std::size_t count = sweep_.slabs().size();
         const bool wraps = sweep_.space().arm().joint_1.wraps;
         const bool is_first = s == 0, is_last = s + 1 == count;
         if (!is_first || wraps)
             visit(sweep_.rows()[s], is_first ? count - 1 : s - 1, is_first ? -turn : 0.0);
         if (!is_last || wraps) visit(sweep_.rows()[s + 1], is_last ? 0 : s + 1, is_last ? turn : 0.0);
     }
+    // A cell of the same box.
+    void enter_beside(std::uint32_t from, const Box& box, int number) {
+        double shift = placed_[from].shift.y;
+        if (box.is_whole()) {
+            if (number < 0) number += box.cells, shift -= turn;
+            if (number >= box.cells) number -= box.cells, shift += turn;
+        }
+        if (number < 0 || number >= box.cells) return;
+        enter(from, box, number, placed_[from].at.x, {placed_[from].shift.x, shift});
+    }
+    // The boxes of a slab that a gap of a row connects with a cell's: each in the cell that is nearest.
+    void enter_across(std::uint32_t from, const Gap& gap, double q_1, std::size_t slab, double shift_1) {
+        const PlacedCell& here = placed_[from];
+        const Box& own = box_of(from);
+        const auto offset_in = [&](const Gap& g) { return sweep_.finder().overlap(gap, g).low - g.low; };
+        for (std::size_t b = first_[slab]; b < first_[slab + 1]; ++b) {
+            const Box& box = boxes_[b];
+            if (&box == &own || !sweep_.finder().overlap(gap, *box.gap).is_open()) continue;
+            double shift = here.shift.y - offset_in(*own.gap) + offset_in(*box.gap);
+            if (gap.at_low.piece == GapEnd::nothing)  // the nearest copy
+                shift = nearest_multiple(here.at.y - 0.5 * (box.gap->low + box.gap->high));
+            const int number = box.cell_at(here.at.y - shift);
+            enter(from, box, number, q_1 + here.shift.x, {here.shift.x + shift_1, shift});
+        }
+    }
+    void enter(std::uint32_t from, const Box& box, int number, double x, Point shift) {
+        const double low = box.gap->low + shift.y + number * box.side();
+        const Point at{x, std::clamp(placed_[from].at.y, low, low + box.side())};
+        const double length = placed_[from].length + distance(placed_[from].at, at);
+        reach(from, box.first_cell + std::uint32_t(number), {shift, at, length});
+    }
+    void reach(std::uint32_t from, std::uint32_t cell, const PlacedCell& place) {
+        const double cost = place.length + distance_to_goal(place.at);
+        if (!ways_->improve(cell, cost, from)) return;
+        placed_[cell] = place;
+        queue_.push({cost, 0, cell});
+    }
     // The distance to the nearest copy of the goal.
     double distance_to_goal(Point at) const {
         const Arm& arm = sweep_.space().arm();
-        const Point off = goal_at_ - at;
+        const Point off = goal_ - at;
         return std::hypot(arm.joint_1.wraps ? short_way(off.x) : off.x,
                           arm.joint_2.wraps ? short_way(off.y) : off.y);
-    }
-    void reach(std::uint32_t box, std::uint32_t next, const Gap& gap, double q_1, double shift_1,
-               search::PriorityQueue& queue) {
-        const PlacedBox& from = placed[box];
-        const auto in_gap = [&](const Gap& g) { return sweep_.finder().overlap(gap, g).low - g.low; };
-        double shift_2 = 0;
-        if (is_whole(gap))
-            shift_2 = nearest_multiple(from.at.y - 0.5 * (box_[next]->low + box_[next]->high));
-        else if (!is_whole(*box_[next]))
-            shift_2 = from.low - box_[box]->low - in_gap(*box_[box]) + in_gap(*box_[next]);
-        PlacedBox to = place(next, shift_1, shift_2);
-        to.at = {q_1, to.nearest(from.at.y)};
-        to.length = from.length + distance(from.at, to.at);
-        const double cost = to.length + distance_to_goal(to.at);
-        if (!ways.improve(next, cost, box)) return;
-        placed[next] = to;
-        queue.push({cost, 0, next});
     }
 };
 
@@ -122,15 +187,9 @@ class PathFinder {
         const std::optional<Entry> start = enter(from), goal = enter(to);
         if (!start || !goal || components_.component_at(start->box) != components_.component_at(goal->box))
             return {};
-        detail::BoxSearch space(sweep_, components_.boxes(), goal->box, goal->q);
-        space.placed[start->box] = space.place(start->box, 0, start->q.y - start->in_box.y);
-        space.placed[start->box].at = {start->q.x, start->at.y};
-        space.ways.improve(start->box, 0, search::no_node);
-        search::PriorityQueue queue;
-        queue.push({0, 0, start->box});
-        search::Effort effort;
-        if (search::best_first(space, queue, effort) == search::no_node) return {};
-        std::vector<Point> path = pull_taut(space, *start, *goal);
+        detail::CellSearch search(sweep_, goal->box, goal->in_box);
+        if (!search.run(start->box, start->at, start->q.y - start->in_box.y)) return {};
+        std::vector<Point> path = pull_taut(search, *start, *goal);
         const Point shift = from - start->q;  // multiples of a turn
         for (Point& q : path) q = q + shift;
         path.front() = from;
@@ -138,8 +197,8 @@ class PathFinder {
     }
 
   private:
-    // A configuration in the space, and the point of its row in the nearest box; both as they were given, and
-    // the configuration in the coordinates of the box.
+    // A configuration q, the point of its row in the nearest box, both in the coordinates of its gap; and the
+    // configuration in the coordinates of the box.
     struct Entry {
         std::uint32_t box;
         Point q, at, in_box;
@@ -162,51 +221,44 @@ class PathFinder {
                     const Gap& free = sweep_.slabs()[slab].free[i];
                     const Overlap both = sweep_.finder().overlap(gap, free);
                     if (!both.is_open()) continue;
-                    const bool is_whole = detail::BoxSearch::is_whole(free);
+                    const bool is_whole = free.at_low.piece == GapEnd::nothing;
                     const double near = is_whole ? y : std::clamp(y, both.low, both.high);
-                    if (best && std::abs(near - y) >= std::abs(best->at.y - best->in_box.y)) continue;
+                    if (best && std::abs(near - y) >= std::abs(best->at.y - best->q.y)) continue;
                     const double shift = is_whole ? 0 : both.low - free.low;
                     best = {components_.box_number(slab, i), {q.x, y}, {q.x, near}, {q.x, y - shift}};
                 }
         }
         return best;
     }
-    std::vector<Point> pull_taut(const detail::BoxSearch& space, const Entry& start, const Entry& goal) const {
-        std::vector<std::uint32_t> boxes{goal.box};
-        while (space.ways.before(boxes.back()) != search::no_node)
-            boxes.push_back(space.ways.before(boxes.back()));
-        std::reverse(boxes.begin(), boxes.end());
-        Funnel funnel({start.q.x, start.at.y});
-        for (std::size_t k = 1; k < boxes.size(); ++k) pass(funnel, space, boxes[k - 1], boxes[k]);
-        // The goal beside its box, where the way ends.
-        const detail::PlacedBox& last = space.placed[goal.box];
-        double y = goal.in_box.y + last.low - space.box_at(goal.box).low;
-        if (detail::BoxSearch::is_whole(space.box_at(goal.box)))
-            y = goal.q.y + nearest_multiple(last.at.y - goal.q.y);
-        const double x = goal.q.x + last.shift_1;
+    static std::vector<Point> pull_taut(const detail::CellSearch& search, const Entry& start,
+                                        const Entry& goal) {
+        const std::vector<std::uint32_t> cells = search.row_of_cells();
+        Funnel funnel(start.at);
+        for (std::size_t k = 1; k < cells.size(); ++k) pass(funnel, search, cells[k - 1], cells[k]);
+        const Point end = goal.in_box + search.placed(cells.back()).shift;
+        const auto [low, high] = search.interval_of(cells.back());
         std::vector<Point> path{start.q};
-        for (const Point p : funnel.finish({x, last.nearest(y)}))
+        for (const Point p : funnel.finish({end.x, std::clamp(end.y, low, high)}))
             if (!(p == path.back())) path.push_back(p);
-        if (!(path.back() == Point{x, y})) path.push_back({x, y});
+        if (!(path.back() == end)) path.push_back(end);
         return path;
     }
-    void pass(Funnel& funnel, const detail::BoxSearch& space, std::uint32_t from, std::uint32_t to) const {
-        const detail::PlacedBox &a = space.placed[from], &b = space.placed[to];
-        const double x = b.at.x, low = std::max(a.low, b.low), high = std::min(a.high, b.high);
-        const bool goes_back = space.slab_of(from) == space.slab_of(to) && a.shift_1 == b.shift_1;
-        if (goes_back || !(low < high)) {  // along the row
-            const double leave = a.nearest(b.low > a.high ? a.high : a.low);
-            const double enter = b.nearest(leave);
+    // From a cell to the next, which may lie in the same box.
+    static void pass(Funnel& funnel, const detail::CellSearch& search, std::uint32_t from, std::uint32_t to) {
+        const detail::Box &a = search.box_of(from), &b = search.box_of(to);
+        if (&a == &b) return;
+        const Overlap own = search.interval_of(from), next = search.interval_of(to);
+        const double x = search.placed(to).at.x;
+        const Overlap both{std::max(own.low, next.low), std::min(own.high, next.high)};
+        if (a.slab == b.slab || !both.is_open()) {  // along the row
+            const double leave = std::clamp(next.middle(), own.low, own.high);
+            const double enter = std::clamp(leave, next.low, next.high);
             funnel.pass({{x, leave}, {x, leave}});
             return funnel.pass({{x, enter}, {x, enter}});
         }
-        const bool goes_up = x > middle_of(space, from);
-        const Point upper{x, high}, lower{x, low};
+        const bool goes_up = search.is_upper_row(from, to);
+        const Point upper{x, both.high}, lower{x, both.low};
         goes_up ? funnel.pass({upper, lower}) : funnel.pass({lower, upper});
-    }
-    double middle_of(const detail::BoxSearch& space, std::uint32_t box) const {
-        const std::size_t s = space.slab_of(box);
-        return space.placed[box].shift_1 + 0.5 * (sweep_.rows()[s].q_1 + sweep_.rows()[s + 1].q_1);
     }
 };
 
