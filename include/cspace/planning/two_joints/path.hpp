@@ -1,8 +1,8 @@
 // A path between two configurations through the free boxes of a sweep: proved free all along.
 //
-// Boxes are cut along joint 2 into cells, which A* searches: each is entered at its point nearest to where
-// the one before was entered. The row of boxes that it finds is pulled taut. So a path is short, but not
-// always the shortest.
+// Boxes are cut along joint 2 into cells, which A* searches: a way goes straight for the goal within a box,
+// and enters the next one at the nearest point. The row of boxes that it finds is pulled taut. So a path is
+// short, but not always the shortest.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +23,9 @@ inline constexpr double widest_cell = 0.2;
 // An end [rad] of the interval of a box that is a whole turn: farther than any path goes.
 inline constexpr double far_away = 1e3;
 
+// Points closer than this [rad] are one: rounding moves a configuration off its row.
+inline constexpr double same_place = 1e-12;
+
 // A free box of a sweep.
 struct Box {
     const Gap* gap;
@@ -36,8 +39,9 @@ struct Box {
 
 // A cell where its coordinates are those of the space plus shifts, and where the way enters it.
 struct PlacedCell {
-    Point shift, at;
-    double length = 0;  // of the way up to there
+    Point shift, at = {};
+    double length = 0;     // of the way up to there
+    bool goes_up = false;  // whether it comes from the slab below
 };
 
 class CellSearch {
@@ -58,16 +62,24 @@ class CellSearch {
     bool run(std::uint32_t box, Point at, double shift_2) {
         queue_.clear();
         const auto cell = std::uint32_t(boxes_[box].cell_at(at.y - shift_2));
-        reach(search::no_node, boxes_[box].first_cell + cell, {{0, shift_2}, at, 0});
+        reach(search::no_node, boxes_[box].first_cell + cell, {{0, shift_2}, at});
         search::Effort effort;
         return search::best_first(*this, queue_, effort) != search::no_node;
     }
-    // The cells from the start to the goal.
+    // The cells from the start to the goal; what leaves a box and comes back to it is left out.
     std::vector<std::uint32_t> row_of_cells() const {
         std::vector<std::uint32_t> cells{goal_cell_};
         while (ways_->before(cells.back()) != search::no_node) cells.push_back(ways_->before(cells.back()));
         std::reverse(cells.begin(), cells.end());
-        return cells;
+        std::vector<std::size_t> last(boxes_.size());
+        for (std::size_t k = 0; k < cells.size(); ++k) last[box_of_[cells[k]]] = k;
+        std::vector<std::uint32_t> kept;
+        for (std::size_t k = 0; k < cells.size(); ++k) {
+            kept.push_back(cells[k]);
+            const std::size_t again = last[box_of_[cells[k]]];
+            if (placed_[cells[again]].shift == placed_[cells[k]].shift) k = again;
+        }
+        return kept;
     }
     const PlacedCell& placed(std::uint32_t cell) const { return placed_[cell]; }
     const Box& box_of(std::uint32_t cell) const { return boxes_[box_of_[cell]]; }
@@ -78,11 +90,13 @@ class CellSearch {
         if (box.is_whole()) return {-far_away, far_away};
         return {box.gap->low + shift, box.gap->high + shift};
     }
-    // Whether the way from a cell leaves its slab upwards.
-    bool is_upper_row(std::uint32_t from, std::uint32_t to) const {
-        const std::size_t s = box_of(from).slab;
-        const double middle = 0.5 * (sweep_.rows()[s].q_1 + sweep_.rows()[s + 1].q_1);
-        return placed_[to].at.x > middle + placed_[from].shift.x;
+    // The point of the box of a cell that is nearest to a configuration.
+    Point nearest_in_box(std::uint32_t cell, Point q) const {
+        const std::size_t s = box_of(cell).slab;
+        const double shift = placed_[cell].shift.x;
+        const auto [low, high] = interval_of(cell);
+        return {std::clamp(q.x, sweep_.rows()[s].q_1 + shift, sweep_.rows()[s + 1].q_1 + shift),
+                std::clamp(q.y, low, high)};
     }
 
     bool settle(std::uint32_t cell) { return ways_->settle(cell); }
@@ -91,11 +105,11 @@ class CellSearch {
         const Box& box = box_of(cell);
         const int number = int(cell - box.first_cell);
         for (const int step : {-1, 1}) enter_beside(cell, box, number + step);
-        visit_exits(box.slab, [&](const SweepRow& row, std::size_t across, double shift) {
-            for (const Gap& gap : row.gaps) {
+        visit_exits(box.slab, [&](const Exit& exit) {
+            for (const Gap& gap : exit.row.gaps) {
                 if (!sweep_.finder().overlap(gap, *box.gap).is_open()) continue;
-                enter_across(cell, gap, row.q_1, box.slab, 0);
-                if (across != box.slab) enter_across(cell, gap, row.q_1, across, shift);
+                enter_across(cell, gap, exit, box.slab, 0);
+                if (exit.across != box.slab) enter_across(cell, gap, exit, exit.across, exit.shift);
                 return;
             }
         });
@@ -119,15 +133,22 @@ class CellSearch {
                 boxes.push_back({&gap, s, 0, 1 + int((gap.high - gap.low) / widest_cell)});
         return boxes;
     }
-    // Calls visit(row, slab across it, shift of joint 1 there) for the rows at which a slab ends.
+    // A row at which a slab ends, and the slab across it with the shift of joint 1 there.
+    struct Exit {
+        const SweepRow& row;
+        bool is_upper;
+        std::size_t across;
+        double shift;
+    };
     template <class Visit>
     void visit_exits(std::size_t s, const Visit& visit) const {
         const std::size_t count = sweep_.slabs().size();
         const bool wraps = sweep_.space().arm().joint_1.wraps;
         const bool is_first = s == 0, is_last = s + 1 == count;
         if (!is_first || wraps)
-            visit(sweep_.rows()[s], is_first ? count - 1 : s - 1, is_first ? -turn : 0.0);
-        if (!is_last || wraps) visit(sweep_.rows()[s + 1], is_last ? 0 : s + 1, is_last ? turn : 0.0);
+            visit(Exit{sweep_.rows()[s], false, is_first ? count - 1 : s - 1, is_first ? -turn : 0.0});
+        if (!is_last || wraps)
+            visit(Exit{sweep_.rows()[s + 1], true, is_last ? 0 : s + 1, is_last ? turn : 0.0});
     }
     // A cell of the same box.
     void enter_beside(std::uint32_t from, const Box& box, int number) {
@@ -137,41 +158,51 @@ class CellSearch {
             if (number >= box.cells) number -= box.cells, shift += turn;
         }
         if (number < 0 || number >= box.cells) return;
-        enter(from, box, number, placed_[from].at.x, {placed_[from].shift.x, shift});
+        enter(from, box, number, placed_[from].at, {{placed_[from].shift.x, shift}, {}});
     }
     // The boxes of a slab that a gap of a row connects with a cell's: each in the cell that is nearest.
-    void enter_across(std::uint32_t from, const Gap& gap, double q_1, std::size_t slab, double shift_1) {
+    void enter_across(std::uint32_t from, const Gap& gap, const Exit& exit, std::size_t slab,
+                      double shift_1) {
         const PlacedCell& here = placed_[from];
         const Box& own = box_of(from);
+        const Point leave = go_straight(from, exit.row.q_1 + here.shift.x);
         const auto offset_in = [&](const Gap& g) { return sweep_.finder().overlap(gap, g).low - g.low; };
         for (std::size_t b = first_[slab]; b < first_[slab + 1]; ++b) {
             const Box& box = boxes_[b];
             if (&box == &own || !sweep_.finder().overlap(gap, *box.gap).is_open()) continue;
             double shift = here.shift.y - offset_in(*own.gap) + offset_in(*box.gap);
             if (gap.at_low.piece == GapEnd::nothing)  // the nearest copy
-                shift = nearest_multiple(here.at.y - 0.5 * (box.gap->low + box.gap->high));
-            const int number = box.cell_at(here.at.y - shift);
-            enter(from, box, number, q_1 + here.shift.x, {here.shift.x + shift_1, shift});
+                shift = nearest_multiple(leave.y - 0.5 * (box.gap->low + box.gap->high));
+            enter(from, box, box.cell_at(leave.y - shift), leave,
+                  {{here.shift.x + shift_1, shift}, {}, 0, exit.is_upper});
         }
     }
-    void enter(std::uint32_t from, const Box& box, int number, double x, Point shift) {
-        const double low = box.gap->low + shift.y + number * box.side();
-        const Point at{x, std::clamp(placed_[from].at.y, low, low + box.side())};
-        const double length = placed_[from].length + distance(placed_[from].at, at);
-        reach(from, box.first_cell + std::uint32_t(number), {shift, at, length});
+    // Where a straight line from a cell to the goal leaves the box at a row, or the nearest point there.
+    Point go_straight(std::uint32_t from, double x) const {
+        const Point at = placed_[from].at, off = offset_of_goal(at);
+        const auto [low, high] = interval_of(from);
+        const double part = off.x == 0 ? 0 : std::clamp((x - at.x) / off.x, 0.0, 1.0);
+        return {x, std::clamp(at.y + part * off.y, low, high)};
+    }
+    // Into a cell, from a point of the box before.
+    void enter(std::uint32_t from, const Box& box, int number, Point leave, PlacedCell place) {
+        const double low = box.gap->low + place.shift.y + number * box.side();
+        place.at = {leave.x, std::clamp(leave.y, low, low + box.side())};
+        place.length =
+            placed_[from].length + distance(placed_[from].at, leave) + distance(leave, place.at);
+        reach(from, box.first_cell + std::uint32_t(number), place);
     }
     void reach(std::uint32_t from, std::uint32_t cell, const PlacedCell& place) {
-        const double cost = place.length + distance_to_goal(place.at);
+        const double cost = place.length + norm(offset_of_goal(place.at));
         if (!ways_->improve(cell, cost, from)) return;
         placed_[cell] = place;
         queue_.push({cost, 0, cell});
     }
-    // The distance to the nearest copy of the goal.
-    double distance_to_goal(Point at) const {
+    // The way to the nearest copy of the goal.
+    Point offset_of_goal(Point at) const {
         const Arm& arm = sweep_.space().arm();
         const Point off = goal_ - at;
-        return std::hypot(arm.joint_1.wraps ? short_way(off.x) : off.x,
-                          arm.joint_2.wraps ? short_way(off.y) : off.y);
+        return {arm.joint_1.wraps ? short_way(off.x) : off.x, arm.joint_2.wraps ? short_way(off.y) : off.y};
     }
 };
 
@@ -233,14 +264,14 @@ class PathFinder {
     static std::vector<Point> pull_taut(const detail::CellSearch& search, const Entry& start,
                                         const Entry& goal) {
         const std::vector<std::uint32_t> cells = search.row_of_cells();
-        Funnel funnel(start.at);
-        for (std::size_t k = 1; k < cells.size(); ++k) pass(funnel, search, cells[k - 1], cells[k]);
         const Point end = goal.in_box + search.placed(cells.back()).shift;
-        const auto [low, high] = search.interval_of(cells.back());
+        Funnel funnel(search.nearest_in_box(cells.front(), start.q));
+        for (std::size_t k = 1; k < cells.size(); ++k) pass(funnel, search, cells[k - 1], cells[k]);
         std::vector<Point> path{start.q};
-        for (const Point p : funnel.finish({end.x, std::clamp(end.y, low, high)}))
-            if (!(p == path.back())) path.push_back(p);
-        if (!(path.back() == end)) path.push_back(end);
+        for (const Point p : funnel.finish(search.nearest_in_box(cells.back(), end)))
+            if (distance(p, path.back()) > detail::same_place) path.push_back(p);
+        if (path.size() > 1 && distance(path.back(), end) <= detail::same_place) path.pop_back();
+        path.push_back(end);
         return path;
     }
     // From a cell to the next, which may lie in the same box.
@@ -256,9 +287,11 @@ class PathFinder {
             funnel.pass({{x, leave}, {x, leave}});
             return funnel.pass({{x, enter}, {x, enter}});
         }
-        const bool goes_up = search.is_upper_row(from, to);
+        const bool goes_up = search.placed(to).goes_up;
         const Point upper{x, both.high}, lower{x, both.low};
-        goes_up ? funnel.pass({upper, lower}) : funnel.pass({lower, upper});
+        const bool is_open = both.high == detail::far_away;
+        goes_up ? funnel.pass({upper, lower, is_open, is_open})
+                : funnel.pass({lower, upper, is_open, is_open});
     }
 };
 
