@@ -10,16 +10,13 @@ import numpy as np
 
 import cspace as cs
 
-POLYGONS = [
-    [(0.75, 0.95), (1.35, 0.75), (1.45, 1.30), (0.95, 1.45)],
-    [(-1.45, 0.25), (-0.85, 0.35), (-1.05, 0.95)],
-    [(-0.75, -1.55), (-0.35, -0.85), (0.10, -1.15), (0.45, -0.80), (0.60, -1.50)],  # not convex
-]
+POLYGONS = Path(__file__).with_name("two_links.txt")
 
 
 def main() -> None:
     arm = cs.load_robot("planar_2r")
-    space = cs.configuration_space(arm, POLYGONS, link_radius=0.04)
+    polygons = cs.PolygonWorld.from_text(POLYGONS)  # three, one of them not convex
+    space = cs.configuration_space(arm, polygons, link_radius=0.04)
     for number, component in enumerate(space.components):
         print(f"component {number}: {component.area:.3f} rad², proved: {component.proved}")
     kinds = {curve.kind for curve in space.boundaries}

@@ -23,8 +23,8 @@ std::vector<Piece> pieces_from(const PieceTables& tables) {
     for (std::size_t k = 0; k < count; ++k) {
         const auto end = std::size_t(tables.ends[k]);
         if (end <= begin || end > tables.corners.size()) throw std::invalid_argument("ends must increase");
-        pieces.push_back(make_piece(tables.corners.subspan(begin, end - begin), tables.radii[k],
-                                    tables.obstacles[k]));
+        pieces.push_back(
+            make_piece(tables.corners.subspan(begin, end - begin), tables.radii[k], tables.obstacles[k]));
         begin = end;
     }
     return pieces;

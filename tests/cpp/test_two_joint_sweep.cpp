@@ -74,9 +74,8 @@ TEST(boxes_of_slabs_are_free_and_nothing_outside_of_the_possible_ones_is) {
             const double q_1 = random.uniform(sweep.rows()[s].q_1, sweep.rows()[s + 1].q_1);
             const double q_2 = draw(random, problem.arm.joint_2);
             const auto is_in = [&](const std::vector<Gap>& boxes) {
-                return std::any_of(boxes.begin(), boxes.end(), [&](const Gap& box) {
-                    return sweep.finder().contains(box, q_2);
-                });
+                return std::any_of(boxes.begin(), boxes.end(),
+                                   [&](const Gap& box) { return sweep.finder().contains(box, q_2); });
             };
             const double clearance = check::clearance(problem.arm, problem.obstacles, q_1, q_2);
             if (is_in(sweep.slabs()[s].free)) {

@@ -22,8 +22,7 @@ inline double distance_between(Point a, Point b, Point c, Point d) {
 inline double distance_between(Point a, Point b, const Piece& piece) {
     double nearest = std::min(distance_to_corners(piece, a), distance_to_corners(piece, b));
     for (std::size_t i = 0; i < piece.size(); ++i)
-        nearest = std::min(nearest,
-                           distance_between(a, b, piece.corners[i], piece.corners[piece.next(i)]));
+        nearest = std::min(nearest, distance_between(a, b, piece.corners[i], piece.corners[piece.next(i)]));
     return nearest;
 }
 // How far the arm is from the obstacles, each with its radius and that of the links; negative where they
@@ -34,9 +33,9 @@ inline double clearance(const Arm& arm, const std::vector<Piece>& obstacles, dou
     const Point tip = elbow + arm.length_2 * Point{std::cos(angle), std::sin(angle)};
     double nearest = 1e9;
     for (const Piece& piece : obstacles)
-        nearest = std::min(nearest, std::min(distance_between(arm.base, elbow, piece),
-                                             distance_between(elbow, tip, piece)) -
-                                        piece.radius - arm.radius);
+        nearest = std::min(
+            nearest, std::min(distance_between(arm.base, elbow, piece), distance_between(elbow, tip, piece)) -
+                         piece.radius - arm.radius);
     return nearest;
 }
 
@@ -49,7 +48,8 @@ inline Piece random_piece(Random& random, double far, std::int32_t obstacle) {
     std::vector<Point> corners;
     const double start = random.uniform(0, 7);
     for (int i = 0; i < count; ++i) {
-        const double angle = start + cspace::planning::two_joints::turn * (i + random.uniform(-0.3, 0.3)) / count;
+        const double angle =
+            start + cspace::planning::two_joints::turn * (i + random.uniform(-0.3, 0.3)) / count;
         corners.push_back(center + size * Point{std::cos(angle), std::sin(angle)});
     }
     return make_piece(corners, count < 3 ? size / 3 : random.below(2) * 0.05, obstacle);

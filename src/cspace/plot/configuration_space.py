@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -91,7 +92,9 @@ def draw_plane(axes: Any, space: Any, tints: Array, start: Array, goals: Array, 
     for tint, pieces in zip(tints, space.sections.values(), strict=True):
         outlines = [round_outline(piece.corners, piece.radius) for piece in pieces]
         face = colors.mix_colors(tint, (1.0, 1.0, 1.0), PALE)
-        artists += draw_polygons(axes, outlines, facecolors=[face], edgecolors=[face], linewidths=0.5, zorder=1)
+        artists += draw_polygons(
+            axes, outlines, facecolors=[face], edgecolors=[face], linewidths=0.5, zorder=1
+        )
     for k in along_path(way):
         artists += draw_links(axes, space, k, colors.LINK, alpha=0.35, zorder=2)
     for goal in goals:
@@ -168,7 +171,7 @@ def along_path(way: Array) -> Array:
 def fill_path(way: Array) -> Array:
     """A path with so many points that its tip draws a smooth curve."""
     filled = [way[:1]]
-    for a, b in zip(way[:-1], way[1:], strict=True):
+    for a, b in pairwise(way):
         steps = 1 + int(np.abs(b - a).max() / ARC_STEP)
         filled.append(a + (b - a) * np.arange(1, steps + 1)[:, None] / steps)
     return np.vstack(filled)

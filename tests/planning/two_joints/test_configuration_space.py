@@ -51,6 +51,7 @@ def test_an_obstacle_map_names_an_obstacle_that_is_touched(seed):
 
 def scene_at_random(rng, T):
     """Shapes of every kind around an arm whose plane is z = 0 of a frame T (4, 4)."""
+
     def place():
         bearing, away = rng.uniform(0, 7), rng.uniform(0.7, 2.0)
         return T @ cs.pose([away * np.cos(bearing), away * np.sin(bearing), rng.uniform(-0.1, 0.1)])
@@ -85,7 +86,9 @@ def test_a_scene_is_cut_where_the_arm_is_mounted(seed):
     links = arms.links_of(arm, q)
     np.testing.assert_allclose(space.arm.points(q), links @ space.arm.axes.T, atol=1e-12)
     part = np.linspace(0, 1, 200)[:, None]
-    samples = np.concatenate([links[:, None, k] + part * (links[:, None, k + 1] - links[:, None, k]) for k in (0, 1)], axis=1)
+    samples = np.concatenate(
+        [links[:, None, k] + part * (links[:, None, k + 1] - links[:, None, k]) for k in (0, 1)], axis=1
+    )
     nearest = np.min([shape.distance(samples).min(axis=1) for shape in scene], axis=0)
     spacing = space.arm.lengths.max() / 199
     free = space.free(q)
@@ -132,7 +135,8 @@ def torus_graph(blocked, wraps):
         i, j = np.indices((n, n))
         for axis, index in ((0, i), (1, j)):
             if step[axis] and not wraps[axis]:
-                joined &= (0 <= index + step[axis]) & (index + step[axis] < n)
+                beside = index + step[axis]
+                joined &= (beside >= 0) & (beside < n)
         rows.append(cells[joined]), columns.append(there[joined])
         lengths.append(np.full(joined.sum(), np.hypot(*step)))
     data = (np.concatenate(lengths), (np.concatenate(rows), np.concatenate(columns)))
@@ -171,7 +175,10 @@ def test_paths_are_free_and_hardly_longer_than_on_a_grid(seed):
 def test_a_ring_of_obstacles_separates_two_halves():
     """The tip of a stretched arm cannot pass a wall that reaches over its whole reach."""
     arm = cs.load_robot("planar_2r")
-    walls = [[(0.2, -0.05), (2.5, -0.05), (2.5, 0.05), (0.2, 0.05)], [(-2.5, -0.05), (-0.2, -0.05), (-0.2, 0.05), (-2.5, 0.05)]]
+    walls = [
+        [(0.2, -0.05), (2.5, -0.05), (2.5, 0.05), (0.2, 0.05)],
+        [(-2.5, -0.05), (-0.2, -0.05), (-0.2, 0.05), (-2.5, 0.05)],
+    ]
     space = cs.configuration_space(arm, walls)
     above, below = [np.pi / 2, 0.3], [-np.pi / 2, 0.3]
     answer = space.connected(above, below)
@@ -264,7 +271,10 @@ def test_an_arm_whose_joints_coincide_and_one_that_ends_at_its_elbow():
 
 
 def test_a_hole_in_a_polygon_is_free():
-    outer, inner = 3.0 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]), 2.2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    outer, inner = (
+        3.0 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]),
+        2.2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]),
+    )
     space = cs.configuration_space(cs.load_robot("planar_2r"), [[outer, inner]])
     assert not space.bitmap(50).any()
 

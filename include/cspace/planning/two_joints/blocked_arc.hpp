@@ -55,8 +55,7 @@ inline Tangent find_tangent(const Piece& piece, Point start, double side) {
         const double squared = std::max(squared_norm(w) - r * r, 0.0);
         const Point toward = r > 0 ? std::sqrt(squared) * w + side * r * turned_left(w) : w;
         const double past = side * cross(best.toward, toward);
-        if (i == 0 || past > 0 || (past == 0 && squared < best.squared_length))
-            best = {toward, squared, i};
+        if (i == 0 || past > 0 || (past == 0 && squared < best.squared_length)) best = {toward, squared, i};
     }
     return best;
 }

@@ -80,8 +80,7 @@ class BoundaryTracer {
         const bool ends = a.blocks_link_1 != no_obstacle;
         const auto at = std::lower_bound(sweep_.edges().begin(), sweep_.edges().end(), a.q_1);
         const double edge = at != sweep_.edges().end() && *at <= b.q_1 ? *at : ends ? b.q_1 : a.q_1;
-        const std::int32_t obstacle =
-            sweep_.space().obstacle_of(ends ? a.blocks_link_1 : b.blocks_link_1);
+        const std::int32_t obstacle = sweep_.space().obstacle_of(ends ? a.blocks_link_1 : b.blocks_link_1);
         add_lines(ends ? b : a, edge, {BoundaryKind::link_1, obstacle, {}});
     }
     // A line across each gap of a row.

@@ -22,11 +22,11 @@ namespace cspace::planning::two_joints {
 inline constexpr double least_component = 1e-12;
 
 struct Component {
-    std::int32_t region = 0;    // components in different regions are proved to be separate
-    bool is_proved = false;     // no other component lies in the region
-    double least_area = 0;      // of what is proved free [rad²]
-    double greatest_area = 0;   // of what may be free
-    double q_1 = 0, q_2 = 0;    // the middle of its largest box
+    std::int32_t region = 0;   // components in different regions are proved to be separate
+    bool is_proved = false;    // no other component lies in the region
+    double least_area = 0;     // of what is proved free [rad²]
+    double greatest_area = 0;  // of what may be free
+    double q_1 = 0, q_2 = 0;   // the middle of its largest box
 };
 
 namespace detail {
@@ -34,7 +34,9 @@ namespace detail {
 // Sets of numbers that merge (Tarjan 1975).
 class DisjointSets {
   public:
-    explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+    explicit DisjointSets(std::size_t count) : parent_(count) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+    }
     std::size_t find(std::size_t i) {
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
@@ -94,7 +96,7 @@ class Components {
     std::int32_t find_component(double q_1, double q_2) const {
         const Joint &joint_1 = sweep_.space().arm().joint_1, &joint_2 = sweep_.space().arm().joint_2;
         if (joint_1.wraps) q_1 = wrap_above(q_1, joint_1.lower);
-        if (joint_2.wraps) q_2 = wrap_above(q_2, joint_2.lower);
+        q_2 = sweep_.finder().within_range(q_2);
         const SweepRow row = sweep_.make_row(q_1);
         const auto gap = std::find_if(row.gaps.begin(), row.gaps.end(),
                                       [&](const Gap& g) { return sweep_.finder().contains(g, q_2); });
@@ -119,9 +121,7 @@ class Components {
         for (const Slab& slab : sweep_.slabs()) first.push_back(first.back() + count(slab));
         return first;
     }
-    double width_of(std::size_t slab) const {
-        return sweep_.rows()[slab + 1].q_1 - sweep_.rows()[slab].q_1;
-    }
+    double width_of(std::size_t slab) const { return sweep_.rows()[slab + 1].q_1 - sweep_.rows()[slab].q_1; }
     // Calls visit with each slab, the next one, and the row between them.
     template <class Visit>
     void visit_neighbours(const Visit& visit) const {
@@ -183,7 +183,7 @@ class Components {
                 if (area <= largest[name]) continue;
                 largest[name] = area;
                 all_[name].q_1 = sweep_.rows()[s].q_1 + 0.5 * width_of(s);
-                all_[name].q_2 = 0.5 * (box.low + box.high);
+                all_[name].q_2 = sweep_.finder().within_range(0.5 * (box.low + box.high));
             }
         }
     }

@@ -64,7 +64,8 @@ class CriticalAngles {
         meet_line(n, offset + arm_.length_2);
     }
     void turn_back_at_corner(std::size_t i) {
-        const double r = piece_.radius, away = norm(piece_.corners[i]), bearing = bearing_of(piece_.corners[i]);
+        const double r = piece_.radius, away = norm(piece_.corners[i]),
+                     bearing = bearing_of(piece_.corners[i]);
         for (const double side : {-1.0, 1.0}) {
             turn_back_side(bearing - side * pi / 2, r - side * away);
             if (r > 0) turn_back_side(bearing - side * pi / 2, -r - side * away);

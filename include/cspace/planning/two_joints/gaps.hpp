@@ -66,6 +66,9 @@ class GapFinder {
         return joint_.wraps ? wrap_above(q, gap.low) <= gap.high : gap.low <= q && q <= gap.high;
     }
 
+    // The copy of a coordinate within the range of a joint that wraps.
+    double within_range(double q) const { return joint_.wraps ? wrap_above(q, joint_.lower) : q; }
+
   private:
     using Copies = std::vector<BlockedInterval>;
     Joint joint_;
@@ -94,7 +97,8 @@ class GapFinder {
         if (from < joint_.upper) gaps.push_back({from, joint_.upper, end, {GapEnd::limit, {}}});
     }
     // The gaps between the copies from a coordinate on, and what comes last.
-    static std::pair<double, GapEnd> find_from(const Copies& copies, double from, GapEnd end, std::vector<Gap>& gaps) {
+    static std::pair<double, GapEnd> find_from(const Copies& copies, double from, GapEnd end,
+                                               std::vector<Gap>& gaps) {
         for (const BlockedInterval& next : copies) {
             if (next.low > from) gaps.push_back({from, next.low, end, {next.piece, next.at_low}});
             if (next.high >= from) from = next.high, end = {next.piece, next.at_high};

@@ -188,8 +188,7 @@ class CellSearch {
     void enter(std::uint32_t from, const Box& box, int number, Point leave, PlacedCell place) {
         const double low = box.gap->low + place.shift.y + number * box.side();
         place.at = {leave.x, std::clamp(leave.y, low, low + box.side())};
-        place.length =
-            placed_[from].length + distance(placed_[from].at, leave) + distance(leave, place.at);
+        place.length = placed_[from].length + distance(placed_[from].at, leave) + distance(leave, place.at);
         reach(from, box.first_cell + std::uint32_t(number), place);
     }
     void reach(std::uint32_t from, std::uint32_t cell, const PlacedCell& place) {
@@ -212,8 +211,8 @@ class PathFinder {
   public:
     PathFinder(const Sweep& sweep, const Components& components) : sweep_(sweep), components_(components) {}
 
-    // From one free configuration to another, or to its copy that is turns away where joints wrap. Empty where
-    // the two are not known to lie in one component.
+    // From one free configuration to another, or to its copy that is turns away where joints wrap. Empty
+    // where the two are not known to lie in one component.
     std::vector<Point> find(Point from, Point to) const {
         const std::optional<Entry> start = enter(from), goal = enter(to);
         if (!start || !goal || components_.component_at(start->box) != components_.component_at(goal->box))

@@ -89,8 +89,8 @@ inline double distance_to_corners(const Piece& piece, Point p) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < piece.size(); ++i) {
         if (dot(piece.normals[i], p - piece.corners[i]) > 0) is_inside = false;
-        nearest = std::min(
-            nearest, squared_norm(p - nearest_on(piece.corners[i], piece.corners[piece.next(i)], p)));
+        nearest = std::min(nearest,
+                           squared_norm(p - nearest_on(piece.corners[i], piece.corners[piece.next(i)], p)));
     }
     return is_inside ? 0 : std::sqrt(nearest);
 }

@@ -76,8 +76,7 @@ class Space {
         if (buried_in_ != no_obstacle) return buried_in_;
         for (const BlockedInterval& blocked : link_1_) {
             const double middle = 0.5 * (blocked.low + blocked.high);
-            if (std::abs(short_way(q_1 - middle)) <= 0.5 * (blocked.high - blocked.low))
-                return blocked.piece;
+            if (std::abs(short_way(q_1 - middle)) <= 0.5 * (blocked.high - blocked.low)) return blocked.piece;
         }
         return no_obstacle;
     }

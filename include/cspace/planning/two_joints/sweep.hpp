@@ -49,7 +49,8 @@ inline constexpr double arc_slack = 1e-11;
 inline constexpr double sure_change = 1.0;
 
 // What a piece covers all the time while it moves by less than `off`; no corners where that may be nothing.
-// Where it has a radius, of that length or more, the radius shrinks; else the sides come nearer to the middle.
+// Where it has a radius, of that length or more, the radius shrinks; else the sides come nearer to the
+// middle.
 inline Piece shrunk(const Piece& piece, double off) {
     if (piece.radius >= off) return piece.grown(-off);
     Point middle;
@@ -59,7 +60,8 @@ inline Piece shrunk(const Piece& piece, double off) {
         depth = std::min(depth, dot(piece.normals[i], piece.corners[i] - middle));
     if (depth <= 2 * off) return {};
     std::vector<Point> corners;
-    for (const Point corner : piece.corners) corners.push_back(middle + (1 - off / depth) * (corner - middle));
+    for (const Point corner : piece.corners)
+        corners.push_back(middle + (1 - off / depth) * (corner - middle));
     return make_piece(corners, 0, piece.obstacle);
 }
 
@@ -162,7 +164,8 @@ class Sweep {
         const int count = std::max(settings_.rows, 2);
         for (int i = 0; i <= count; ++i)
             stops.push_back(i == count ? joint.upper : joint.lower + i * (joint.width() / count));
-        for (const double edge : edges_) stops.insert(stops.end(), {edge - critical_margin, edge + critical_margin});
+        for (const double edge : edges_)
+            stops.insert(stops.end(), {edge - critical_margin, edge + critical_margin});
         for (const auto& ranges : critical_)
             for (const AngleRange& range : ranges)
                 if (!is_blocked(range.low, range.high)) stops.insert(stops.end(), {range.low, range.high});

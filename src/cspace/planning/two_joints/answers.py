@@ -55,7 +55,8 @@ class FreeComponent:
 class Connection:
     """Whether two configurations are connected: true if they are.
 
-    status: "connected" (proved), "separate" (proved) or "undetermined". reason: a sentence. path (m, 2):
+    status: "connected" (proved), "separate" (proved), "undetermined", or "blocked" for a goal that is not
+    free. reason: a sentence. path (m, 2):
     configurations [rad] that straight lines connect, all free, if it was asked for; else empty.
     """
 

@@ -21,6 +21,9 @@ from cspace.planning.two_joints.sections import cut_scene
 from cspace.tables import html_table, one_line, shown
 from cspace.tolerances import FARTHEST, LARGEST_NUMBER
 
+RANKS: Final = ("connected", "undetermined", "separate", "blocked")
+"""The verdicts on goals, the best one first."""
+
 MOST_CELLS: Final = 30_000
 """Cells of a bitmap along one joint: more than a gigabyte is no picture."""
 
@@ -50,7 +53,7 @@ class ConfigurationSpace(Renamed):
         return tuple(
             low + (high - low) * (np.arange(count) + 0.5) / count
             for low, high, count in zip(self.lower, self.upper, check_cells(n), strict=True)
-        )  # type: ignore[return-value]
+        )
 
     def bitmap(self, n: int | Sequence[int] = 1000) -> Any:
         """Where the arm collides: bool (n1, n2), of the configurations at the centres of equal cells.
@@ -144,7 +147,7 @@ class ConfigurationSpace(Renamed):
         found = [self._reach(begin, end, k) for k, end in enumerate(ends)]
         if not found:
             raise InputError("goals is empty; give one goal (2,) or several (k, 2)")
-        best = min(found, key=lambda each: (not each, each.status == "separate", each.length))
+        best = min(found, key=lambda each: (RANKS.index(each.status), each.length))
         if best or len(found) == 1:
             return best
         return Connection(best.status, "; ".join(each.reason for each in found))
@@ -152,7 +155,7 @@ class ConfigurationSpace(Renamed):
     def _reach(self, begin: Array, end: Array, number: int) -> Connection:
         """The connection of a start to one goal, with its path."""
         if (blocked := self.blocked_by(end)) is not None:
-            return Connection("separate", f"goal {number} {write_q(end)} is blocked: {blocked}")
+            return Connection("blocked", f"goal {number} {write_q(end)} is blocked: {blocked}")
         answer = self._connect(begin, np.ascontiguousarray(end))
         if not answer:
             return answer
@@ -162,7 +165,9 @@ class ConfigurationSpace(Renamed):
         one, other = self.component(a), self.component(b)
         between = f"{write_q(a)} and {write_q(b)}"
         if one is None or other is None:
-            return Connection("undetermined", f"{between}: one lies where free space is too narrow to resolve")
+            return Connection(
+                "undetermined", f"{between}: one lies where free space is too narrow to resolve"
+            )
         if one == other:
             return Connection("connected", f"{between} lie in component {one}")
         if self.components[one].region != self.components[other].region:
@@ -246,13 +251,15 @@ def configuration_space(
 def make_core(arm: PlanarArm, sections: dict[str, list[Piece]], link_radius: float) -> _core.TwoJointSpace:
     """The compiled space of an arm among pieces."""
     pieces = [(piece, k) for k, found in enumerate(sections.values()) for piece in found]
-    joints = np.column_stack([arm.signs, arm.offsets, arm.lower, arm.upper])
+    joint_1, joint_2 = np.column_stack([arm.signs, arm.offsets, arm.lower, arm.upper])
     return _core.TwoJointSpace(
         arm.base,
         arm.lengths,
         link_radius,
-        *joints,
-        *map(bool, arm.wraps),
+        joint_1,
+        joint_2,
+        bool(arm.wraps[0]),
+        bool(arm.wraps[1]),
         np.vstack([np.empty((0, 2)), *(piece.corners for piece, _ in pieces)]),
         np.cumsum([len(piece.corners) for piece, _ in pieces], dtype=np.int32),
         np.array([piece.radius for piece, _ in pieces], dtype=np.float64),

@@ -66,7 +66,7 @@ class PlanarArm:
 
 
 def read_planar_arm(robot: Any, use_limits: bool) -> PlanarArm:
-    """The planar arm that a robot is; InputError for one with other joints, or whose axes are not parallel."""
+    """The planar arm that a robot is; InputError for other joints and for axes that are not parallel."""
     if not isinstance(robot, KinematicModel):
         raise InputTypeError(
             f"robot is a {type(robot).__name__}; configuration_space takes a Robot, as cs.load_robot gives"

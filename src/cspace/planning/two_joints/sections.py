@@ -1,4 +1,4 @@
-"""Sections: what the plane of an arm cuts out of the shapes of a scene, as convex pieces with round corners."""
+"""Sections of shapes: what the plane of an arm cuts out of them, as convex pieces with round corners."""
 
 from __future__ import annotations
 
@@ -184,9 +184,7 @@ def cut_half_space(half_space: HalfSpace, plane: Plane) -> list[Piece]:
         return []
     side = FAR * plane.reach
     edge, t = plane.base + min(deep, side) * n, np.array([-n[1], n[0]])
-    return [
-        Piece(convex_hull(np.array([edge + s * side * t - (1 - d) * side * n for s, d in CORNERS])), 0.0)
-    ]
+    return [Piece(convex_hull(np.array([edge + s * side * t - (1 - d) * side * n for s, d in CORNERS])), 0.0)]
 
 
 def in_plane(points: Array) -> float:
