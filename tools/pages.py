@@ -19,6 +19,7 @@ COURSE += (
     "export",
     "shapes",
     "collision",
+    "two-joint-space",
     "maps",
     "navigation",
     "planners",

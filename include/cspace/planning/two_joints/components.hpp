@@ -94,7 +94,7 @@ class Components {
 
     // The number of the component that contains a configuration.
     std::int32_t find_component(double q_1, double q_2) const {
-        const Joint &joint_1 = sweep_.space().arm().joint_1, &joint_2 = sweep_.space().arm().joint_2;
+        const Joint& joint_1 = sweep_.space().arm().joint_1;
         if (joint_1.wraps) q_1 = wrap_above(q_1, joint_1.lower);
         q_2 = sweep_.finder().within_range(q_2);
         const SweepRow row = sweep_.make_row(q_1);

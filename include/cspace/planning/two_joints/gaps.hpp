@@ -10,8 +10,8 @@
 
 namespace cspace::planning::two_joints {
 
-// What bounds a gap: a piece where the link touches it, a limit of the joint, or nothing where the gap is a
-// whole turn.
+// What bounds a gap: a piece where the link touches it, a limit of the joint, or nothing where the gap is all
+// of a turn.
 struct GapEnd {
     static constexpr std::int32_t limit = -1, nothing = -2;
     std::int32_t piece = nothing;

@@ -20,7 +20,7 @@ namespace detail {
 
 // The widest cell [rad].
 inline constexpr double widest_cell = 0.2;
-// An end [rad] of the interval of a box that is a whole turn: farther than any path goes.
+// An end [rad] of the interval of a box that has no ends: farther than any path goes.
 inline constexpr double far_away = 1e3;
 
 // Points closer than this [rad] are one: rounding moves a configuration off its row.

@@ -80,7 +80,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         from cspace import plot
 
         plot.save(plot.configuration_space(space, start=start, goals=goals, path=way), args.plot)
-    document = describe(space, start, goals, way)
+    document = describe_space(space, start, goals, way)
     if reason:
         document |= {"status": "unreachable", "reason": reason}
     if out.as_json:
@@ -128,7 +128,7 @@ def find_goals(args: argparse.Namespace, robot: Robot, space: ConfigurationSpace
     return np.asarray(found.q).reshape(-1, 2), "" if found else found.reason
 
 
-def describe(
+def describe_space(
     space: ConfigurationSpace, start: Array | None, goals: Array, way: Connection | None
 ) -> dict[str, Any]:
     """The answers as JSON data."""
