@@ -184,8 +184,8 @@ def print_space(
     if document["reason"]:
         out.sentence(document["reason"])
     elif document["start"] is not None:
-        place = space.component(document["start"])
-        out.line(f"the start lies in component {'-' if place is None else place}")
+        component = space.component(document["start"])
+        out.line(f"the start lies in component {'-' if component is None else component}")
     if way:
         out.line(f"{len(way.path)} points, {way.length:.4f} rad")
         path = Table(names)
