@@ -19,7 +19,8 @@ enum class Contact : std::uint8_t { side_on_corner, tip_on_corner, tip_on_side }
 // Where the link touches: the name of the corner or of the side.
 struct Feature {
     Contact contact = Contact::side_on_corner;
-    std::int32_t name = 0;
+    std::int32_t name = no_name;
+    static constexpr std::int32_t no_name = -1;  // for a bound of several contacts
     friend constexpr bool operator==(const Feature&, const Feature&) = default;
 };
 

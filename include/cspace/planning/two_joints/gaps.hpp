@@ -36,6 +36,10 @@ struct Overlap {
     double middle() const { return 0.5 * (low + high); }
 };
 
+// The largest change [rad] of an arc between two rows that tells which way round it went: a tangent to a
+// convex piece turns by less than a turn minus this along a slab.
+inline constexpr double sure_change = 1.0;
+
 class GapFinder {
   public:
     explicit GapFinder(const Joint& joint) : joint_(joint) {}
@@ -96,11 +100,18 @@ class GapFinder {
         const auto [from, end] = find_from(copies, joint_.lower, {GapEnd::limit, {}}, gaps);
         if (from < joint_.upper) gaps.push_back({from, joint_.upper, end, {GapEnd::limit, {}}});
     }
+    // Whether two intervals end at one corner that both obstacles have. Obstacles are closed, so that nothing
+    // passes there; what lies between is rounding, or the change of that end along a slab.
+    static bool is_closed(double from, const GapEnd& end, const BlockedInterval& next) {
+        return end.piece >= 0 && end.feature.name != Feature::no_name && end.feature == next.at_low &&
+               next.low - from <= 2 * sure_change;
+    }
     // The gaps between the copies from a coordinate on, and what comes last.
     static std::pair<double, GapEnd> find_from(const Copies& copies, double from, GapEnd end,
                                                std::vector<Gap>& gaps) {
         for (const BlockedInterval& next : copies) {
-            if (next.low > from) gaps.push_back({from, next.low, end, {next.piece, next.at_low}});
+            if (next.low > from && !is_closed(from, end, next))
+                gaps.push_back({from, next.low, end, {next.piece, next.at_low}});
             if (next.high >= from) from = next.high, end = {next.piece, next.at_high};
         }
         return {from, end};

@@ -23,7 +23,7 @@ struct Piece {
     std::vector<Point> corners;   // counterclockwise
     std::vector<Point> normals;   // unit, outward, of the side from each corner to the next
     std::vector<double> lengths;  // of the sides
-    // What tells corners from each other, and sides: pieces of one obstacle may share them.
+    // What tells corners from each other, and sides: pieces may share them.
     std::vector<std::int32_t> corner_names, side_names;
     double radius = 0;
     Point center;       // of the corners
@@ -66,14 +66,13 @@ inline Piece make_piece(std::span<const Point> corners, double radius, std::int3
     return piece;
 }
 
-// Numbers the corners and sides of pieces. Corners of one obstacle at one place share a name.
+// Numbers the corners and sides of pieces. Corners at one place share a name.
 inline void name_corners(std::span<Piece> pieces) {
-    std::map<std::tuple<std::int32_t, double, double, double>, std::int32_t> corners;
+    std::map<std::tuple<double, double, double>, std::int32_t> corners;
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> sides;
     for (Piece& piece : pieces) {
         for (std::size_t i = 0; i < piece.size(); ++i) {
-            const auto [x, y] = piece.corners[i];
-            const std::tuple corner{piece.obstacle, x, y, piece.radius};
+            const std::tuple corner{piece.corners[i].x, piece.corners[i].y, piece.radius};
             piece.corner_names[i] = corners.try_emplace(corner, std::int32_t(corners.size())).first->second;
         }
         for (std::size_t i = 0; i < piece.size(); ++i) {

@@ -44,9 +44,10 @@ inline constexpr double narrowest_slab = 1e-9;
 // Ends of arcs [rad] are off by rounding: a square root near a critical angle, at its margin, loses half of
 // the digits that the margin leaves.
 inline constexpr double arc_slack = 1e-11;
-// The largest change [rad] of an arc between two rows that tells which way round it went: a tangent to a
-// convex piece turns by less than a turn minus this along a slab.
-inline constexpr double sure_change = 1.0;
+// Gaps narrower than this [rad] are no reason to halve a slab: where obstacles touch, arcs may stay as near to
+// each other as rounding over a good part of a slab.
+inline constexpr double narrowest_gap = 1e-10;
+inline bool is_wide(const Gap& gap) { return gap.high - gap.low > narrowest_gap; }
 
 // What a piece covers all the time while it moves by less than `off`; no corners where that may be nothing.
 // Where it has a radius, of that length or more, the radius shrinks; else the sides come nearer to the
@@ -207,7 +208,8 @@ class Sweep {
         rows_.push_back(std::move(next));
     }
 
-    // Whether every box that may be free contains one that is, and so does every gap of the two rows.
+    // Whether every box that may be free contains one that is, and so does every gap of the two rows: all but
+    // the narrowest.
     bool find_boxes(const SweepRow& a, const SweepRow& b, Slab& slab) {
         const bool has_edge_inside = has_edge(a.q_1, b.q_1);
         if (!has_edge_inside && a.blocks_link_1 != no_obstacle) return true;
@@ -215,9 +217,13 @@ class Sweep {
         bound_arcs(a, b);
         if (!has_edge_inside) finder_.find(outer_, slab.free);
         finder_.find(inner_, slab.possible);
-        if (slab.free.size() != slab.possible.size()) return false;
+        const auto count_wide = [](const std::vector<Gap>& gaps) {
+            return std::count_if(gaps.begin(), gaps.end(), detail::is_wide);
+        };
+        if (count_wide(slab.free) != count_wide(slab.possible)) return false;
         const auto has_free = [&](const Gap& gap) {
-            return std::any_of(slab.free.begin(), slab.free.end(),
+            return !detail::is_wide(gap) ||
+                   std::any_of(slab.free.begin(), slab.free.end(),
                                [&](const Gap& free) { return finder_.overlap(gap, free).is_open(); });
         };
         const auto all_have_free = [&](const std::vector<Gap>& gaps) {
@@ -241,15 +247,15 @@ class Sweep {
     bool add_between(const BlockedInterval& a, BlockedInterval b) {
         const double shift = nearest_multiple(a.low - b.low);
         b.low += shift, b.high += shift;
-        if (std::abs(a.low - b.low) > detail::sure_change) return false;
+        if (std::abs(a.low - b.low) > sure_change) return false;
         const auto [least_low, most_low] = std::minmax(a.low, b.low);
         const auto [least_high, most_high] = std::minmax(a.high, b.high);
-        add_bounds(a.piece, least_low, most_high, most_low, least_high);
+        const Feature at_low = a.at_low == b.at_low ? a.at_low : Feature{};
+        const Feature at_high = a.at_high == b.at_high ? a.at_high : Feature{};
+        constexpr double slack = detail::arc_slack;
+        outer_.push_back({least_low - slack, most_high + slack, a.piece, at_low, at_high});
+        inner_.push_back({most_low + slack, least_high - slack, a.piece, at_low, at_high});
         return true;
-    }
-    void add_bounds(std::int32_t piece, double low, double high, double inner_low, double inner_high) {
-        outer_.push_back({low - detail::arc_slack, high + detail::arc_slack, piece});
-        inner_.push_back({inner_low + detail::arc_slack, inner_high - detail::arc_slack, piece});
     }
     // A piece where its arcs are not known to be monotonic: bounded by how far the slab turns it.
     void add_turned(std::int32_t number, double low, double high) {
@@ -270,8 +276,12 @@ class Sweep {
     }
     // Whether the ends of gaps in two rows are those of the same contacts, near each other.
     bool is_traced(const SweepRow& a, const SweepRow& b) const {
-        if (a.gaps.size() != b.gaps.size()) return false;
+        const auto is_wide = [](const Gap& gap) { return detail::is_wide(gap); };
+        if (std::count_if(a.gaps.begin(), a.gaps.end(), is_wide) !=
+            std::count_if(b.gaps.begin(), b.gaps.end(), is_wide))
+            return false;
         for (const Gap& gap : a.gaps) {
+            if (!is_wide(gap)) continue;
             const auto goes_on = [&](const Gap& next) {
                 return next.at_low == gap.at_low && next.at_high == gap.at_high &&
                        is_near(gap.low, next.low) && is_near(gap.high, next.high);
