@@ -7,6 +7,7 @@ Needs the extra `[plot]` (matplotlib), which is imported when a function is firs
 from __future__ import annotations
 
 from cspace.plot.arms import robot, solutions
+from cspace.plot.configuration_space import configuration_space
 from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
@@ -26,4 +27,4 @@ __all__ = [
     "workspace",
 ]
 __all__ += ["coverage", "drive", "world"]
-__all__ += ["surface"]
+__all__ += ["configuration_space", "surface"]
