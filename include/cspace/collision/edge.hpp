@@ -6,11 +6,11 @@
 // bounds its acceleration: h are the rates of the revolute joints that carry it, ρ_j bounds its distance from
 // axis j (a prismatic joint has ρ = 1 and no square of its own). If no ball, grown by that, touches anything,
 // the interval is proved free. If one touches at the middle, the edge is blocked. Other intervals are split.
-// Where a ball grown so does touch something convex, only the part of its velocity along the unit vector n from
-// there to its centre counts: with a distance d at the middle it keeps d − |n · v| w − ½ κ w² from the plane
-// through the nearest point across n, behind which all of it lies.
-// The idea is that of Schwarzer, Saha & Latombe (2005, "Adaptive dynamic collision checking for single and
-// multiple articulated robots in complex environments"), who bound the length of the motion by levers alone.
+// Where a ball grown so does touch something convex, only the part of its velocity along the unit vector n
+// from there to its centre counts: with a distance d at the middle it keeps d − |n · v| w − ½ κ w² from the
+// plane through the nearest point across n, behind which all of it lies. The idea is that of Schwarzer, Saha
+// & Latombe (2005, "Adaptive dynamic collision checking for single and multiple articulated robots in complex
+// environments"), who bound the length of the motion by levers alone.
 #pragma once
 
 #include "cspace/collision/block.hpp"
