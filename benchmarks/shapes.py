@@ -1,8 +1,8 @@
 """Covers of robots' meshes by spheres: how many, how far they stick out, and how long the search takes.
 
 Run `python benchmarks/shapes.py`, with the package example-robot-data installed. Every cover is proved; the
-stick-out is the bound that the cover states, beside the two bounds that `measure_cover` finds. Open meshes are
-covered as surfaces, or with their holes filled. Times are processor time on one core, without the cache.
+stick-out is the bound that the cover states, beside the two bounds that `measure_cover` finds. Open meshes
+are covered as surfaces, or with their holes filled. Times are processor time on one core, without the cache.
 """
 
 from __future__ import annotations
