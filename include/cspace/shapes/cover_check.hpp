@@ -1,5 +1,5 @@
 // Checks a cover by spheres: bounds on how far a solid reaches out of them, proved by division into triangles
-// and cells. It shares nothing with the search for covers but the distance from the surface.
+// and cells. It shares with the search for covers the distance from the surface and the halving of triangles.
 //
 // A place x is g(x) = min (‖x − c‖ − r) away from the nearest sphere. On a convex part the distance from one
 // centre is largest at a corner, so the least of these maxima bounds g from above; g at any place of the part
