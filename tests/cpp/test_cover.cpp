@@ -157,6 +157,34 @@ TEST(windings_are_right_where_rays_meet_corners_and_sides) {
                 }
 }
 
+TEST(parts_of_triangles_are_small_and_tile_them) {
+    check::Random random{9};
+    for (int round = 0; round < 40; ++round) {
+        const Vec3d a = random.vector(), b = random.vector();
+        const double height = std::pow(10, random.uniform(-8, 0));
+        const Triangle t = {a, b, a + random.uniform(0, 1) * (b - a) + height * random.axis()};
+        const double side = random.uniform(0.01, 0.2);
+        Watch watch;
+        double area = 0;
+        const Vec3d normal = cross(t[1] - t[0], t[2] - t[0]);
+        for (const Triangle& part : split_triangles(std::span(&t, 1), side, 1 << 20, watch)) {
+            const Vec3d n = cross(part[1] - part[0], part[2] - part[0]);
+            area += area_of(part);
+            CHECK(std::sqrt(find_long_side(part).square) <= side);
+            CHECK(dot(n, normal) >= -1e-12 * dot(normal, normal));
+            for (const Vec3d& p : part) {  // it and the sides make up the triangle
+                const double sum =
+                    area_of({t[0], t[1], p}) + area_of({t[1], t[2], p}) + area_of({t[2], t[0], p});
+                CHECK(sum <= area_of(t) * (1 + 1e-9) + 1e-15);
+            }
+        }
+        CHECK_NEAR(area, area_of(t), 1e-9 * area_of(t) + 1e-15);
+    }
+    const Triangle needle = {Vec3d{0, 0, 0}, {1, 0, 0}, {0.5, 1e-5, 0}};
+    Watch watch;
+    CHECK(split_triangles(std::span(&needle, 1), 0.001, 1 << 20, watch).size() < 8000);  // halves: 50,000
+}
+
 TEST(chosen_sets_hold_every_item_and_none_is_redundant) {
     check::Random random{2};
     for (int round = 0; round < 50; ++round) {

@@ -43,7 +43,7 @@ class CoverSearch {
 
     std::vector<Ball> find() {
         find_candidates();
-        const CoverItems<Triangle> pieces(split_surface(fine_piece, coarse_piece), watch_);
+        const CoverItems<Triangle> pieces(split_surface(piece_side), watch_);
         std::vector<Ball> balls = cover_items(pieces);
         if (goal_.solid && goal_.inside) cover_inside(balls);
         return balls;
@@ -55,8 +55,7 @@ class CoverSearch {
     // Shares of the largest stick-out. A piece counts as held only if it lies this deep in a sphere; the
     // layer is thinner, so that no rounding matters.
     static constexpr double margin_share = 1.0 / 16, layer_share = 1.0 / 20;
-    static constexpr double fine_piece = 1.0 / 3, coarse_piece = 2.0 / 3;  // sides
-    static constexpr double sample_side = 1.5, surface_sample_side = 0.5;  // of parts, one sample each
+    static constexpr double piece_side = 1.0 / 3, sample_side = 1.5, surface_sample_side = 0.5;
     static constexpr double cell_radius = 1.0 / 6;  // of the largest cells of what the spheres leave inside
     static constexpr int climb_steps = 12;
 
@@ -67,15 +66,17 @@ class CoverSearch {
     double candidate_cell_ = 0.5;  // share of the stick-out
     std::vector<Ball> candidates_;
 
-    // Parts of the surface with sides of a share of the largest stick-out: the finer share, if memory allows.
-    std::vector<Triangle> split_surface(double fine, double coarse) const {
-        const auto split = [&](double share) {
-            return split_triangles(surface_.triangles(), share * goal_.within, goal_.most_pieces, watch_);
-        };
-        try {
-            return split(fine);
-        } catch (const TooFine&) {
-            return split(coarse);
+    // Parts of the surface with sides of a share of the largest stick-out, or of the least one up to twice as
+    // large that memory allows.
+    std::vector<Triangle> split_surface(double share) const {
+        constexpr double coarser = 1.25;
+        const double most = 2 * share;
+        while (true) {
+            try {
+                return split_triangles(surface_.triangles(), share * goal_.within, goal_.most_pieces, watch_);
+            } catch (const TooFine&) {
+                if ((share *= coarser) > most) throw;
+            }
         }
     }
 
@@ -84,7 +85,7 @@ class CoverSearch {
     void find_candidates() {
         const double share = goal_.solid ? sample_side : surface_sample_side;
         const double side = share * goal_.within;
-        std::vector<Triangle> parts = split_surface(share, 2 * share);
+        std::vector<Triangle> parts = split_surface(share);
         thin_out(
             parts, side / 2, [](const Triangle& t) { return middle_of(t); },
             [](const Triangle&, const Triangle&) { return false; });

@@ -1,5 +1,5 @@
 // Checks a cover by spheres: bounds on how far a solid reaches out of them, proved by division into triangles
-// and cells. It shares nothing with the search for covers but the distance from the surface.
+// and cells. It shares with the search for covers the distance from the surface and the halving of triangles.
 //
 // A place x is g(x) = min (‖x − c‖ − r) away from the nearest sphere. On a convex part the distance from one
 // centre is largest at a corner, so the least of these maxima bounds g from above; g at any place of the part
@@ -180,18 +180,13 @@ class CoverCheck {
         for (const Vec3d& corner : t) raise_lower(spheres_.gap(corner, list));
         const double bound = spheres_.bound(t, list) + around_;
         if (is_settled(bound)) return;
-        const Vec3d half[] = {0.5 * (t[0] + t[1]), 0.5 * (t[1] + t[2]), 0.5 * (t[2] + t[0])};
-        const double side =
-            std::sqrt(std::max({square_of(t[1] - t[0]), square_of(t[2] - t[1]), square_of(t[0] - t[2])}));
-        if (side < settings_.tolerance / 4) {
+        const LongSide longest = find_long_side(t);
+        if (std::sqrt(longest.square) < settings_.tolerance / 4) {
             found_.upper = std::max(found_.upper, bound);
             return;
         }
         const List near = spheres_.narrow(box_of(t), bound, list);
-        check_triangle({t[0], half[0], half[2]}, near);
-        check_triangle({half[0], t[1], half[1]}, near);
-        check_triangle({half[2], half[1], t[2]}, near);
-        check_triangle({half[0], half[1], half[2]}, near);
+        for (const Triangle& part : halve(longest)) check_triangle(part, near);
         spheres_.drop(near);
     }
 
@@ -250,11 +245,7 @@ class CoverCheck {
         } else if (norm(box.high - box.low) < part_side_ || parts_ >= settings_.most) {
             open_area_ += area_of(t);
         } else {
-            const Vec3d half[] = {0.5 * (t[0] + t[1]), 0.5 * (t[1] + t[2]), 0.5 * (t[2] + t[0])};
-            sum_triangle({t[0], half[0], half[2]}, near);
-            sum_triangle({half[0], t[1], half[1]}, near);
-            sum_triangle({half[2], half[1], t[2]}, near);
-            sum_triangle({half[0], half[1], half[2]}, near);
+            for (const Triangle& part : halve(find_long_side(t))) sum_triangle(part, near);
         }
         spheres_.drop(near);
     }

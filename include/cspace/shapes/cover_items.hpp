@@ -1,6 +1,8 @@
 // What spheres are to contain: small pieces of a surface, or cells of its inside, in a tree by place.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
@@ -75,9 +77,54 @@ class CoverItems {
 
 inline double area_of(const Triangle& t) { return 0.5 * norm(cross(t[1] - t[0], t[2] - t[0])); }
 
-// Halves triangles across their longest sides until none is longer than `side`, and visits the parts.
+// A triangle as its longest side from a to b, and the corner c, in the same sense.
+struct LongSide {
+    Vec3d a, b, c;
+    double square;
+};
+inline LongSide find_long_side(const Triangle& t) {
+    std::size_t longest = 0;
+    double square[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+        square[k] = square_of(t[(k + 1) % 3] - t[k]);
+        if (square[k] > square[longest]) longest = k;
+    }
+    return {t[longest], t[(longest + 1) % 3], t[(longest + 2) % 3], square[longest]};
+}
+
+inline std::array<Triangle, 2> halve(const LongSide& t) {
+    const Vec3d half = 0.5 * (t.a + t.b);
+    return {Triangle{t.a, half, t.c}, Triangle{half, t.b, t.c}};
+}
+
+// Cuts a long triangle across its longest side into strips of about this width, each one or two triangles.
+// Halves of halves would be many more.
+inline void cut_strips(const LongSide& t, double width, std::vector<Triangle>& parts) {
+    const double share = std::clamp(dot(t.c - t.a, t.b - t.a) / t.square, 0.0, 1.0);
+    constexpr double most = 64;  // longer triangles are cut again
+    const Vec3d foot = t.a + share * (t.b - t.a);
+    for (const bool forward : {true, false}) {
+        const Vec3d& end = forward ? t.b : t.a;
+        const double strips = std::clamp(std::ceil(norm(end - foot) / width), 1.0, most);
+        Vec3d low = foot, high = t.c;
+        for (double i = 1; i <= strips; ++i) {
+            const bool last = i == strips;
+            const Vec3d next_low = last ? end : foot + (i / strips) * (end - foot);
+            const Vec3d next_high = last ? end : t.c + (i / strips) * (end - t.c);
+            parts.push_back(forward ? Triangle{low, next_low, high} : Triangle{low, high, next_low});
+            if (!last)
+                parts.push_back(forward ? Triangle{next_low, next_high, high}
+                                        : Triangle{next_low, high, next_high});
+            low = next_low, high = next_high;
+        }
+    }
+}
+
+// Divides triangles until no side is longer than `side`, and visits the parts: halves across the longest
+// side, and strips of triangles that are more than `slender` times as long as high.
 template <class Visit>
 void visit_parts(std::span<const Triangle> triangles, double side, Watch& watch, const Visit& visit) {
+    constexpr double slender = 3, diagonal = 0.7;  // a strip as wide as this and as high is `side` across
     std::vector<Triangle> waiting;
     for (const Triangle& whole : triangles) {
         waiting.push_back(whole);
@@ -85,20 +132,16 @@ void visit_parts(std::span<const Triangle> triangles, double side, Watch& watch,
             const Triangle t = waiting.back();
             waiting.pop_back();
             watch.step();
-            std::size_t longest = 0;
-            double square[3];
-            for (std::size_t k = 0; k < 3; ++k) {
-                square[k] = square_of(t[(k + 1) % 3] - t[k]);
-                if (square[k] > square[longest]) longest = k;
-            }
-            if (square[longest] <= side * side) {
+            const LongSide longest = find_long_side(t);
+            const double twice_area = 2 * area_of(t);
+            if (longest.square <= side * side) {
                 visit(t);
-                continue;
+            } else if (longest.square > slender * twice_area) {
+                cut_strips(longest, std::max(diagonal * side, twice_area / std::sqrt(longest.square)),
+                           waiting);
+            } else {
+                for (const Triangle& half : halve(longest)) waiting.push_back(half);
             }
-            const Vec3d &a = t[longest], &b = t[(longest + 1) % 3], &c = t[(longest + 2) % 3];
-            const Vec3d half = 0.5 * (a + b);
-            waiting.push_back({a, half, c});
-            waiting.push_back({half, b, c});
         }
     }
 }

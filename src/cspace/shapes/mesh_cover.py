@@ -103,7 +103,8 @@ def cover_mesh(
     2012), and the deepest place nearby. Greedy set cover and exchange choose few of them that contain every
     piece of the surface; what they leave inside is covered likewise; each sphere is shrunk to what it alone
     contains. A second program then proves the cover: it divides the surface into triangles and the inside
-    into cells until each lies whole in one sphere. The same mesh gives the same spheres everywhere.
+    into cells until each lies whole in one sphere. The same mesh gives the same spheres on every instruction
+    set.
 
     inside: False covers the surface of a solid alone. A mesh with solid=False has no inside: the spheres lie
     along its surface, and many more are needed. time_limit [s]. cache: covers are kept in files, by a hash of
