@@ -47,8 +47,8 @@ inline constexpr double narrowest_corner = 1e-9;
 // Ends of arcs [rad] are off by rounding: a square root near a critical angle, at its margin, loses half of
 // the digits that the margin leaves.
 inline constexpr double arc_slack = 1e-11;
-// Gaps narrower than this [rad] are no reason to halve a slab: where obstacles touch, arcs may stay as near to
-// each other as rounding over a good part of a slab.
+// Gaps narrower than this [rad] are no reason to halve a slab: where obstacles touch, arcs may stay as near
+// to each other as rounding over a good part of a slab.
 inline constexpr double narrowest_gap = 1e-10;
 inline bool is_wide(const Gap& gap) { return gap.high - gap.low > narrowest_gap; }
 
