@@ -85,9 +85,11 @@ Table<std::int32_t> TwoJointSpace::obstacle_map(int rows, int columns) const {
 
 std::vector<std::int32_t> TwoJointSpace::obstacles_at(std::span<const Point> configurations) const {
     std::vector<std::int32_t> found(configurations.size());
-    visit_range(0, found.size(), [&](std::size_t i) {
+    InterruptPoll poll(16);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        poll.step();
         found[i] = state_->space.obstacle_of(state_->space.blocks(configurations[i].x, configurations[i].y));
-    });
+    }
     return found;
 }
 

@@ -53,6 +53,11 @@ class FloodFill {
     }
 };
 
+bool is_in(const Sweep& sweep, const std::vector<Gap>& boxes, double q_2) {
+    return std::any_of(boxes.begin(), boxes.end(),
+                       [&](const Gap& box) { return sweep.finder().contains(box, q_2); });
+}
+
 // How many regions are proved to be separate.
 int count_regions(const Components& components) {
     int regions = 0;
@@ -73,15 +78,11 @@ TEST(boxes_of_slabs_are_free_and_nothing_outside_of_the_possible_ones_is) {
             const auto s = std::size_t(random.below(int(sweep.slabs().size())));
             const double q_1 = random.uniform(sweep.rows()[s].q_1, sweep.rows()[s + 1].q_1);
             const double q_2 = draw(random, problem.arm.joint_2);
-            const auto is_in = [&](const std::vector<Gap>& boxes) {
-                return std::any_of(boxes.begin(), boxes.end(),
-                                   [&](const Gap& box) { return sweep.finder().contains(box, q_2); });
-            };
             const double clearance = check::clearance(problem.arm, problem.obstacles, q_1, q_2);
-            if (is_in(sweep.slabs()[s].free)) {
+            if (is_in(sweep, sweep.slabs()[s].free, q_2)) {
                 CHECK(clearance > 0);
                 ++inside;
-            } else if (!is_in(sweep.slabs()[s].possible)) {
+            } else if (!is_in(sweep, sweep.slabs()[s].possible, q_2)) {
                 CHECK(clearance < rounding);
                 ++outside;
             } else {
@@ -292,6 +293,43 @@ TEST(an_obstacle_in_two_parts_that_share_a_side_blocks_what_the_whole_blocks) {
             CHECK(b.all()[i].least_area <= a.all()[i].greatest_area);
         }
     }
+}
+
+TEST(squares_of_a_raster_that_touch_in_sides_and_corners_break_no_bound) {
+    // Walls without thickness, which no bitmap shows, stand where squares touch in a corner.
+    check::Random random{10};
+    int proved = 0, open = 0, inside = 0, outside = 0;
+    for (int trial = 0; trial < 80; ++trial) {
+        Arm arm;
+        arm.length_2 = trial % 3 ? 1 : 0.75;
+        std::vector<Piece> squares;
+        while (squares.size() < 6) {
+            constexpr double side = 0.25;
+            const double x = side * (random.below(14) - 7), y = side * (random.below(14) - 7);
+            const Point corners[] = {{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}};
+            const Piece square = make_piece(corners, 0, std::int32_t(squares.size()));
+            if (distance_to_corners(square, {}) > 0) squares.push_back(square);
+        }
+        const Space space(arm, squares);
+        const Sweep sweep(space);
+        const Components components(sweep);
+        for (const Component& one : components.all()) one.is_proved ? ++proved : ++open;
+        for (int k = 0; k < 300; ++k) {
+            const auto s = std::size_t(random.below(int(sweep.slabs().size())));
+            const double q_1 = random.uniform(sweep.rows()[s].q_1, sweep.rows()[s + 1].q_1);
+            const double q_2 = draw(random, arm.joint_2);
+            const double clearance = check::clearance(arm, squares, q_1, q_2);
+            if (is_in(sweep, sweep.slabs()[s].free, q_2)) {
+                CHECK(clearance > 0);
+                ++inside;
+            } else if (!is_in(sweep, sweep.slabs()[s].possible, q_2)) {
+                CHECK(clearance < rounding);
+                ++outside;
+            }
+        }
+    }
+    CHECK(inside > 5000 && outside > 3000);
+    CHECK(proved > 20 * open);
 }
 
 TEST(a_corner_between_walls_is_the_tip_of_a_component) {

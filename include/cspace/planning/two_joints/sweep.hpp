@@ -34,13 +34,16 @@ struct Slab {
 struct SweepSettings {
     int rows = 192;           // spread evenly over joint 1; critical angles and halves come to these
     double stride = 0.1;      // the largest change [rad] of joint 2 along a boundary between two rows
-    int most_rows = 200'000;  // slabs are not halved any more then
+    int most_rows = 100'000;  // slabs are not halved any more then
 };
 
 namespace detail {
 
-// Slabs narrower than this [rad] are not halved: what passes through them is left open.
-inline constexpr double narrowest_slab = 1e-9;
+// Slabs narrower than this [rad] are not halved: what passes through them is left open. Where a side of an
+// obstacle points to the elbow for a moment, arcs overlap by the square of the distance from there alone.
+inline constexpr double narrowest_slab = 1e-7;
+// Slabs narrower than this [rad] are not halved for the place where one contact follows another.
+inline constexpr double narrowest_corner = 1e-9;
 // Ends of arcs [rad] are off by rounding: a square root near a critical angle, at its margin, loses half of
 // the digits that the margin leaves.
 inline constexpr double arc_slack = 1e-11;
@@ -76,10 +79,10 @@ class Sweep {
         find_edges();
         find_ranges();
         const std::vector<double> stops = find_stops();
-        rows_.push_back(make_row(stops.front()));
+        rows_.push_back(make_stop(stops.front()));
         for (std::size_t i = 1; i < stops.size(); ++i) {
             poll_.step();
-            divide(make_row(stops[i]));
+            divide(make_stop(stops[i]));
         }
     }
 
@@ -166,7 +169,7 @@ class Sweep {
         for (int i = 0; i <= count; ++i)
             stops.push_back(i == count ? joint.upper : joint.lower + i * (joint.width() / count));
         for (const double edge : edges_)
-            stops.insert(stops.end(), {edge - critical_margin, edge + critical_margin});
+            stops.insert(stops.end(), {edge - critical_margin, edge, edge + critical_margin});
         for (const auto& ranges : critical_)
             for (const AngleRange& range : ranges)
                 if (!is_blocked(range.low, range.high)) stops.insert(stops.end(), {range.low, range.high});
@@ -192,14 +195,25 @@ class Sweep {
         return false;
     }
 
+    // A row where slabs end in any case. Where link 1 begins or ceases to touch, it touches: obstacles are
+    // closed, and rounding has no say.
+    SweepRow make_stop(double q_1) const {
+        SweepRow row = make_row(q_1);
+        if (!std::binary_search(edges_.begin(), edges_.end(), q_1)) return row;
+        for (const BlockedInterval& band : space_.link_1())
+            for (const double edge : {band.low, band.high})
+                if (std::abs(short_way(edge - q_1)) < critical_margin) row.blocks_link_1 = band.piece;
+        row.arcs.clear(), row.gaps.clear();
+        return row;
+    }
     // Adds the slab up to a row, or its halves.
     void divide(SweepRow&& next) {
         const double low = rows_.back().q_1, high = next.q_1, middle = 0.5 * (low + high);
         Slab slab;
         const bool is_settled = find_boxes(rows_.back(), next, slab);
-        const bool can_halve = high - low > detail::narrowest_slab && middle > low && middle < high &&
-                               int(rows_.size()) < settings_.most_rows;
-        if (can_halve && !(is_settled && is_traced(rows_.back(), next))) {
+        const bool can_halve = middle > low && middle < high && int(rows_.size()) < settings_.most_rows;
+        if (can_halve && ((high - low > detail::narrowest_slab && !is_settled) ||
+                          (high - low > detail::narrowest_corner && !is_traced(rows_.back(), next)))) {
             poll_.step();
             divide(make_row(middle));
             return divide(std::move(next));

@@ -118,7 +118,7 @@ class ConfigurationSpace(Renamed):
     def component(self, q: ArrayLike) -> int | None:
         """The component of a configuration q (2,), as its place in `components`; None if q is not free.
 
-        None also within 1e-9 rad of the tip of a component, where it is not resolved.
+        None also within 1e-7 rad of the tip of a component, where it is not resolved.
         """
         row = one_array(q, "q", (2,), "q1 and q2 [rad]", largest=FARTHEST)
         found = self._core.component_at(row)
