@@ -94,7 +94,6 @@ class Sweep {
     const std::vector<Slab>& slabs() const { return slabs_; }
     // Where link 1 begins or ceases to touch, sorted.
     const std::vector<double>& edges() const { return edges_; }
-    bool is_complete() const { return int(rows_.size()) < settings_.most_rows; }
 
     SweepRow make_row(double q_1) const {
         SweepRow row;
