@@ -1,0 +1,87 @@
+"""Planned motions: the sweep of the arm, the path of its tip, and the obstacles around both."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array, whole_number
+from cspace.errors import InputError, InputTypeError
+from cspace.plot import colors
+from cspace.plot.arms import draw_groups, set_stage, solids_of
+from cspace.plot.axes import space_axes
+from cspace.plot.raytrace import stage
+from cspace.plot.raytrace.scene import Group
+from cspace.plot.raytrace.solids import Body, Solid
+from cspace.plot.scenes import arm_bodies, carried_bodies, obstacle_bodies
+from cspace.plot.skeleton import Skeleton, make_skeleton
+
+MOST_POSES: Final = 100
+"""Poses of a sweep, which would hide each other long before."""
+PIECES: Final = 120
+"""Straight pieces of the path of the tip."""
+TUBE: Final = 0.006
+"""Radius of the path of the tip, as a share of the arm's length; corners are marked by balls of twice that."""
+GHOST: Final = (0.28, 0.50)
+"""Opacity of the poses between, and of the start."""
+
+
+def plan(plan: Any, *, poses: int = 7, ax: Any | None = None, title: str = "") -> list[Any]:
+    """Draw a plan: the arm at poses along its path, the path of its tip, and the scene.
+
+    plan: a Plan with a path. The arm at the goal is opaque; at the start and at poses between, at equal
+    distances along the path, it is transparent, blue at the start and green before the goal. Balls on the path
+    of the tip are the corners. Objects that the robot carries move with it. poses: how many, start and goal
+    included. ax: 3-D axes. Returns the artists.
+    Raises InputTypeError for what is not a Plan, InputError for one without a path and for fewer than two
+    poses, MissingExtraError without matplotlib.
+    """
+    if not hasattr(plan, "space") or not hasattr(plan, "path"):
+        raise InputTypeError(f"plan is a {type(plan).__name__}; give a Plan, as cs.plan answers")
+    if not len(plan.path):
+        raise InputError(f"the plan has no path to draw: {plan.reason}")
+    count = whole_number(poses, "poses", 2, MOST_POSES, "start and goal are two")
+    robot, scene = plan.space.robot, plan.space.scene
+    if not hasattr(robot, "fk"):
+        raise InputTypeError("the plan was made for a RobotGeometry; plan with a Robot to draw it")
+    rows = equal_steps(plan.path, count)
+    drawn = [make_skeleton(robot, q) for q in rows]
+    tip = np.asarray(robot.fk(equal_steps(plan.path, PIECES)))[:, :3, 3]
+    axes = space_axes(ax)
+    set_stage(axes, drawn, [drawn[0].T_tip, drawn[-1].T_tip], () if scene is None else scene.obstacles, tip)
+    groups = [] if scene is None else [Group(obstacle_bodies(axes, scene), backdrop=True)]
+    for q, each, tint in zip(rows[:-1], drawn[:-1], sweep_colors(count - 1), strict=True):
+        carried = carried_bodies(axes, robot, q, scene, tint)
+        opacity = GHOST[each is drawn[0]]
+        groups.append(Group([*ghost_bodies(each, tint), *carried], opacity, shadow=each is drawn[0]))
+    groups.append(Group([*arm_bodies(drawn[-1]), *carried_bodies(axes, robot, rows[-1], scene)]))
+    corners = np.asarray(robot.fk(plan.path))[:, :3, 3]
+    groups.append(Group(tip_bodies(tip, corners, TUBE * drawn[0].length), shadow=False))
+    return draw_groups(axes, groups) + stage.write_title(axes, title)
+
+
+def equal_steps(path: Array, count: int) -> Array:
+    """Configurations (count, dof) at equal distances along a path (m, dof), both ends included."""
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    places = np.linspace(0.0, along[-1], count)
+    return np.stack([np.interp(places, along, column) for column in path.T], axis=1)
+
+
+def sweep_colors(count: int) -> list[Array]:
+    """Colours from the start of a motion to its goal."""
+    first, last = (colors.color_of_oklch(0.66, 0.145, hue) for hue in (252.0, 152.0))
+    return [colors.mix_colors(first, tuple(last), share) for share in np.linspace(0.0, 1.0, count)]
+
+
+def ghost_bodies(drawn: Skeleton, tint: Array) -> list[Body]:
+    """The bodies of an arm in one colour, the links lighter than the joints."""
+    return [*solids_of(drawn, colors.mix_colors(tint, (1.0, 1.0, 1.0), 0.25), tint)]
+
+
+def tip_bodies(tip: Array, corners: Array, radius: float) -> list[Body]:
+    """The path of the tip (k, 3) as a tube, with balls at corners (m, 3)."""
+    color = np.array(colors.PATH)
+    tube: list[Body] = [Solid(a, b, radius, radius, color) for a, b in zip(tip[:-1], tip[1:], strict=True)]
+    return tube + [Solid(p, p, 2.0 * radius, 2.0 * radius, color) for p in corners]

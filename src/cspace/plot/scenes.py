@@ -1,0 +1,134 @@
+"""Robots among obstacles: scenes with what a robot carries, and the spheres of collision checks."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.collision import Scene
+from cspace.errors import InputError, InputTypeError
+from cspace.plot import colors
+from cspace.plot.arms import draw_groups, set_stage, solids_of
+from cspace.plot.axes import space_axes
+from cspace.plot.obstacles import bodies_of
+from cspace.plot.raytrace import stage
+from cspace.plot.raytrace.scene import Group
+from cspace.plot.raytrace.solids import Body, Solid
+from cspace.plot.skeleton import Skeleton, make_skeleton
+from cspace.spatial.poses import invert_pose, transform_points
+
+SHELL: Final = 0.55
+"""Opacity of the spheres of a robot around its links."""
+TRIAD: Final = 0.14
+"""Length of the arrows of a frame, as a share of the arm's length."""
+
+
+def scene(
+    scene: Any, robot: Any | None = None, q: Any | None = None, *, ax: Any | None = None, title: str = ""
+) -> list[Any]:
+    """Draw the obstacles of a scene, and a robot among them with the objects that it carries.
+
+    scene: a cspace.Scene. robot: a Robot that is a chain; None draws the obstacles alone. q: (dof,) [rad, m].
+    ax: 3-D axes; None makes a figure. A half space is drawn as the floor, or as a plate that is seen from
+    outside; of large point clouds and meshes less is drawn. Returns the artists.
+    Raises InputTypeError without a scene, InputError on a wrong shape, MissingExtraError without matplotlib.
+    """
+    check_scene(scene)
+    drawn = [] if robot is None else [make_skeleton(robot, one_row(robot, q))]
+    axes = space_axes(ax)
+    set_stage(axes, drawn, [each.T_tip for each in drawn], scene.obstacles)
+    groups = [Group(obstacle_bodies(axes, scene))]
+    for each in drawn:
+        groups.append(Group([*arm_bodies(each), *carried_bodies(axes, robot, q, scene)]))
+        groups.append(
+            Group(stage.make_triads(np.stack([each.T_base, each.T_tip]), TRIAD * each.length), shadow=False)
+        )
+    return draw_groups(axes, groups) + stage.write_title(axes, title)
+
+
+def spheres(
+    robot: Any, q: Any, scene: Any | None = None, *, ax: Any | None = None, title: str = ""
+) -> list[Any]:
+    """Draw what collision checks use of a robot: its spheres, one colour per link, around its links.
+
+    robot: a Robot that is a chain, with collision geometry. q: (dof,) [rad, m]. scene: a cspace.Scene around
+    it. ax: 3-D axes. Returns the artists.
+    Raises InputError for a robot without collision geometry and on a wrong shape, MissingExtraError without
+    matplotlib.
+    """
+    check_scene(scene, optional=True)
+    row = one_row(robot, q)
+    shells = link_spheres(robot, row)
+    drawn = make_skeleton(robot, row)
+    axes = space_axes(ax)
+    set_stage(axes, [drawn], [drawn.T_tip], () if scene is None else scene.obstacles, np.concatenate(shells))
+    groups = [Group([*arm_bodies(drawn), *carried_bodies(axes, robot, row, scene)], backdrop=True)]
+    if scene is not None:
+        groups.append(Group(obstacle_bodies(axes, scene), backdrop=True))
+    for tint, balls in zip(colors.make_palette(len(shells)), shells, strict=True):
+        groups.append(Group([Solid(ball[:3], ball[:3], ball[3], ball[3], tint) for ball in balls], SHELL))
+    return draw_groups(axes, groups) + stage.write_title(axes, title)
+
+
+def check_scene(scene: Any, *, optional: bool = False) -> None:
+    """InputTypeError for what is not a scene."""
+    if not (isinstance(scene, Scene) or (optional and scene is None)):
+        raise InputTypeError(f"scene is a {type(scene).__name__}; it must be a cspace.Scene")
+
+
+def one_row(robot: Any, q: Any) -> Array:
+    """One configuration (dof,)."""
+    if q is None:
+        raise InputError(f"q is missing; give the configuration ({robot.dof},) of {robot.name}")
+    row = as_floats(q, "q", last=(robot.dof,))
+    if row.ndim != 1:
+        raise InputError(
+            f"q has shape {row.shape}; one picture shows one configuration, expected ({robot.dof},)"
+        )
+    return row
+
+
+def arm_bodies(drawn: Skeleton) -> list[Body]:
+    """The bodies of an arm in its own colours."""
+    return [*solids_of(drawn, np.array(colors.LINK), np.array(colors.JOINT))]
+
+
+def obstacle_bodies(axes: Any, scene: Scene) -> list[Body]:
+    """The bodies of the obstacles."""
+    around, tint = picture_box(axes), np.array(colors.OBSTACLE)
+    return [body for shape in scene.obstacles for body in bodies_of(shape, tint, around)]
+
+
+def carried_bodies(
+    axes: Any, robot: Any, q: Any, scene: Scene | None, color: Any = colors.CARRIED
+) -> list[Body]:
+    """The bodies of the objects that a robot carries at a configuration."""
+    if scene is None or not scene.attached:
+        return []
+    around, tint = picture_box(axes), np.array(color)
+    return [
+        body
+        for name, each in scene.attached.items()
+        for body in bodies_of(scene[name].placed(robot.fk(q, each.frame) @ each.T_frame_object), tint, around)
+    ]
+
+
+def picture_box(axes: Any) -> Array:
+    """The box (2, 3) of the axes [m]."""
+    return np.array([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()]).T
+
+
+def link_spheres(robot: Any, q: Array) -> list[Array]:
+    """The spheres (n, 4) of each link at a configuration, in the world."""
+    geometry = robot.collision
+    if not geometry:
+        raise InputError(f"{robot.name} has no spheres to draw: {geometry.reason}")
+    found = []
+    for number, name in enumerate(geometry.links):
+        own = geometry.spheres[geometry.sphere_links == number].copy()
+        T_world_body = np.asarray(robot.fk(q, name)) @ invert_pose(geometry.frames[name][1])
+        own[:, :3] = transform_points(T_world_body, own[:, :3])
+        found.append(own)
+    return found
