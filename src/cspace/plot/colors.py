@@ -22,7 +22,7 @@ AXES: Final = ((0.84, 0.18, 0.20), (0.18, 0.62, 0.28), (0.16, 0.38, 0.88))
 """The x, y and z axes of a frame."""
 WALL: Final = (0.36, 0.39, 0.44)
 """Obstacles."""
-OBSTACLE: Final = (0.87, 0.76, 0.60)
+OBSTACLE: Final = (0.93, 0.84, 0.70)
 """Obstacles around an arm."""
 CARRIED: Final = (0.55, 0.75, 0.45)
 """Objects that an arm carries."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.plot.raytrace.solids import Body, Facets, Solid, make_cylinder
@@ -107,23 +108,29 @@ class Blockers:
     """The boxes around shapes, each in its own frame: what hides points from an eye far away."""
 
     def __init__(self, shapes: Sequence[Shape]) -> None:
-        solid = [shape for shape in shapes if not isinstance(shape, HalfSpace)]
-        self.into = [invert_pose(shape.pose) for shape in solid]
-        self.boxes = [shape.placed(np.zeros(3)).bounds for shape in solid]
+        solid = {k: shape for k, shape in enumerate(shapes) if not isinstance(shape, HalfSpace)}
+        self.count, self.numbers = len(shapes), list(solid)
+        self.into = [invert_pose(shape.pose) for shape in solid.values()]
+        self.boxes = [shape.placed(np.zeros(3)).bounds for shape in solid.values()]
         planes = [shape.plane[:3] for shape in shapes if isinstance(shape, HalfSpace)]
         self.normals = np.array(planes).reshape(-1, 3)
+
+    def hide(self, points: Array, eye: Array) -> npt.NDArray[np.bool_]:
+        """Which shape hides which of the points (m, 3) from an eye in the direction (3,): (shapes, m)."""
+        hidden = np.zeros((self.count, len(points)), dtype=bool)
+        for k, T, box in zip(self.numbers, self.into, self.boxes, strict=True):
+            way = T[:3, :3] @ eye
+            way = np.where(way == 0.0, np.finfo(np.float64).tiny, way)
+            ends = (box[:, None] - transform_points(T, points)) / way
+            entry, leaving = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
+            hidden[k] = leaving > np.maximum(entry, 0.0)
+        return hidden
 
     def hidden_share(self, points: Array, eye: Array) -> float:
         """The share of points (m, 3) that are hidden from an eye in the direction (3,).
 
-        A half space that turns its back to the eye counts like a point that is hidden.
+        A half space that turns its back to the eye hides half of what is not hidden otherwise: only the front
+        of a plate is drawn.
         """
-        hidden = np.zeros(len(points), dtype=bool)
-        for T, box in zip(self.into, self.boxes, strict=True):
-            way = T[:3, :3] @ eye
-            way = np.where(way == 0.0, np.finfo(np.float64).tiny, way)
-            near, far = (box[:, None] - transform_points(T, points)) / way
-            entry, exit_ = np.minimum(near, far).max(axis=1), np.maximum(near, far).min(axis=1)
-            hidden |= exit_ > np.maximum(entry, 0.0)
         turned = int((self.normals @ eye < 0.0).sum())
-        return float(hidden.sum() + turned) / (len(points) + len(self.normals))
+        return 1.0 - 0.5**turned * (1.0 - float(self.hide(points, eye).any(axis=0).mean()))

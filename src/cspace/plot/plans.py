@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -14,7 +15,7 @@ from cspace.plot.axes import space_axes
 from cspace.plot.raytrace import stage
 from cspace.plot.raytrace.scene import Group
 from cspace.plot.raytrace.solids import Body, Solid
-from cspace.plot.scenes import arm_bodies, carried_bodies, obstacle_bodies
+from cspace.plot.scenes import arm_bodies, carried_bodies, obstacle_groups
 from cspace.plot.skeleton import Skeleton, make_skeleton
 
 MOST_POSES: Final = 100
@@ -22,7 +23,7 @@ MOST_POSES: Final = 100
 PIECES: Final = 120
 """Straight pieces of the path of the tip."""
 TUBE: Final = 0.006
-"""Radius of the path of the tip, as a share of the arm's length; corners are marked by balls of twice that."""
+"""Radius of the path of the tip, as a share of the arm's length; the balls at corners have twice that."""
 GHOST: Final = (0.28, 0.50)
 """Opacity of the poses between, and of the start."""
 
@@ -31,9 +32,9 @@ def plan(plan: Any, *, poses: int = 7, ax: Any | None = None, title: str = "") -
     """Draw a plan: the arm at poses along its path, the path of its tip, and the scene.
 
     plan: a Plan with a path. The arm at the goal is opaque; at the start and at poses between, at equal
-    distances along the path, it is transparent, blue at the start and green before the goal. Balls on the path
-    of the tip are the corners. Objects that the robot carries move with it. poses: how many, start and goal
-    included. ax: 3-D axes. Returns the artists.
+    distances along the path, it is transparent, blue at the start and green before the goal. Balls on the
+    path of the tip are the corners. Objects that the robot carries move with it. Obstacles that hide much of
+    the motion are transparent. poses: how many, start and goal included. ax: 3-D axes. Returns the artists.
     Raises InputTypeError for what is not a Plan, InputError for one without a path and for fewer than two
     poses, MissingExtraError without matplotlib.
     """
@@ -50,7 +51,7 @@ def plan(plan: Any, *, poses: int = 7, ax: Any | None = None, title: str = "") -
     tip = np.asarray(robot.fk(equal_steps(plan.path, PIECES)))[:, :3, 3]
     axes = space_axes(ax)
     set_stage(axes, drawn, [drawn[0].T_tip, drawn[-1].T_tip], () if scene is None else scene.obstacles, tip)
-    groups = [] if scene is None else [Group(obstacle_bodies(axes, scene), backdrop=True)]
+    groups = [] if scene is None else obstacle_groups(axes, scene, drawn, tip)
     for q, each, tint in zip(rows[:-1], drawn[:-1], sweep_colors(count - 1), strict=True):
         carried = carried_bodies(axes, robot, q, scene, tint)
         opacity = GHOST[each is drawn[0]]
@@ -83,5 +84,5 @@ def ghost_bodies(drawn: Skeleton, tint: Array) -> list[Body]:
 def tip_bodies(tip: Array, corners: Array, radius: float) -> list[Body]:
     """The path of the tip (k, 3) as a tube, with balls at corners (m, 3)."""
     color = np.array(colors.PATH)
-    tube: list[Body] = [Solid(a, b, radius, radius, color) for a, b in zip(tip[:-1], tip[1:], strict=True)]
+    tube: list[Body] = [Solid(a, b, radius, radius, color) for a, b in pairwise(tip)]
     return tube + [Solid(p, p, 2.0 * radius, 2.0 * radius, color) for p in corners]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -12,15 +13,20 @@ from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
 from cspace.plot.arms import draw_groups, set_stage, solids_of
 from cspace.plot.axes import space_axes
-from cspace.plot.obstacles import bodies_of
+from cspace.plot.obstacles import Blockers, bodies_of
 from cspace.plot.raytrace import stage
 from cspace.plot.raytrace.scene import Group
 from cspace.plot.raytrace.solids import Body, Solid
+from cspace.plot.raytrace.view import look_along
 from cspace.plot.skeleton import Skeleton, make_skeleton
 from cspace.spatial.poses import invert_pose, transform_points
 
 SHELL: Final = 0.55
 """Opacity of the spheres of a robot around its links."""
+GLASS: Final = 0.30
+"""Opacity of obstacles that hide too much of an arm."""
+HIDDEN: Final = 0.10
+"""The share of the points of an arm from which an obstacle before them is transparent."""
 TRIAD: Final = 0.14
 """Length of the arrows of a frame, as a share of the arm's length."""
 
@@ -39,7 +45,7 @@ def scene(
     drawn = [] if robot is None else [make_skeleton(robot, one_row(robot, q))]
     axes = space_axes(ax)
     set_stage(axes, drawn, [each.T_tip for each in drawn], scene.obstacles)
-    groups = [Group(obstacle_bodies(axes, scene))]
+    groups = obstacle_groups(axes, scene, drawn)
     for each in drawn:
         groups.append(Group([*arm_bodies(each), *carried_bodies(axes, robot, q, scene)]))
         groups.append(
@@ -66,7 +72,7 @@ def spheres(
     set_stage(axes, [drawn], [drawn.T_tip], () if scene is None else scene.obstacles, np.concatenate(shells))
     groups = [Group([*arm_bodies(drawn), *carried_bodies(axes, robot, row, scene)], backdrop=True)]
     if scene is not None:
-        groups.append(Group(obstacle_bodies(axes, scene), backdrop=True))
+        groups += obstacle_groups(axes, scene, [drawn])
     for tint, balls in zip(colors.make_palette(len(shells)), shells, strict=True):
         groups.append(Group([Solid(ball[:3], ball[:3], ball[3], ball[3], tint) for ball in balls], SHELL))
     return draw_groups(axes, groups) + stage.write_title(axes, title)
@@ -95,10 +101,25 @@ def arm_bodies(drawn: Skeleton) -> list[Body]:
     return [*solids_of(drawn, np.array(colors.LINK), np.array(colors.JOINT))]
 
 
-def obstacle_bodies(axes: Any, scene: Scene) -> list[Body]:
-    """The bodies of the obstacles."""
-    around, tint = picture_box(axes), np.array(colors.OBSTACLE)
-    return [body for shape in scene.obstacles for body in bodies_of(shape, tint, around)]
+def obstacle_groups(
+    axes: Any, scene: Scene, drawn: Sequence[Skeleton], more: Array | None = None
+) -> list[Group]:
+    """The obstacles; those that hide much of the arms, or of more points (m, 3), are transparent."""
+    around, tint, shapes = picture_box(axes), np.array(colors.OBSTACLE), scene.obstacles
+    points = (
+        np.concatenate([each.points for each in drawn] + ([] if more is None else [more])) if drawn else None
+    )
+    eye = look_along(axes.elev, axes.azim)[2]
+    hides = np.zeros(len(shapes)) if points is None else Blockers(shapes).hide(points, eye).mean(axis=1)
+    solid: list[Body] = []
+    glass = []
+    for shape, share in zip(shapes, hides, strict=True):
+        bodies = bodies_of(shape, tint, around)
+        if share > HIDDEN:
+            glass.append(Group(bodies, GLASS))
+        else:
+            solid += bodies
+    return [Group(solid, backdrop=True), *glass]
 
 
 def carried_bodies(

@@ -76,7 +76,9 @@ def see_solids(view: View, solids: Sequence[Body]) -> Layer | None:
         np.concatenate([np.ones(len(clear.t), np.float32), hit.mean(axis=0, dtype=np.float32)[some]]),
         np.concatenate([clear.t, samples.t.min(axis=0)[some]]),
         rim[rows, columns],
-        np.array([i for i, _, _ in owned], np.int32)[np.concatenate([clear.key, nearest_keys(samples)[some]])],
+        np.array([i for i, _, _ in owned], np.int32)[
+            np.concatenate([clear.key, nearest_keys(samples)[some]])
+        ],
     )
 
 

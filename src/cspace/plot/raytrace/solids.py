@@ -134,6 +134,11 @@ class Facet:
         area = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
         return np.asarray(area / max(float(np.linalg.norm(area)), LEAST_DIVISOR))
 
+    @cached_property
+    def inward(self) -> Array:
+        """Directions (k, 3) in the plane, each from an edge to the inside."""
+        return np.cross(self.normal, np.roll(self.corners, -1, axis=0) - self.corners)
+
     @property
     def balls(self) -> list[tuple[Array, float]]:
         return [(corner, 0.0) for corner in self.corners]
@@ -141,11 +146,12 @@ class Facet:
     def meet(self, rays: Rays, x: Array, y: Array) -> Array:
         """The t where the rays of the places x, y (which broadcast) meet it from its seen side, else inf."""
         falling = affine_at(rays.way @ self.normal, x, y)
+        if np.min(falling) >= -LEAST_DIVISOR:
+            return np.full(np.broadcast(x, y).shape, np.inf)
         above = affine_at((rays.origin - np.outer(LAST, self.corners[0])) @ self.normal, x, y)
         t = -above / np.where(falling < -LEAST_DIVISOR, falling, np.nan)
         inside = np.isfinite(t) if rays.parallel else t > 0.0  # those of an eye begin there
-        for corner, following in zip(self.corners, np.roll(self.corners, -1, axis=0), strict=True):
-            inward = np.cross(self.normal, following - corner)
+        for corner, inward in zip(self.corners, self.inward, strict=True):
             start = affine_at((rays.origin - np.outer(LAST, corner)) @ inward, x, y)
             inside &= start + t * affine_at(rays.way @ inward, x, y) >= 0.0
         return np.asarray(np.where(inside, t, np.inf))
