@@ -118,6 +118,16 @@ def test_spheres_of_a_file_are_used(tmp_path):
     assert found.code == Exit.DONE
 
 
+def test_a_picture_is_drawn(tmp_path):
+    pytest.importorskip("matplotlib")
+    file = tmp_path / "way.png"
+    result = cspace(f"{LINE} {ENDS} --plot", str(file))
+    assert result.code == Exit.DONE
+    assert f"wrote {file}" in result.out
+    assert file.read_bytes().startswith(b"\x89PNG")
+    assert list(tmp_path.iterdir()) == [file], "no draft is left"
+
+
 def test_no_path_ends_in_one_and_writes_nothing(tmp_path):
     file = tmp_path / "way.json"
     line = f"{LINE} --from {' '.join(map(str, START))} --xyz 0.55 0 0.35 -o {file}"

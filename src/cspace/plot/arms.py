@@ -10,22 +10,17 @@ import numpy as np
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.plot import colors, planar
+from cspace.plot.arm_bodies import solids_of
+from cspace.plot.arm_stage import set_stage
 from cspace.plot.axes import space_axes
 from cspace.plot.legends import list_entries, mark_bold, tints_of
-from cspace.plot.obstacles import UPRIGHT, Blockers, is_floor
 from cspace.plot.raytrace import stage
-from cspace.plot.raytrace.canvas import Floor
-from cspace.plot.raytrace.scene import Group, artist_type, scene_of
-from cspace.plot.raytrace.solids import Solid, make_cylinder
-from cspace.plot.skeleton import WIDTH, Skeleton, make_skeleton, planar_basis
-from cspace.shapes import Shape
-from cspace.tolerances import DRAWN_LENGTH
+from cspace.plot.raytrace.scene import Group, draw_groups
+from cspace.plot.skeleton import make_skeleton, planar_basis
 
 GHOST: Final = 0.40
 FAINT: Final = 0.16
 """Opacity of ghosts, and of those out of limits."""
-AROUND: Final = 1.2
-"""How far obstacles are in the picture, along each axis from the base [lengths of the arm]."""
 
 
 def robot(arm: Any, q: Any, *, ax: Any | None = None, color: Any = None, title: str = "") -> list[Any]:
@@ -132,103 +127,6 @@ def nearest_row(q: Array, near: Array, arm: Any) -> int:
     from cspace.ik.wrapping import short_way
 
     return int(np.argmin((short_way(q - near, arm.chain.joint_types) ** 2).sum(axis=1)))
-
-
-def set_stage(
-    ax: Any, drawn: Sequence[Skeleton], goals: Sequence[Array], shapes: Sequence[Shape] = (), more: Any = ()
-) -> None:
-    """The empty stage for these skeletons: view, limits, floor; axes that have a stage keep it.
-
-    goals: poses (4, 4) that should be in front. shapes: obstacles around them. more (m, 3) or (m, 4): points,
-    or balls, that should be in the picture.
-    """
-    if any(type(artist) is artist_type() for artist in ax.get_children()):
-        return
-    inside = [shown_points(each) for each in drawn]
-    inside += [T[:3, 3] + 0.2 * drawn[0].length * T[:3, :3].T for T in goals]
-    if len(more):
-        inside += [more[:, :3] + more[:, 3:].sum(axis=1)[:, None] * side for side in (-1.0, 1.0)]
-    around = np.concatenate([*inside, *shape_corners(shapes, drawn)])
-    base = drawn[0].T_base[:3, 3] if drawn else around.mean(axis=0)
-    low = floor_height(drawn, shapes, around)
-    points = np.concatenate([each.points for each in drawn]) if drawn else around
-    focus = np.array([T[:3, 3] for T in goals]) if len(goals) else points
-    blockers = Blockers(shapes)
-    elevation, azimuth = stage.choose_view(points, focus, blockers.hidden_share if shapes else None)
-    artist = stage.set_up(
-        ax, around, round_floor(drawn, around, base, low), elevation=elevation, azimuth=azimuth
-    )
-    stands = drawn and drawn[0].T_base[2, 2] > UPRIGHT and base[2] - low > DRAWN_LENGTH
-    if stands:
-        half = 0.5 * (base[2] - low)
-        center, up = base - [0.0, 0.0, half], np.array([0.0, 0.0, 1.0])
-        stand = make_cylinder(center, up, 0.8 * drawn[0].radii[0], half, np.array(colors.STAND))
-        artist.scene.groups.append(Group([stand]))
-
-
-def shown_points(drawn: Skeleton) -> Array:
-    """Points (m, 3) around a skeleton that should be in the picture."""
-    thick = drawn.radii[-1]
-    return np.concatenate([drawn.points + thick, drawn.points - thick])
-
-
-def shape_corners(shapes: Sequence[Shape], drawn: Sequence[Skeleton]) -> list[Array]:
-    """The corners (8, 3) of the boxes around shapes, no farther from a robot than its length."""
-    found = [shape.bounds for shape in shapes if np.isfinite(shape.bounds).all()]
-    if drawn:
-        base, reach = drawn[0].T_base[:3, 3], AROUND * drawn[0].length
-        found = [np.clip(box, base - reach, base + reach) for box in found]
-    return [np.stack(np.meshgrid(*box.T), axis=-1).reshape(-1, 3) for box in found]
-
-
-def floor_height(drawn: Sequence[Skeleton], shapes: Sequence[Shape], around: Array) -> float:
-    """The height of the floor [m]: that of a half space, or below everything, no higher than zero."""
-    floors = [float(shape.plane[3]) for shape in shapes if is_floor(shape)]
-    if floors:
-        return max(floors)
-    plain = np.array(colors.LINK)
-    lowest = [solid.lowest() for each in drawn for solid in solids_of(each, plain, plain)]
-    below = [float(corners[:, 2].min()) for corners in shape_corners(shapes, drawn)]
-    return min(0.0, *lowest, *below, 0.0) if drawn or below else float(min(0.0, around[:, 2].min()))
-
-
-def round_floor(drawn: Sequence[Skeleton], around: Array, base: Array, low: float) -> Floor:
-    """A floor at a height [m] below points (m, 3) and the foot of an arm."""
-    ground = np.concatenate([around[:, :2], base[None, :2]])
-    center = 0.5 * (ground.min(axis=0) + ground.max(axis=0))
-    foot = float(np.linalg.norm(center - base[:2])) + (3.0 * drawn[0].radii[0] if drawn else 0.0)
-    widest = 1.04 * float(np.linalg.norm(ground - center, axis=1).max())
-    return stage.floor_under(center, max(widest, foot, 0.4 * float(np.ptp(around[:, 2]))), low)
-
-
-def draw_groups(ax: Any, groups: list[Group]) -> list[Any]:
-    """Add groups of solids to the picture of the axes."""
-    artist = scene_of(ax)
-    artist.scene.groups += groups
-    return [artist]
-
-
-def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
-    """The bodies of the links and joints of one configuration."""
-    radii = drawn.radii
-    foot, up = drawn.T_base[:3, 3], drawn.T_base[:3, 2]
-    solids = [make_cylinder(foot + 0.3 * radii[0] * up, up, 1.7 * radii[0], 0.3 * radii[0], joint)]
-    for i, path in enumerate(drawn.paths):
-        ends = np.linspace(radii[i], radii[i + 1], len(path))
-        for k in range(len(path) - 1):
-            if np.linalg.norm(path[k + 1] - path[k]) < DRAWN_LENGTH:
-                continue
-            if i == 0 and k == 0 and (path[1] - path[0]) @ up > 0.0:  # the pillar stands on its base, flat
-                solids.append(Solid(path[0], path[1], ends[0], ends[1], link, round=False))
-                solids.append(Solid(path[1], path[1], ends[1], ends[1], link))
-            else:
-                solids.append(Solid(path[k], path[k + 1], ends[k], ends[k + 1], link))
-    for rail in drawn.rails:
-        if np.linalg.norm(rail[1] - rail[0]) > DRAWN_LENGTH:
-            solids.append(Solid(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
-    for i, (place, axis) in enumerate(zip(drawn.joints, drawn.axes, strict=True)):
-        solids.append(make_cylinder(place, axis, WIDTH * radii[i + 1], drawn.body_half(i), joint))
-    return solids
 
 
 def write_legend(ax: Any, names: list[str], tints: Sequence[Any], solid: int) -> list[Any]:

@@ -48,19 +48,22 @@ def bodies_of(shape: Shape, color: Array, around: Array) -> list[Body]:
     if isinstance(shape, Sphere):
         return [Solid(T[:3, 3], T[:3, 3], shape.radius, shape.radius, color)]
     if isinstance(shape, Capsule):
-        return [Solid(*shape.ends, shape.radius, shape.radius, color)]
+        low, high = shape.ends
+        return [Solid(low, high, shape.radius, shape.radius, color)]
     if isinstance(shape, Cylinder):
         return [make_cylinder(T[:3, 3], T[:3, 2], shape.radius, 0.5 * shape.length, color)]
     if isinstance(shape, HalfSpace):
-        return [] if is_floor(shape) else [Facets([plate_of(shape, around)], color)]
+        return [Facets([plate_of(shape, around)], color)] if floor_level(shape) is None else []
     if isinstance(shape, PointCloud):
         return cloud_balls(shape, color, around)
     return [Facets(list(triangles_of(shape)), color)]
 
 
-def is_floor(shape: Shape) -> bool:
-    """Whether a shape is a half space below a horizontal plane."""
-    return isinstance(shape, HalfSpace) and bool(shape.plane[2] > UPRIGHT)
+def floor_level(shape: Shape) -> float | None:
+    """The height [m] of a half space below a horizontal plane; None for other shapes."""
+    if not isinstance(shape, HalfSpace) or shape.plane[2] < UPRIGHT:
+        return None
+    return float(shape.plane[3])
 
 
 def plate_of(shape: HalfSpace, around: Array) -> Array:

@@ -10,13 +10,14 @@ import numpy as np
 from cspace.arrays import Array, whole_number
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
-from cspace.plot.arms import draw_groups, set_stage, solids_of
+from cspace.plot.arm_bodies import ghost_bodies, plain_bodies
+from cspace.plot.arm_stage import set_stage
 from cspace.plot.axes import space_axes
 from cspace.plot.raytrace import stage
-from cspace.plot.raytrace.scene import Group
+from cspace.plot.raytrace.scene import Group, draw_groups
 from cspace.plot.raytrace.solids import Body, Solid
-from cspace.plot.scenes import arm_bodies, carried_bodies, obstacle_groups
-from cspace.plot.skeleton import Skeleton, make_skeleton
+from cspace.plot.scenes import box_ends, carried_shapes, obstacle_groups, shape_bodies
+from cspace.plot.skeleton import make_skeleton
 
 MOST_POSES: Final = 100
 """Poses of a sweep, which would hide each other long before."""
@@ -31,10 +32,11 @@ GHOST: Final = (0.28, 0.50)
 def plan(plan: Any, *, poses: int = 7, ax: Any | None = None, title: str = "") -> list[Any]:
     """Draw a plan: the arm at poses along its path, the path of its tip, and the scene.
 
-    plan: a Plan with a path. The arm at the goal is opaque; at the start and at poses between, at equal
-    distances along the path, it is transparent, blue at the start and green before the goal. Balls on the
-    path of the tip are the corners. Objects that the robot carries move with it. Obstacles that hide much of
-    the motion are transparent. poses: how many, start and goal included. ax: 3-D axes. Returns the artists.
+    plan: a Plan with a path, of a Robot that is a chain. The arm is opaque at the goal, and transparent at
+    the start and at poses between, which have equal distances along the path: blue at the start, then towards
+    green. Balls on the path of the tip are the corners. Objects that the robot carries move with it.
+    Obstacles that hide much of the motion are transparent. poses: how many, start and goal included. ax: 3-D
+    axes. Returns the artists.
     Raises InputTypeError for what is not a Plan, InputError for one without a path and for fewer than two
     poses, MissingExtraError without matplotlib.
     """
@@ -48,15 +50,17 @@ def plan(plan: Any, *, poses: int = 7, ax: Any | None = None, title: str = "") -
         raise InputTypeError("the plan was made for a RobotGeometry; plan with a Robot to draw it")
     rows = equal_steps(plan.path, count)
     drawn = [make_skeleton(robot, q) for q in rows]
+    carried = [carried_shapes(robot, q, scene) for q in rows]
     tip = np.asarray(robot.fk(equal_steps(plan.path, PIECES)))[:, :3, 3]
+    shown = np.concatenate([tip, *map(box_ends, carried)])
     axes = space_axes(ax)
-    set_stage(axes, drawn, [drawn[0].T_tip, drawn[-1].T_tip], () if scene is None else scene.obstacles, tip)
+    set_stage(axes, drawn, [drawn[0].T_tip, drawn[-1].T_tip], () if scene is None else scene.obstacles, shown)
     groups = [] if scene is None else obstacle_groups(axes, scene, drawn, tip)
-    for q, each, tint in zip(rows[:-1], drawn[:-1], sweep_colors(count - 1), strict=True):
-        carried = carried_bodies(axes, robot, q, scene, tint)
-        opacity = GHOST[each is drawn[0]]
-        groups.append(Group([*ghost_bodies(each, tint), *carried], opacity, shadow=each is drawn[0]))
-    groups.append(Group([*arm_bodies(drawn[-1]), *carried_bodies(axes, robot, rows[-1], scene)]))
+    for each, shapes, tint in zip(drawn[:-1], carried[:-1], sweep_colors(count - 1), strict=True):
+        first = each is drawn[0]
+        bodies = ghost_bodies(each, tint) + shape_bodies(axes, shapes, tint)
+        groups.append(Group(bodies, GHOST[first], shadow=first))
+    groups.append(Group(plain_bodies(drawn[-1]) + shape_bodies(axes, carried[-1], colors.CARRIED)))
     corners = np.asarray(robot.fk(plan.path))[:, :3, 3]
     groups.append(Group(tip_bodies(tip, corners, TUBE * drawn[0].length), shadow=False))
     return draw_groups(axes, groups) + stage.write_title(axes, title)
@@ -74,11 +78,6 @@ def sweep_colors(count: int) -> list[Array]:
     """Colours from the start of a motion to its goal."""
     first, last = (colors.color_of_oklch(0.66, 0.145, hue) for hue in (252.0, 152.0))
     return [colors.mix_colors(first, tuple(last), share) for share in np.linspace(0.0, 1.0, count)]
-
-
-def ghost_bodies(drawn: Skeleton, tint: Array) -> list[Body]:
-    """The bodies of an arm in one colour, the links lighter than the joints."""
-    return [*solids_of(drawn, colors.mix_colors(tint, (1.0, 1.0, 1.0), 0.25), tint)]
 
 
 def tip_bodies(tip: Array, corners: Array, radius: float) -> list[Body]:

@@ -11,14 +11,16 @@ from cspace.arrays import Array, as_floats
 from cspace.collision import Scene
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
-from cspace.plot.arms import draw_groups, set_stage, solids_of
+from cspace.plot.arm_bodies import plain_bodies
+from cspace.plot.arm_stage import set_stage
 from cspace.plot.axes import space_axes
 from cspace.plot.obstacles import Blockers, bodies_of
 from cspace.plot.raytrace import stage
-from cspace.plot.raytrace.scene import Group
+from cspace.plot.raytrace.scene import Group, draw_groups
 from cspace.plot.raytrace.solids import Body, Solid
 from cspace.plot.raytrace.view import look_along
 from cspace.plot.skeleton import Skeleton, make_skeleton
+from cspace.shapes import Shape
 from cspace.spatial.poses import invert_pose, transform_points
 
 SHELL: Final = 0.55
@@ -43,14 +45,14 @@ def scene(
     """
     check_scene(scene)
     drawn = [] if robot is None else [make_skeleton(robot, one_row(robot, q))]
+    carried = [] if robot is None else carried_shapes(robot, q, scene)
     axes = space_axes(ax)
-    set_stage(axes, drawn, [each.T_tip for each in drawn], scene.obstacles)
+    set_stage(axes, drawn, [each.T_tip for each in drawn], scene.obstacles, box_ends(carried))
     groups = obstacle_groups(axes, scene, drawn)
     for each in drawn:
-        groups.append(Group([*arm_bodies(each), *carried_bodies(axes, robot, q, scene)]))
-        groups.append(
-            Group(stage.make_triads(np.stack([each.T_base, each.T_tip]), TRIAD * each.length), shadow=False)
-        )
+        groups.append(Group(plain_bodies(each) + shape_bodies(axes, carried, colors.CARRIED)))
+        frames = stage.make_triads(np.stack([each.T_base, each.T_tip]), TRIAD * each.length)
+        groups.append(Group(frames, shadow=False))
     return draw_groups(axes, groups) + stage.write_title(axes, title)
 
 
@@ -67,10 +69,10 @@ def spheres(
     check_scene(scene, optional=True)
     row = one_row(robot, q)
     shells = link_spheres(robot, row)
-    drawn = make_skeleton(robot, row)
+    drawn, carried = make_skeleton(robot, row), carried_shapes(robot, row, scene)
     axes = space_axes(ax)
     set_stage(axes, [drawn], [drawn.T_tip], () if scene is None else scene.obstacles, np.concatenate(shells))
-    groups = [Group([*arm_bodies(drawn), *carried_bodies(axes, robot, row, scene)], backdrop=True)]
+    groups = [Group(plain_bodies(drawn) + shape_bodies(axes, carried, colors.CARRIED), backdrop=True)]
     if scene is not None:
         groups += obstacle_groups(axes, scene, [drawn])
     for tint, balls in zip(colors.make_palette(len(shells)), shells, strict=True):
@@ -96,16 +98,11 @@ def one_row(robot: Any, q: Any) -> Array:
     return row
 
 
-def arm_bodies(drawn: Skeleton) -> list[Body]:
-    """The bodies of an arm in its own colours."""
-    return [*solids_of(drawn, np.array(colors.LINK), np.array(colors.JOINT))]
-
-
 def obstacle_groups(
     axes: Any, scene: Scene, drawn: Sequence[Skeleton], more: Array | None = None
 ) -> list[Group]:
     """The obstacles; those that hide much of the arms, or of more points (m, 3), are transparent."""
-    around, tint, shapes = picture_box(axes), np.array(colors.OBSTACLE), scene.obstacles
+    shapes = scene.obstacles
     points = (
         np.concatenate([each.points for each in drawn] + ([] if more is None else [more])) if drawn else None
     )
@@ -114,7 +111,7 @@ def obstacle_groups(
     solid: list[Body] = []
     glass = []
     for shape, share in zip(shapes, hides, strict=True):
-        bodies = bodies_of(shape, tint, around)
+        bodies = shape_bodies(axes, [shape], colors.OBSTACLE)
         if share > HIDDEN:
             glass.append(Group(bodies, GLASS))
         else:
@@ -122,18 +119,25 @@ def obstacle_groups(
     return [Group(solid, backdrop=True), *glass]
 
 
-def carried_bodies(
-    axes: Any, robot: Any, q: Any, scene: Scene | None, color: Any = colors.CARRIED
-) -> list[Body]:
-    """The bodies of the objects that a robot carries at a configuration."""
-    if scene is None or not scene.attached:
+def carried_shapes(robot: Any, q: Any, scene: Scene | None) -> list[Shape]:
+    """The objects that a robot carries, where they are at a configuration."""
+    if scene is None:
         return []
-    around, tint = picture_box(axes), np.array(color)
     return [
-        body
+        scene[name].placed(robot.fk(q, each.frame) @ each.T_frame_object)
         for name, each in scene.attached.items()
-        for body in bodies_of(scene[name].placed(robot.fk(q, each.frame) @ each.T_frame_object), tint, around)
     ]
+
+
+def box_ends(shapes: Sequence[Shape]) -> Array:
+    """The lower and upper corners (2 n, 3) of the boxes around shapes."""
+    return np.concatenate([np.zeros((0, 3)), *(shape.bounds for shape in shapes)])
+
+
+def shape_bodies(axes: Any, shapes: Sequence[Shape], color: Any) -> list[Body]:
+    """The bodies of shapes in one colour."""
+    around, tint = picture_box(axes), np.asarray(color)
+    return [body for shape in shapes for body in bodies_of(shape, tint, around)]
 
 
 def picture_box(axes: Any) -> Array:

@@ -97,3 +97,10 @@ def scene_of(axes: Any, floor: Floor | None = None) -> Any:
     artist = artist_type()(Scene(floor))
     axes.add_artist(artist)
     return artist
+
+
+def draw_groups(ax: Any, groups: list[Group]) -> list[Any]:
+    """Add groups of solids to the picture of the axes."""
+    artist = scene_of(ax)
+    artist.scene.groups += groups
+    return [artist]
