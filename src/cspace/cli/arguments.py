@@ -19,8 +19,8 @@ OF_PI: Final = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?\*?pi(?:/(\d+(?:\.\d*)?
 NEGATIVE_AXES: Final = frozenset({"-x", "-y", "-z"})
 NO_VALUE: Final = re.compile(r"(--[\w-]+=|-[a-z]=?)--")
 """An option with -- for its value, of which argparse makes none."""
-LENGTHS: Final = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
-"""The units of lengths [m]; of those that fit the end of a word the first counts."""
+LENGTHS: Final = {"mm": 1000.0, "cm": 100.0, "m": 1.0}
+"""The units of lengths, in units per metre; of those that fit the end of a word the first counts."""
 OPEN: Final = "any"
 """What is typed for a coordinate that does not matter."""
 
@@ -110,7 +110,7 @@ def read_length(text: str) -> float:
     """A length [m], or with its unit: 0.005, 5mm, 0.5cm."""
     word = text.strip()
     unit = next((unit for unit in LENGTHS if word.lower().endswith(unit)), "")
-    return read_number(word[: len(word) - len(unit)]) * LENGTHS.get(unit, 1.0)
+    return read_number(word[: len(word) - len(unit)]) / LENGTHS.get(unit, 1.0)
 
 
 def read_seed(text: str) -> int:
