@@ -130,6 +130,13 @@ def cast_rays() -> Call:
     return lambda: cs.navigation.cast_rays(world, np.full((len(angles), 2), 3.5), angles)
 
 
+@call
+def cover() -> Call:
+    corners = np.random.default_rng(1).normal(size=(200, 3))
+    hull = cs.Hull(corners)
+    return lambda: cs.shapes.cover_mesh(hull, 0.02, cache=False)
+
+
 def batch(name: str, rows: int, use: Callable[[Any, Any, Any], Any]) -> Callable[[], Call]:
     """A call over rows of configurations and their poses, of which there are only some different ones."""
 

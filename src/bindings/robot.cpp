@@ -1,8 +1,10 @@
-// The type behind cspace.Robot: its kinematics, and the solver that its `ik` asks.
+// The type behind cspace.Robot: its kinematics, the solver of its `ik` and the checks of its `collides`.
+#include <cmath>
 #include <cstring>
 #include <string>
 
 #include "bindings.hpp"
+#include "collision.hpp"
 #include "ik.hpp"
 
 namespace {
@@ -10,10 +12,13 @@ namespace {
 struct RobotObject {
     KinematicsObject kinematics;
     PyObject* solver;  // null until the first call of ik; never replaced
+    // The scene that was checked last and its CollisionChecker, without a margin; null before.
+    PyObject *scene, *checker;
 };
 RobotObject* robot_of(PyObject* self) { return reinterpret_cast<RobotObject*>(self); }
 
-using Slots = Collected<RobotObject, free_kinematics, &RobotObject::solver>;
+using Slots =
+    Collected<RobotObject, free_kinematics, &RobotObject::solver, &RobotObject::scene, &RobotObject::checker>;
 
 // The property `solver` of the Python class builds the solver and leaves it in `_solver`.
 PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
@@ -40,13 +45,63 @@ int set_solver(PyObject* self, PyObject* value, void*) {
     return 0;
 }
 
+// The answer for one configuration in the scene that was checked last; null, without an error, for other
+// calls.
+PyObject* collides_in_last_scene(RobotObject* robot, PyObject* const* args, Py_ssize_t nargs) {
+    if (!robot->checker || nargs < 1 || nargs > 2 || (nargs == 2 ? args[1] : Py_None) != robot->scene)
+        return nullptr;
+    const auto& checker = *nanobind::inst_ptr<cspace::collision::Checker>(robot->checker);
+    ConstDoubles q;
+    if (!q.read(args[0]) || q.ndim() != 1 || q.size != checker.dof() || !checker.takes(q.data))
+        return nullptr;
+    const auto memory = checker.borrow_workspace();
+    return Py_NewRef(checker.is_free(q.data, *memory) ? Py_False : Py_True);
+}
+PyObject* robot_collides(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+    return or_error([&]() -> PyObject* {
+        if (!kwnames)
+            if (PyObject* known = collides_in_last_scene(robot_of(self), args, nargs)) return known;
+        const nanobind::object check = nanobind::module_::import_("cspace.collision").attr("collides");
+        const Py_ssize_t named = kwnames ? PyTuple_GET_SIZE(kwnames) : 0;
+        std::vector<PyObject*> all = {self};
+        all.insert(all.end(), args, args + nargs + named);
+        return PyObject_Vectorcall(check.ptr(), all.data(), std::size_t(nargs) + 1, kwnames);
+    });
+}
+// (scene, CollisionChecker)
+int set_checked(PyObject* self, PyObject* value, void*) {
+    PyObject *scene = nullptr, *checker = nullptr;
+    if (!value || !PyTuple_Check(value) || !PyArg_ParseTuple(value, "OO", &scene, &checker) ||
+        !nanobind::isinstance<cspace::collision::Checker>(checker)) {
+        PyErr_Clear();
+        PyErr_SetString(PyExc_TypeError, "what was checked is a scene and a CollisionChecker");
+        return -1;
+    }
+    Py_XSETREF(robot_of(self)->scene, Py_NewRef(scene));
+    Py_XSETREF(robot_of(self)->checker, Py_NewRef(checker));
+    return 0;
+}
+PyObject* get_checked(PyObject* self, void*) {
+    RobotObject* robot = robot_of(self);
+    return robot->checker ? PyTuple_Pack(2, robot->scene, robot->checker) : Py_NewRef(Py_None);
+}
+const char collides_doc[] =
+    "collides(q, scene=None, *, margin=0.0, threads=None)\n--\n\n"
+    "Whether the robot touches an obstacle or itself at q (..., dof) [rad or m].\n\n"
+    "Returns a bool, for a batch an array (...) of bool. scene: None for self-collision alone. margin [m]:\n"
+    "everything closer than this counts as touching. threads: 0 for all. See collision.collides, which also\n"
+    "names the errors.";
+
 // A signature begins with the name of its method.
 const std::string ik_doc = "ik" + std::string(solve_doc).substr(std::strlen("solve"));
 
-PyMethodDef robot_methods[] = {{"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, ik_doc.c_str()},
-                               {nullptr, nullptr, 0, nullptr}};
+PyMethodDef robot_methods[] = {
+    {"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, ik_doc.c_str()},
+    {"collides", as_method(&robot_collides), METH_FASTCALL | METH_KEYWORDS, collides_doc},
+    {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef robot_attributes[] = {
     {"_solver", &get_solver, &set_solver, "The solver, None before it is built; set once.", nullptr},
+    {"_checked", &get_checked, &set_checked, "The scene checked last with its checker, or None.", nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
 PyType_Slot robot_slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_kinematics)},
                              {Py_tp_dealloc, reinterpret_cast<void*>(&Slots::destroy)},

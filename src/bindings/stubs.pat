@@ -30,6 +30,16 @@ cspace._core.RobotBase.ik$:
     def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Any = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         \doc
 
+cspace._core.RobotBase.collides$:
+    def collides(self, q: ArrayLike, scene: Any = None, *, margin: float = 0.0, threads: int | None = None) -> Any:
+        \doc
+
+cspace._core.RobotBase._checked:
+    @property
+    def _checked(self) -> Any: ...
+    @_checked.setter
+    def _checked(self, value: Any) -> None: ...
+
 cspace._core.RobotBase._solver:
     @property
     def _solver(self) -> Any: ...

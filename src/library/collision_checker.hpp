@@ -60,6 +60,9 @@ class Checker {
     // Whether 2π more in a coordinate changes nothing.
     bool has_period(int coordinate) const { return shifts_[std::size_t(coordinate)]; }
 
+    // Whether checks are made for a configuration (dof,): its numbers are finite, not too large, and no
+    // prismatic joint is beyond its limits.
+    bool takes(const double* q) const { return robot_->takes(q); }
     // One configuration (dof,); false and w.contact if something touches.
     bool is_free(const double* q, WorkspaceMemory& memory) const;
     // Rows of configurations (n, dof): collides[i] is 1 where something touches. On so many threads (0: all).

@@ -94,9 +94,13 @@ RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, st
       given_pairs_(pairs.begin(), pairs.end()) {
     view_.n_coordinates = n_coordinates;
     check_order(joints, link_bodies, spheres, pairs);
+    constexpr double largest = 1e12;  // of an angle
+    range_.assign(std::size_t(n_coordinates), {-largest, largest});
     double reach = 0;
     for (const model::Joint& joint : joints) {
         joints_.push_back(rounded_joint(joint));
+        const std::size_t k = std::size_t(joint.coordinate);
+        if (joint.prismatic) range_[k] = {lower[k], upper[k]};
         const Vec3d& p = joint.T_parent_joint.t;
         reach += std::hypot(p.x, p.y, p.z) + travel_of(joint, lower, upper);
     }

@@ -33,6 +33,12 @@ class RobotData {
     std::span<const model::Joint> given_joints() const { return given_joints_; }
     std::span<const Sphere> given_spheres() const { return given_spheres_; }
     std::span<const std::pair<int, int>> given_pairs() const { return given_pairs_; }
+    // Whether each coordinate is inside the range that checks are made for.
+    bool takes(const double* q) const {
+        for (std::size_t k = 0; k < range_.size(); ++k)
+            if (!(q[k] >= range_[k].first && q[k] <= range_[k].second)) return false;
+        return true;
+    }
 
   private:
     Robot view_ = {};
@@ -40,6 +46,7 @@ class RobotData {
     std::vector<model::Joint> given_joints_;
     std::vector<Sphere> given_spheres_;
     std::vector<std::pair<int, int>> given_pairs_;
+    std::vector<std::pair<double, double>> range_;  // of each coordinate
     std::vector<Joint> joints_;
     std::vector<Body> bodies_;
     std::vector<Link> links_;

@@ -166,6 +166,26 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             }
         ]
     },
+    "cspace.space/1": {
+        "robot": TEXT,
+        "scene": TEXT,
+        "link_radius": NUMBER,
+        "obstacles": [TEXT],
+        "lower": VECTOR,
+        "upper": VECTOR,
+        "wraps": [bool],
+        "components": [
+            {"area": NUMBER, "area_bounds": VECTOR, "point": VECTOR, "region": int, "proved": bool}
+        ],
+        "boundaries": [{"kind": TEXT, "obstacle": TEXT, "points": MATRIX}],
+        "start": LIST_OR_NULL,
+        "goals": MATRIX,
+        "status": TEXT_OR_NULL,
+        "reason": TEXT_OR_NULL,
+        "path": MATRIX,
+        "length": NUMBER_OR_NULL,
+        "written": [TEXT],
+    },
     "cspace.export/1": {
         "language": TEXT,
         "name": TEXT,

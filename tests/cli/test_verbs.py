@@ -23,6 +23,7 @@ LINES = {
     "nav": f"nav {ROOT}/examples/yard.txt --start 1 1 --goal 9 9",
     "plan": "plan ur5e --geometry skeleton --from home --to up",
     "planners": "planners rrt",
+    "space": f"space planar_2r --scene {ROOT}/examples/two_links.txt --from -0.3 0.5 --to -1.2 1.25",
     "doctor": "doctor",
 }
 Q = [0.1, -1.2, 1.0, 0.2, 0.4, 0.3]

@@ -18,8 +18,8 @@ PYTHON_ALONE = {"ik/explain", "ik/goals", "model/mjcf"}
 """Packages of words: files, names and sentences, with no loop of their own."""
 NO_ROOM = {"module", "bindings", "arrays", "numpy_api", "dispatch", "once"}
 """What all bindings or all kernels share."""
-PAGES = {"model": "robots"}
-"""Pages that speak of two rooms."""
+PAGES = {"model": "robots", "planning": "two-joint-space"}
+"""Pages that have another name than their room."""
 NO_PAGE = {"math", "search"}
 """What the rooms above are made of."""
 

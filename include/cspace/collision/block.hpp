@@ -179,7 +179,7 @@ class Block {
                 const Place* all = static_cast<Place*>(w.sphere_places);
                 for (int k = 0; k < count; ++k) {
                     const int other = w.near_spheres[k];
-                    marks.add(square_distance(at, all[other]), r + robot.spheres[other].r);
+                    compare_balls(p, at, all[other], r + robot.spheres[other].r, motion, marks);
                 }
                 if (settle(marks) && motion.is_done(*this))
                     return record_pair(links, group.first + s, at, r, count);
@@ -253,6 +253,19 @@ class Block {
             if constexpr (Motion::is_moving) near = near | (gap < square_of(growth, r));
         }
     };
+    // A sphere of body b of a pair against one of body a. The growth bounds the motion first; where it does
+    // not suffice, the part of the motion that brings them nearer.
+    template <class Motion>
+    CSPACE_INLINE void compare_balls(int p, const Place& at, const Place& other, float r,
+                                     const Motion& motion, Marks<Motion>& marks) {
+        const Floats gap = square_distance(at, other);
+        marks.touching = marks.touching | (gap < fill_floats(r * r));
+        if constexpr (Motion::is_moving) {
+            const FloatMask near = gap < square_of(marks.growth, r);
+            if (bits_of(near) & wanted)
+                marks.near = marks.near | (near & motion.may_approach(p, at, other, gap, r));
+        }
+    }
     template <class Motion>
     CSPACE_INLINE bool settle(const Marks<Motion>& marks) {
         if constexpr (Motion::is_moving) unsure |= bits_of(marks.near) & wanted;

@@ -104,10 +104,21 @@ class EdgeCheck {
                    edge.width_2_ * edge.w_.kappa[x];
         }
         CSPACE_INLINE Floats pair_growth(int p, const Place& at) const {
+            return norm(velocity_in_pair(p, at)) * edge.width_ + edge.width_2_ * edge.w_.pair_kappa[p];
+        }
+        CSPACE_INLINE Velocity velocity_in_pair(int p, const Place& at) const {
             const BodyPair& pair = edge.robot_.pairs[p];
-            const Floats speed = relative_speed(block.frames[pair.a], block.rates[pair.a],
-                                                block.frames[pair.b], block.rates[pair.b], at);
-            return speed * edge.width_ + edge.width_2_ * edge.w_.pair_kappa[p];
+            return relative_velocity(block.frames[pair.a], block.rates[pair.a], block.frames[pair.b],
+                                     block.rates[pair.b], at);
+        }
+        // Where a ball of body b may come as near to one of body a as r: only the part of its velocity along
+        // the line between them counts, for the other ball is convex.
+        CSPACE_INLINE FloatMask may_approach(int p, const Place& at, const Place& other, Floats gap,
+                                             float r) const {
+            const Velocity v = velocity_in_pair(p, at);
+            const Floats along = (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
+            const Floats distance = sqrt(gap), left = distance - r - edge.width_2_ * edge.w_.pair_kappa[p];
+            return distance * left < abs(along) * edge.width_;
         }
         // An upper bound of pair_growth at all places on body b.
         CSPACE_INLINE Floats pair_bound(int p) const {
@@ -208,8 +219,10 @@ class EdgeCheck {
     }
     template <class Motion>
     bool test_first_block(const Motion& motion, float covered) {
-        bound_motion(robot_.levers, robot_.body_stride, w_.kappa, w_.reach);
-        bound_motion(robot_.pair_levers, robot_.pair_stride, w_.pair_kappa, w_.pair_reach);
+        if (Motion::is_moving || covered > 0) {  // a configuration alone does not move
+            bound_motion(robot_.levers, robot_.body_stride, w_.kappa, w_.reach);
+            bound_motion(robot_.pair_levers, robot_.pair_stride, w_.pair_kappa, w_.pair_reach);
+        }
         find_near(covered);
         is_first_ = true;
         const bool is_blocked = test_all(motion);

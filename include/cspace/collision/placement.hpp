@@ -115,16 +115,15 @@ CSPACE_INLINE Velocity velocity_at(const Frame& frame, const Rate& rate, const P
             rate.u[1] + (rate.w[2] * d[0] - rate.w[0] * d[2]),
             rate.u[2] + (rate.w[0] * d[1] - rate.w[1] * d[0])};
 }
-CSPACE_INLINE Floats speed_at(const Frame& frame, const Rate& rate, const Place& at) {
-    const Velocity v = velocity_at(frame, rate, at);
-    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-}
-// The speed of a place on one body as seen from another.
-CSPACE_INLINE Floats relative_speed(const Frame& seen_from, const Rate& its_rate, const Frame& frame,
-                                    const Rate& rate, const Place& at) {
+// The velocity of a place on one body as seen from another.
+CSPACE_INLINE Velocity relative_velocity(const Frame& seen_from, const Rate& its_rate, const Frame& frame,
+                                         const Rate& rate, const Place& at) {
     const Velocity v = velocity_at(frame, rate, at), w = velocity_at(seen_from, its_rate, at);
-    const Floats x = v.x - w.x, y = v.y - w.y, z = v.z - w.z;
-    return sqrt(x * x + y * y + z * z);
+    return {v.x - w.x, v.y - w.y, v.z - w.z};
+}
+CSPACE_INLINE Floats norm(const Velocity& v) { return sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+CSPACE_INLINE Floats speed_at(const Frame& frame, const Rate& rate, const Place& at) {
+    return norm(velocity_at(frame, rate, at));
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA

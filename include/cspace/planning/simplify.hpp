@@ -3,6 +3,7 @@
 // needs no check, so every step leaves a path as good as the one before.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -18,8 +19,10 @@ class Simplifier {
   public:
     static constexpr std::size_t most_coordinates = 64;
     static constexpr int most_rounds = 4;
-    // Of a shortcut and of a pulled corner, and of a round: as a share of the length of the path.
-    static constexpr double least_gain = 0.005, least_round_gain = 0.01;
+    // As a share of the length of the path: of a pulled corner, and of a shortcut where corners are few; of a
+    // shortcut per number of corners, and where they are many; of a round.
+    static constexpr double least_gain = 0.005, gain_per_corner = 0.02, finest_gain = 0.001;
+    static constexpr double least_round_gain = 0.01;
     // So many shortcuts in a row may fail, and so many per corner where there are more.
     static constexpr int least_failures = 8, failures_per_corner = 4;
     // How far a corner is pulled towards the straight line past it.
@@ -91,7 +94,8 @@ class Simplifier {
         interpolate(path_, a, p.data());
         interpolate(path_, b, q.data());
         const double gain = to - from - row_distance(p.data(), q.data(), path_.width());
-        if (gain < least_gain * arcs_.total() || !space_.is_free(p.data(), q.data())) return false;
+        const double share = std::clamp(gain_per_corner / double(path_.size() - 2), finest_gain, least_gain);
+        if (gain < share * arcs_.total() || !space_.is_free(p.data(), q.data())) return false;
         shorter_.clear();
         shorter_.append(path_.row(0), Path::checked);
         for (std::size_t i = 1; i <= a.edge; ++i) shorter_.append(path_.row(i), path_.source(i - 1));

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import permutations
 from typing import Final
 
 import numpy as np
@@ -41,6 +42,7 @@ class Checker:
     core: CollisionChecker
     robot: CheckedRobot
     obstacles: tuple[str, ...]
+    margin: float
 
     def name_pair(self, found: tuple[bool, int, int]) -> tuple[str, str]:
         """The names of a contact: a link, and an obstacle or another link."""
@@ -91,15 +93,15 @@ def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checke
     ).astype(np.int64)
     core = CollisionScene(packed.boxes, capsules, packed.cylinders, packed.half_spaces, owners)
     number = {name: k for k, name in enumerate(packed.names)}
-    touching = touching_pairs(scene)
+    links = {name: k for k, name in enumerate(robot.links)}
     allowed = [
-        (k, number[other])
-        for k, link in enumerate(robot.links)
-        for other in number
-        if frozenset((link, other)) in touching
+        (links[a], number[b])
+        for pair in touching_pairs(scene)
+        for a, b in permutations(pair)
+        if a in links and b in number
     ]
     pairs = np.array(allowed, dtype=np.int64).reshape(-1, 2)
-    return Checker(CollisionChecker(robot.core, core, margin, pairs), robot, packed.names)
+    return Checker(CollisionChecker(robot.core, core, margin, pairs), robot, packed.names, margin)
 
 
 def refuse_unread(packed: PackedScene) -> None:

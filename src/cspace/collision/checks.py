@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from math import prod
 from typing import Any, Protocol
@@ -9,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cspace._core import RobotBase
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.collision.checker import checker_of
 from cspace.collision.robot_geometry import RobotGeometry
@@ -17,6 +19,9 @@ from cspace.errors import InputError
 from cspace.kinematics.batch import thread_count
 from cspace.tables import one_line, show_fields, shown
 from cspace.tolerances import LARGEST_NUMBER
+
+MOST_CAUSES = 3
+"""Pairs that an explanation names."""
 
 
 class HasGeometry(Protocol):
@@ -94,6 +99,8 @@ def collides(
     geometry = robot.collision
     checker = checker_of(geometry, scene, margin)
     rows = as_configurations(geometry, q)
+    if checker.margin == 0.0 and isinstance(robot, RobotBase):
+        robot._checked = (scene, checker.core)
     if rows.ndim == 1:
         return checker.core.find_contact(rows) is not None
     count = thread_count(threads, rows.shape[:-1])
@@ -167,6 +174,15 @@ def edge(
         reason = "the motion passes an obstacle too closely to prove it free; add clearance or a margin"
         return Edge(verdict, False, float("nan"), None, reason)
     return Edge(verdict, resolution is None, float("nan"), None, "")
+
+
+def explain_contacts(robot: HasGeometry, rows: Array, scene: Scene | None, margin: float = 0.0) -> str:
+    """What configurations (n, dof) touch, the most frequent pairs first, in words."""
+    checker = checker_of(robot.collision, scene, margin)
+    found = (checker.core.find_contact(q) for q in rows)
+    pairs = Counter(" touches ".join(checker.name_pair(pair)) for pair in found if pair is not None)
+    named = ", ".join(f"{name} ({n})" for name, n in pairs.most_common(MOST_CAUSES))
+    return named + (" and others" if len(pairs) > MOST_CAUSES else "")
 
 
 def as_configurations(geometry: RobotGeometry, q: ArrayLike, subject: str = "q") -> Array:

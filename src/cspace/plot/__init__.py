@@ -7,6 +7,7 @@ Needs the extra `[plot]` (matplotlib), which is imported when a function is firs
 from __future__ import annotations
 
 from cspace.plot.arms import robot, solutions
+from cspace.plot.configuration_space import configuration_space
 from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
@@ -28,4 +29,4 @@ __all__ = [
     "workspace",
 ]
 __all__ += ["coverage", "drive", "world"]
-__all__ += ["plan", "scene", "spheres", "surface"]
+__all__ += ["configuration_space", "plan", "scene", "spheres", "surface"]
