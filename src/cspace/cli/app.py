@@ -44,6 +44,7 @@ SHELL_WORDS: Final[Mapping[str, str]] = MappingProxyType(
         "cs.robots.search()": "cspace robots WORD",
         "robot.with_spheres(…)": "--spheres FILE",
         'load the robot with geometry="skeleton"': "--geometry skeleton",
+        "robot.escape leads away from there": "move it away from there",
     }
 )
 """What messages of the library say for Python, and what is typed instead."""

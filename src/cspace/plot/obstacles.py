@@ -28,7 +28,7 @@ from cspace.spatial.vectors import frame_along
 MOST_POINTS: Final = 1500
 """Points of a cloud that are drawn; of more, so many are taken at equal distances in their list."""
 MOST_FACES: Final = 4000
-"""Triangles of a mesh that are drawn; a larger mesh is drawn as its convex hull."""
+"""Triangles of a mesh that are drawn; of a larger one the convex hull, or of an open surface some."""
 POINT_SIZE: Final = 0.006
 """Least radius of a drawn point, as a share of the size of the picture."""
 UPRIGHT: Final = 0.999
@@ -90,13 +90,15 @@ def triangles_of(shape: Any) -> Array:
     """The triangles (m, 3, 3) [m] of a hull, a mesh or a height field; an open surface has both sides."""
     if isinstance(shape, HeightField):
         return transform_points(shape.pose, coarser_field(shape).triangles)
-    if isinstance(shape, Mesh) and len(shape.faces) > MOST_FACES:
+    is_open = isinstance(shape, Mesh) and not shape.closed
+    if isinstance(shape, Mesh) and not is_open and len(shape.faces) > MOST_FACES:
         shape = shape.hull()
     faces = shape.facets if isinstance(shape, Hull) else shape.faces
     triangles = transform_points(shape.pose, shape.vertices)[faces]
-    if isinstance(shape, Mesh) and not shape.closed:
-        triangles = np.concatenate([triangles, triangles[:, ::-1]])
-    return triangles
+    if not is_open:
+        return triangles
+    some = triangles[np.linspace(0, len(faces) - 1, min(len(faces), MOST_FACES // 2)).astype(np.intp)]
+    return np.concatenate([some, some[:, ::-1]])
 
 
 def coarser_field(shape: HeightField) -> HeightField:
