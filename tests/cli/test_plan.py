@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import time
 
 import numpy as np
@@ -213,13 +214,17 @@ def test_progress_appears_at_a_terminal_after_a_while_and_is_erased(monkeypatch)
     monkeypatch.setattr(progress, "PERIOD", 0.02)
     monkeypatch.setattr("sys.stderr", stream := Terminal())
     with progress.show_progress("planning"):
-        time.sleep(0.1)
-    assert stream.getvalue().startswith(f"{progress.CLEAR}planning … 0 s")
+        end = time.monotonic() + 20
+        while not stream.getvalue() and time.monotonic() < end:
+            time.sleep(0.01)
+    assert re.match(rf"{re.escape(progress.CLEAR)}planning … \d+ s", stream.getvalue())
     assert stream.getvalue().endswith(progress.CLEAR)
+    monkeypatch.setattr(progress, "PATIENCE", 20.0)
     monkeypatch.setattr("sys.stderr", stream := Terminal())
     with progress.show_progress("planning"):
         pass
     assert stream.getvalue() == "", "what is quick shows nothing"
+    monkeypatch.setattr(progress, "PATIENCE", 0.02)
     monkeypatch.setattr("sys.stderr", stream := io.StringIO())
     with progress.show_progress("planning"):
         time.sleep(0.1)
