@@ -12,6 +12,8 @@ from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
+from cspace.plot.plans import plan
+from cspace.plot.scenes import scene, spheres
 from cspace.plot.vehicles import coverage, drive
 from cspace.plot.worlds import animation, route, routes, world
 
@@ -27,4 +29,4 @@ __all__ = [
     "workspace",
 ]
 __all__ += ["coverage", "drive", "world"]
-__all__ += ["configuration_space", "surface"]
+__all__ += ["configuration_space", "plan", "scene", "spheres", "surface"]
