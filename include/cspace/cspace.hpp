@@ -52,4 +52,5 @@
 #include "cspace/planning/simplify.hpp"
 #include "cspace/shapes/distance.hpp"
 #include "cspace/shapes/smallest_ball.hpp"
+#include "cspace/shapes/triangle.hpp"
 #include "cspace/version.hpp"

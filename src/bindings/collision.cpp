@@ -49,17 +49,36 @@ std::shared_ptr<RobotData> make_robot(const ConstDoubles& joints, const ConstDou
                                        bodies, balls, read_pairs(pairs));
 }
 
+std::vector<int> read_integers(const Integers& given) { return {given.data, given.data + given.size}; }
+
+// Sums of numbers that are all positive.
+npy_intp add_sizes(const std::vector<int>& sizes) {
+    npy_intp sum = 0;
+    for (const int size : sizes) {
+        require(size > 0, "every mesh needs a triangle");
+        sum += size;
+    }
+    return sum;
+}
+
 std::shared_ptr<SceneData> make_scene(const ConstDoubles& boxes, const ConstDoubles& capsules,
                                       const ConstDoubles& cylinders, const ConstDoubles& half_spaces,
-                                      const Integers& owners) {
+                                      const ConstDoubles& triangles, const Integers& mesh_sizes,
+                                      const Integers& is_solid, const Integers& owners) {
     const auto rows = [](const ConstDoubles& given, npy_intp width) {
         require(given.ndim() == 2 && given.shape(1) == width, "primitives have rows of another width");
         return std::span(given.data, std::size_t(given.size));
     };
-    const std::vector<int> numbers(owners.data, owners.data + owners.size);
-    const Primitives given = {rows(boxes, 15), rows(capsules, 7), rows(cylinders, 8), rows(half_spaces, 4),
-                              numbers};
-    require(boxes.shape(0) + capsules.shape(0) + cylinders.shape(0) + half_spaces.shape(0) == owners.size,
+    const std::vector<int> sizes = read_integers(mesh_sizes), solid = read_integers(is_solid);
+    const std::vector<int> numbers = read_integers(owners);
+    const Primitives given = {rows(boxes, 15),       rows(capsules, 7), rows(cylinders, 8),
+                              rows(half_spaces, 4),  rows(triangles, 9), sizes,
+                              solid, numbers};
+    require(add_sizes(sizes) == triangles.shape(0) && solid.size() == sizes.size(),
+            "every triangle needs a mesh");
+    require(boxes.shape(0) + capsules.shape(0) + cylinders.shape(0) + half_spaces.shape(0) +
+                    npy_intp(sizes.size()) ==
+                owners.size,
             "every primitive needs an owner");
     return std::make_shared<SceneData>(given);
 }
@@ -113,7 +132,8 @@ void bind_collision(nb::module_& m) {
         .def(nb::new_(&make_robot), "joints"_a, "bounds"_a, "link_bodies"_a, "spheres"_a, "sphere_links"_a,
              "pairs"_a);
     nb::class_<SceneData>(m, "CollisionScene", "Obstacles in the frame of a robot's base.")
-        .def(nb::new_(&make_scene), "boxes"_a, "capsules"_a, "cylinders"_a, "half_spaces"_a, "owners"_a);
+        .def(nb::new_(&make_scene), "boxes"_a, "capsules"_a, "cylinders"_a, "half_spaces"_a, "triangles"_a,
+             "mesh_sizes"_a, "is_solid"_a, "owners"_a);
     nb::class_<Checker>(m, "CollisionChecker", "A robot among obstacles.")
         .def(nb::new_([](std::shared_ptr<const RobotData> robot, std::shared_ptr<const SceneData> scene,
                          double margin, const Integers& allowed) {

@@ -40,7 +40,8 @@ class Search {
         for (std::size_t s = 0; s < spheres.size(); ++s)
             for (int i = 0; i < scene_.n; ++i) {
                 if (scene_.allowed && scene_.allowed[spheres[s].link * scene_.n + i]) continue;
-                const shapes::Distance d = data_.distance(i, centers_[s]);
+                const double limit = result_.distance + spheres[s].radius + tolerance::same_distance;
+                const shapes::Distance d = data_.distance(i, centers_[s], limit);
                 offer({spheres[s].link, i, false, 0}, d.value - spheres[s].radius, d.normal, centers_[s],
                       spheres[s].link, centers_[s], -1);
             }

@@ -95,14 +95,17 @@ SceneData::SceneData(const Primitives& given)
         }
         add_bounds(low, high, half_space.radius);
     }
+    add_meshes(given);
     view_ = {boxes_.data(),
              capsules_.data(),
              cylinders_.data(),
              half_spaces_.data(),
+             meshes_.data(),
              int(boxes_.size()),
              int(capsules_.size()),
              int(cylinders_.size()),
              int(half_spaces_.size()),
+             int(meshes_.size()),
              int(low_[0].size()),
              {low_[0].data(), low_[1].data(), low_[2].data()},
              {high_[0].data(), high_[1].data(), high_[2].data()},
@@ -111,7 +114,7 @@ SceneData::SceneData(const Primitives& given)
              0};
 }
 
-shapes::Distance SceneData::distance(int primitive, const Vec3d& point) const {
+shapes::Distance SceneData::distance(int primitive, const Vec3d& point, double limit) const {
     const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
     std::size_t i = std::size_t(primitive);
     if (i < boxes_.size()) {
@@ -129,15 +132,32 @@ shapes::Distance SceneData::distance(int primitive, const Vec3d& point) const {
         const double* row = &cylinder_rows_[8 * i];
         return shapes::distance_from_cylinder(point, vector(row), vector(row + 3), row[6], row[7]);
     }
-    const double* row = &half_space_rows_[4 * (i - cylinders_.size())];
-    return shapes::distance_from_half_space(point, vector(row), row[3]);
+    i -= cylinders_.size();
+    if (i < half_spaces_.size()) {
+        const double* row = &half_space_rows_[4 * i];
+        return shapes::distance_from_half_space(point, vector(row), row[3]);
+    }
+    return mesh_data_[i - half_spaces_.size()].distance(point, limit);
+}
+
+void SceneData::add_meshes(const Primitives& given) {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < given.mesh_sizes.size(); ++i) {
+        const std::size_t count = 9 * std::size_t(given.mesh_sizes[i]);
+        mesh_data_.emplace_back(given.triangles.subspan(first, count), given.is_solid[i] != 0);
+        first += count;
+    }
+    for (const MeshData& mesh : mesh_data_) {
+        meshes_.push_back(mesh.view());
+        const Bounds& box = mesh.bounds();
+        add_bounds({box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}, mesh.grown());
+    }
 }
 
 void SceneData::add_bounds(const double (&low)[3], const double (&high)[3], double grown) {
-    const double round_up = 2 * tolerance::float_rounding;
     for (int k = 0; k < 3; ++k) {
-        low_[k].push_back(float(low[k] - grown - round_up * std::fabs(low[k])));
-        high_[k].push_back(float(high[k] + grown + round_up * std::fabs(high[k])));
+        low_[k].push_back(round_low(low[k] - grown));
+        high_[k].push_back(round_high(high[k] + grown));
     }
 }
 

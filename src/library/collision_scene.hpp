@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "collision_mesh.hpp"
 #include "cspace/collision/scene.hpp"
 #include "cspace/shapes/distance.hpp"
 
@@ -11,10 +12,12 @@ namespace cspace::collision {
 
 // Rows of numbers [m]: boxes (15): centre, rotation row-major (columns: the axes), half sizes; capsules (7):
 // two ends, radius; cylinders (8): centre, unit axis, half length, radius; half spaces (4): outward unit
-// normal n, offset o (solid where n · x ≤ o). owners: the object of each primitive, in this order.
+// normal n, offset o (solid where n · x ≤ o); triangles (9): three corners, counter-clockwise from outside.
+// Mesh i has the next mesh_sizes[i] triangles; is_solid[i]: they enclose a solid, and corners that meet are
+// equal bit for bit. owners: the object of each box, capsule, cylinder, half space and mesh, in this order.
 struct Primitives {
-    std::span<const double> boxes, capsules, cylinders, half_spaces;
-    std::span<const int> owners;
+    std::span<const double> boxes, capsules, cylinders, half_spaces, triangles;
+    std::span<const int> mesh_sizes, is_solid, owners;
 };
 
 class SceneData {
@@ -22,8 +25,8 @@ class SceneData {
     explicit SceneData(const Primitives& given);
     const Scene& view() const { return view_; }  // without margins, and nothing allowed
     int owner(int primitive) const { return owners_[std::size_t(primitive)]; }
-    // The distance of a point from a primitive, in double.
-    shapes::Distance distance(int primitive, const Vec3d& point) const;
+    // The distance of a point from a primitive, in double; some distance beyond `limit` where it is larger.
+    shapes::Distance distance(int primitive, const Vec3d& point, double limit) const;
 
   private:
     std::vector<double> box_rows_, capsule_rows_, cylinder_rows_, half_space_rows_;
@@ -32,9 +35,12 @@ class SceneData {
     std::vector<Capsule> capsules_;
     std::vector<Cylinder> cylinders_;
     std::vector<HalfSpace> half_spaces_;
+    std::vector<MeshData> mesh_data_;
+    std::vector<Mesh> meshes_;
     std::vector<int> owners_;
     std::vector<float> low_[3], high_[3];
 
+    void add_meshes(const Primitives& given);
     void add_bounds(const double (&low)[3], const double (&high)[3], double grown);
 };
 

@@ -10,13 +10,6 @@
 
 namespace cspace::collision::inline CSPACE_ISA {
 
-inline constexpr unsigned all_lanes = (1u << float_lanes) - 1;
-
-// How far a ball may move: not at all.
-struct NoMotion {};
-CSPACE_INLINE Floats square_of(NoMotion, float r) { return fill_floats(r * r); }
-CSPACE_INLINE Floats square_of(Floats growth, float r) { return square(growth + r); }
-
 // A set of primitives, by number.
 struct Candidates {
     const int* begin;
@@ -93,7 +86,7 @@ class Block {
         for (int k = 0; k < from.count; ++k) {
             const int i = from.begin[k];
             float radius;
-            const Floats gap = square_gap(scene, i, at, radius);
+            const Floats gap = square_gap(scene, i, at, r, growth, radius);
             if (bits_of(gap < square_of(growth, r + radius)) & wanted) into[n++] = i;
         }
         return {into, n};
@@ -145,7 +138,7 @@ class Block {
             Marks<Motion> marks(motion.growth(x, at));
             for (int k = 0; k < near.count; ++k) {
                 float radius;
-                const Floats gap = square_gap(scene, near.begin[k], at, radius);
+                const Floats gap = square_gap(scene, near.begin[k], at, r, marks.growth, radius);
                 marks.add(gap, r + radius);
             }
             if (settle(marks) && motion.is_done(*this))
@@ -205,7 +198,7 @@ class Block {
         float radius;
         Floats gap;
         if (touch.other_body < 0) {
-            gap = square_gap(scene, touch.other, at, radius);
+            gap = square_gap(scene, touch.other, at, ball.r + scene.margin, NoMotion{}, radius);
             radius += ball.r + scene.margin;
         } else {
             const Ball& other = robot.spheres[touch.other];
@@ -277,7 +270,7 @@ class Block {
     CSPACE_COLD bool record_primitive(int l, int s, const Place& at, float r, Candidates near) {
         for (int k = 0; k < near.count; ++k) {
             float radius;
-            const Floats gap = square_gap(scene, near.begin[k], at, radius);
+            const Floats gap = square_gap(scene, near.begin[k], at, r, NoMotion{}, radius);
             if (!touches(gap, r + radius)) continue;
             const Contact contact = {l, near.begin[k], false, 0};
             return record_touch({robot.links[l].body, s, -1, near.begin[k], contact});

@@ -1,8 +1,7 @@
 // Squared distances of eight places from a primitive, 0 inside: the test of a ball against an obstacle.
 #pragma once
 
-#include "cspace/collision/placement.hpp"
-#include "cspace/collision/scene.hpp"
+#include "cspace/collision/mesh_gap.hpp"
 
 namespace cspace::collision::inline CSPACE_ISA {
 
@@ -36,8 +35,16 @@ CSPACE_INLINE Floats square_gap(const HalfSpace& half_space, const Place& at) {
     return square(clamp_positive(at.x * n[0] + (at.y * n[1] + at.z * n[2]) - half_space.offset));
 }
 
-// Of primitive i; `radius` receives what it is grown by.
-CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, float& radius) {
+// How far a ball may move: not at all.
+struct NoMotion {};
+CSPACE_INLINE Floats square_of(NoMotion, float r) { return fill_floats(r * r); }
+CSPACE_INLINE Floats square_of(Floats growth, float r) { return square(growth + r); }
+
+// Of primitive i; `radius` receives what it is grown by. Exact where a ball of radius r that may move by
+// `growth` touches the primitive, and beyond its reach elsewhere.
+template <class Growth>
+CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, float r, Growth growth,
+                                float& radius) {
     if (i < scene.n_boxes) {
         radius = scene.boxes[i].radius;
         return square_gap(scene.boxes[i], at);
@@ -53,8 +60,13 @@ CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, floa
         return square_gap(scene.cylinders[i], at);
     }
     i -= scene.n_cylinders;
-    radius = scene.half_spaces[i].radius;
-    return square_gap(scene.half_spaces[i], at);
+    if (i < scene.n_half_spaces) {
+        radius = scene.half_spaces[i].radius;
+        return square_gap(scene.half_spaces[i], at);
+    }
+    i -= scene.n_half_spaces;
+    radius = scene.meshes[i].radius;
+    return square_gap(scene.meshes[i], at, square_of(growth, r + radius));
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA
