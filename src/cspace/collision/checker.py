@@ -80,18 +80,7 @@ def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checke
     scene.check_links({*geometry.links, *geometry.frames}, geometry.frames, geometry.robot)
     robot = add_attached(geometry, scene)
     packed = pack_scene(scene, geometry.T_world_base)
-    refuse_unread(packed)
-    capsules = np.concatenate([packed.capsules, packed.points[:, [0, 1, 2, 0, 1, 2, 3]]])
-    owners = np.concatenate(
-        [
-            packed.box_object,
-            packed.capsule_object,
-            packed.point_object,
-            packed.cylinder_object,
-            packed.half_space_object,
-        ]
-    ).astype(np.int64)
-    core = CollisionScene(packed.boxes, capsules, packed.cylinders, packed.half_spaces, owners)
+    core = compile_scene(packed)
     number = {name: k for k, name in enumerate(packed.names)}
     links = {name: k for k, name in enumerate(robot.links)}
     allowed = [
@@ -104,14 +93,32 @@ def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checke
     return Checker(CollisionChecker(robot.core, core, margin, pairs), robot, packed.names, margin)
 
 
-def refuse_unread(packed: PackedScene) -> None:
-    """Complain about obstacles that checks do not read yet."""
-    for kind, owners in (("hull", packed.hull_object), ("mesh or height field", packed.mesh_object)):
-        if len(owners):
-            raise InputError(
-                f"{packed.names[owners[0]]!r} is a {kind}, which checks of robots do not read yet; use boxes,"
-                " spheres, capsules, cylinders, half spaces or point clouds, such as its cover by spheres"
-            )
+def compile_scene(packed: PackedScene) -> CollisionScene:
+    """The compiled obstacles."""
+    capsules = np.concatenate([packed.capsules, packed.points[:, [0, 1, 2, 0, 1, 2, 3]]])
+    owners = np.concatenate(
+        [
+            packed.box_object,
+            packed.capsule_object,
+            packed.point_object,
+            packed.cylinder_object,
+            packed.half_space_object,
+            packed.mesh_object,
+        ]
+    ).astype(np.int64)
+    triangles = [mesh.reshape(-1, 9) for mesh, _ in packed.meshes]
+    sizes = np.array([len(rows) for rows in triangles], dtype=np.int64)
+    is_solid = np.array([solid for _, solid in packed.meshes], dtype=np.int64)
+    return CollisionScene(
+        packed.boxes,
+        capsules,
+        packed.cylinders,
+        packed.half_spaces,
+        np.ascontiguousarray(np.concatenate([np.empty((0, 9)), *triangles])),
+        sizes,
+        is_solid,
+        owners,
+    )
 
 
 def touching_pairs(scene: Scene) -> set[frozenset[str]]:
