@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cspace/collision/mesh_gap.hpp"
+#include "cspace/collision/tree_gap.hpp"
 #include "cspace/math/interrupts.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -15,7 +15,6 @@ namespace {
 using shapes::Corners;
 
 constexpr int leaf_size = 2;  // triangles: a triangle takes as long as three boxes
-constexpr int most_levels = 64;
 
 double largest_number(std::span<const double> numbers) {
     double largest = 0;
@@ -92,15 +91,6 @@ Facet<S> make_facet(const Corners& t) {
     return facet;
 }
 
-double square_gap_of(const TreeNode& box, const double (&at)[3]) {
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-        const double beyond = std::max({double(box.low[k]) - at[k], at[k] - double(box.high[k]), 0.0});
-        sum += beyond * beyond;
-    }
-    return sum;
-}
-
 }  // namespace
 
 MeshData::MeshData(std::span<const double> triangles, bool is_solid) {
@@ -149,43 +139,16 @@ bool MeshData::contains(const Vec3d& point) const {
     return exits > 0.5;
 }
 
-// The number of the triangle that is nearest, and its nearest point; −1 if none is nearer than the limit.
-int MeshData::find_nearest(const Vec3d& point, double limit, Vec3d& nearest) const {
-    const double at[] = {point.x, point.y, point.z};
-    double least = limit * limit;
-    int found = -1;
-    struct Open {
-        int node;
-        double gap;
-    } open[most_levels];
-    int n = 0;
-    open[n++] = {0, square_gap_of(nodes_[0], at)};
-    while (n > 0) {
-        const Open now = open[--n];
-        if (now.gap > least) continue;
-        const TreeNode& node = nodes_[std::size_t(now.node)];
-        for (int k = node.first; k < node.first + node.count; ++k) {
-            const Vec3d foot = shapes::nearest_on_triangle(point, corners_[std::size_t(k)]);
-            const double square = dot(point - foot, point - foot);
-            if (square < least || (found < 0 && square <= least)) least = square, found = k, nearest = foot;
-        }
-        if (node.count) continue;
-        const int first = now.node + 1, second = nodes_[std::size_t(first)].next;
-        Open one = {first, square_gap_of(nodes_[std::size_t(first)], at)};
-        Open other = {second, square_gap_of(nodes_[std::size_t(second)], at)};
-        if (one.gap > other.gap) std::swap(one, other);
-        open[n++] = other;
-        open[n++] = one;
-    }
-    return found;
-}
-
 shapes::Distance MeshData::distance(const Vec3d& point, double limit) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const bool is_inside = contains(point);
-    Vec3d nearest = {};
-    const int found = find_nearest(point, is_inside ? infinity : std::max(limit, 0.0), nearest);
+    double square = is_inside || limit == infinity ? infinity : std::max(limit, 0.0) * std::max(limit, 0.0);
+    const int found = find_nearest(nodes_, point, square, [&](int k) {
+        const Vec3d foot = shapes::nearest_on_triangle(point, corners_[std::size_t(k)]);
+        return dot(point - foot, point - foot);
+    });
     if (found < 0) return {infinity, {0, 0, 1}};
+    const Vec3d nearest = shapes::nearest_on_triangle(point, corners_[std::size_t(found)]);
     const Vec3d apart = point - nearest;
     const double length = norm(apart);
     if (length > 0) {

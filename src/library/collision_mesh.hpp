@@ -31,7 +31,6 @@ class MeshData {
     double grown_;
 
     bool contains(const Vec3d& point) const;
-    int find_nearest(const Vec3d& point, double limit, Vec3d& nearest) const;
 };
 
 }  // namespace cspace::collision

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "collision_cloud.hpp"
 #include "collision_mesh.hpp"
 #include "cspace/collision/scene.hpp"
 #include "cspace/shapes/distance.hpp"
@@ -14,10 +15,11 @@ namespace cspace::collision {
 // two ends, radius; cylinders (8): centre, unit axis, half length, radius; half spaces (4): outward unit
 // normal n, offset o (solid where n · x ≤ o); triangles (9): three corners, counter-clockwise from outside.
 // Mesh i has the next mesh_sizes[i] triangles; is_solid[i]: they enclose a solid, and corners that meet are
-// equal bit for bit. owners: the object of each box, capsule, cylinder, half space and mesh, in this order.
+// equal bit for bit. Cloud i has the next cloud_sizes[i] points (3), and the radius cloud_radii[i]. owners: the
+// object of each box, capsule, cylinder, half space, mesh and cloud, in this order.
 struct Primitives {
-    std::span<const double> boxes, capsules, cylinders, half_spaces, triangles;
-    std::span<const int> mesh_sizes, is_solid, owners;
+    std::span<const double> boxes, capsules, cylinders, half_spaces, triangles, points, cloud_radii;
+    std::span<const int> mesh_sizes, is_solid, cloud_sizes, owners;
 };
 
 class SceneData {
@@ -37,10 +39,16 @@ class SceneData {
     std::vector<HalfSpace> half_spaces_;
     std::vector<MeshData> mesh_data_;
     std::vector<Mesh> meshes_;
+    std::vector<CloudData> cloud_data_;
+    std::vector<Cloud> clouds_;
+    Tree tree_;  // of the boxes; empty where they are few
     std::vector<int> owners_;
     std::vector<float> low_[3], high_[3];
 
     void add_meshes(const Primitives& given);
+    void add_clouds(const Primitives& given);
+    void build_boxes();
+    void add_bounds(const Bounds& box, double grown);
     void add_bounds(const double (&low)[3], const double (&high)[3], double grown);
 };
 

@@ -15,8 +15,8 @@ struct RandomCell {
     std::vector<int> link_bodies;
     std::vector<cspace::collision::Sphere> spheres;
     std::vector<std::pair<int, int>> pairs;
-    std::vector<double> boxes, capsules, cylinders, half_spaces, triangles;
-    std::vector<int> mesh_sizes, is_solid, owners;
+    std::vector<double> boxes, capsules, cylinders, half_spaces, triangles, points, cloud_radii;
+    std::vector<int> mesh_sizes, is_solid, cloud_sizes, owners;
     std::unique_ptr<cspace::collision::Checker> checker;
 
     std::vector<double> configuration(Random& random) const {
@@ -109,11 +109,13 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
         rows.insert(rows.end(), {v.x, v.y, v.z});
     };
     const auto place = [&] { return 0.5 * random.vector() + random.uniform(0.4, 1.0) * random.axis(); };
-    for (int k = random.below(6); k > 0; --k) {
+    const int many = random.uniform(0, 1) < 0.1 ? 100 : 0;  // the boxes of primitives are in a tree then
+    for (int k = random.below(6) + many; k > 0; --k) {
         const Mat3d R = random_rotation(random);
         add(cell.boxes, place());
         for (int r = 0; r < 3; ++r) add(cell.boxes, row(R, r));
-        add(cell.boxes, {random.uniform(0.02, 0.3), random.uniform(0.02, 0.3), random.uniform(0.001, 0.3)});
+        const double most = many ? 0.06 : 0.3;
+        add(cell.boxes, {random.uniform(0.02, most), random.uniform(0.02, most), random.uniform(0.001, most)});
     }
     for (int k = random.below(5); k > 0; --k) {
         const Vec3d a = place();
@@ -131,8 +133,14 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
         cell.half_spaces.push_back(-random.uniform(0.5, 1.0));
     }
     for (int k = random.below(3); k > 0; --k) add_mesh(random, cell, place());
+    for (int k = random.below(2); k > 0; --k) {
+        const Vec3d center = place();
+        cell.cloud_sizes.push_back(1 + random.below(100));
+        cell.cloud_radii.push_back(random.uniform(0, 0.03));
+        for (int i = 0; i < cell.cloud_sizes.back(); ++i) add(cell.points, center + 0.2 * random.vector());
+    }
     const std::size_t count = cell.boxes.size() / 15 + cell.capsules.size() / 7 + cell.cylinders.size() / 8 +
-                              cell.half_spaces.size() / 4 + cell.mesh_sizes.size();
+                              cell.half_spaces.size() / 4 + cell.mesh_sizes.size() + cell.cloud_sizes.size();
     for (std::size_t i = 0; i < count; ++i) cell.owners.push_back(int(i));
     std::vector<std::pair<int, int>> allowed;  // the base stands where it stands
     for (std::size_t l = 0; l < cell.link_bodies.size(); ++l)
@@ -143,7 +151,8 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
                                                cell.link_bodies, cell.spheres, cell.pairs),
         std::make_shared<collision::SceneData>(
             collision::Primitives{cell.boxes, cell.capsules, cell.cylinders, cell.half_spaces, cell.triangles,
-                                  cell.mesh_sizes, cell.is_solid, cell.owners}),
+                                  cell.points, cell.cloud_radii, cell.mesh_sizes, cell.is_solid,
+                                  cell.cloud_sizes, cell.owners}),
         margin, allowed);
     return cell;
 }

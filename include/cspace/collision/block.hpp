@@ -85,9 +85,7 @@ class Block {
         int n = 0;
         for (int k = 0; k < from.count; ++k) {
             const int i = from.begin[k];
-            float radius;
-            const Floats gap = square_gap(scene, i, at, r, growth, radius);
-            if (bits_of(gap < square_of(growth, r + radius)) & wanted) into[n++] = i;
+            if (find_touching(scene, i, at, Mover{r, growth, wanted})) into[n++] = i;
         }
         return {into, n};
     }
@@ -138,7 +136,7 @@ class Block {
             Marks<Motion> marks(motion.growth(x, at));
             for (int k = 0; k < near.count; ++k) {
                 float radius;
-                const Floats gap = square_gap(scene, near.begin[k], at, r, marks.growth, radius);
+                const Floats gap = square_gap(scene, near.begin[k], at, Mover{r, marks.growth, wanted}, radius);
                 marks.add(gap, r + radius);
             }
             if (settle(marks) && motion.is_done(*this))
@@ -198,7 +196,7 @@ class Block {
         float radius;
         Floats gap;
         if (touch.other_body < 0) {
-            gap = square_gap(scene, touch.other, at, ball.r + scene.margin, NoMotion{}, radius);
+            gap = square_gap(scene, touch.other, at, Mover{ball.r + scene.margin, NoMotion{}, wanted}, radius);
             radius += ball.r + scene.margin;
         } else {
             const Ball& other = robot.spheres[touch.other];
@@ -270,7 +268,7 @@ class Block {
     CSPACE_COLD bool record_primitive(int l, int s, const Place& at, float r, Candidates near) {
         for (int k = 0; k < near.count; ++k) {
             float radius;
-            const Floats gap = square_gap(scene, near.begin[k], at, r, NoMotion{}, radius);
+            const Floats gap = square_gap(scene, near.begin[k], at, Mover{r, NoMotion{}, wanted}, radius);
             if (!touches(gap, r + radius)) continue;
             const Contact contact = {l, near.begin[k], false, 0};
             return record_touch({robot.links[l].body, s, -1, near.begin[k], contact});

@@ -1,7 +1,7 @@
 // Squared distances of eight places from a primitive, 0 inside: the test of a ball against an obstacle.
 #pragma once
 
-#include "cspace/collision/mesh_gap.hpp"
+#include "cspace/collision/tree_gap.hpp"
 
 namespace cspace::collision::inline CSPACE_ISA {
 
@@ -40,11 +40,25 @@ struct NoMotion {};
 CSPACE_INLINE Floats square_of(NoMotion, float r) { return fill_floats(r * r); }
 CSPACE_INLINE Floats square_of(Floats growth, float r) { return square(growth + r); }
 
-// Of primitive i; `radius` receives what it is grown by. Exact where a ball of radius r that may move by
-// `growth` touches the primitive, and beyond its reach elsewhere.
+// A ball of radius r, and by how much it may move, in the lanes that are wanted.
 template <class Growth>
-CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, float r, Growth growth,
-                                float& radius) {
+struct Mover {
+    float r;
+    Growth growth;
+    unsigned wanted;
+    CSPACE_INLINE Floats reach(float radius) const { return square_of(growth, r + radius); }
+    CSPACE_INLINE Sought seek(float radius, bool any) const {
+        return {reach(radius), any ? reach(radius) : square_of(NoMotion{}, r + radius), wanted, any};
+    }
+};
+template <class Growth>
+Mover(float, Growth, unsigned) -> Mover<Growth>;
+
+// Of primitive i; `radius` receives what it is grown by. Exact in the lanes in which the ball may touch the
+// primitive, and beyond its reach in the others; if `any`, in one of these lanes.
+template <class Growth>
+CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball,
+                                float& radius, bool any = false) {
     if (i < scene.n_boxes) {
         radius = scene.boxes[i].radius;
         return square_gap(scene.boxes[i], at);
@@ -65,8 +79,42 @@ CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, floa
         return square_gap(scene.half_spaces[i], at);
     }
     i -= scene.n_half_spaces;
-    radius = scene.meshes[i].radius;
-    return square_gap(scene.meshes[i], at, square_of(growth, r + radius));
+    if (i < scene.n_meshes) {
+        radius = scene.meshes[i].radius;
+        return square_gap(scene.meshes[i], at, ball.seek(radius, any));
+    }
+    i -= scene.n_meshes;
+    radius = scene.clouds[i].radius;
+    return square_gap(scene.clouds[i], at, ball.seek(radius, any));
+}
+// The lanes in which a ball may touch primitive i; at least one of them.
+template <class Growth>
+CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball) {
+    float radius;
+    const Floats gap = square_gap(scene, i, at, ball, radius, true);
+    return bits_of(gap < ball.reach(radius)) & ball.wanted;
+}
+
+// Calls visit(primitive, lanes) for each whose box is of interest: meets(low, high) finds the lanes in which
+// a box of three coordinates is.
+template <class Meets, class Visit>
+CSPACE_INLINE void visit_boxes(const Scene& scene, const Meets& meets, const Visit& visit) {
+    const auto try_primitive = [&](int p) {
+        const float low[3] = {scene.low[0][p], scene.low[1][p], scene.low[2][p]};
+        const float high[3] = {scene.high[0][p], scene.high[1][p], scene.high[2][p]};
+        if (const unsigned lanes = meets(low, high)) visit(p, lanes);
+    };
+    if (scene.n_nodes == 0)
+        for (int p = 0; p < scene.n; ++p) try_primitive(p);
+    for (int i = 0; i < scene.n_nodes;) {
+        const TreeNode& node = scene.nodes[i];
+        if (!meets(node.low, node.high)) {
+            i = node.next;
+            continue;
+        }
+        for (int k = node.first; k < node.first + node.count; ++k) try_primitive(scene.order[k]);
+        ++i;
+    }
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA

@@ -49,16 +49,29 @@ struct Mesh {
     float radius;
 };
 
+// Points in the order of their tree, each with the same radius around it.
+struct Cloud {
+    const TreeNode* nodes;
+    const float *x, *y, *z;
+    int n_nodes;
+    float radius;
+};
+
 struct Scene {
     const Box* boxes;
     const Capsule* capsules;
     const Cylinder* cylinders;
     const HalfSpace* half_spaces;
     const Mesh* meshes;
-    int n_boxes, n_capsules, n_cylinders, n_half_spaces, n_meshes;
+    const Cloud* clouds;
+    int n_boxes, n_capsules, n_cylinders, n_half_spaces, n_meshes, n_clouds;
     int n;  // of all primitives, in this order
     // The boxes around the primitives: low and high of each, per coordinate.
     const float *low[3], *high[3];
+    // A tree of these boxes, and the primitives in the order of its leaves. No nodes where they are few.
+    const TreeNode* nodes;
+    const int* order;
+    int n_nodes;
     // allowed[link · n + primitive]: they may touch. Null if no such pair is allowed.
     const unsigned char* allowed;
     float margin, pair_margin;  // added to the radii of spheres against primitives, and to pairs of spheres

@@ -40,7 +40,7 @@ class PackedScene:
     and the radius; spheres are capsules of equal ends. cylinders (n, 8): centre, unit axis, half length,
     radius. half_spaces (n, 4): outward normal and offset o, solid where normal · x ≤ o. meshes: triangles
     (m, 3, 3) each and whether they enclose a solid; hulls and height fields are among them, and corners of
-    triangles that meet are equal bit for bit. points (n, 4): centres and radii of the points of clouds.
+    triangles that meet are equal bit for bit. clouds: points (n, 3) each and the radius of all.
     """
 
     names: tuple[str, ...]
@@ -55,8 +55,8 @@ class PackedScene:
     half_space_object: Numbers
     meshes: tuple[tuple[Array, bool], ...]
     mesh_object: Numbers
-    points: Array
-    point_object: Numbers
+    clouds: tuple[tuple[Array, float], ...]
+    cloud_object: Numbers
 
 
 def pack_scene(scene: Scene, T_world_base: Any = None) -> PackedScene:
@@ -79,7 +79,7 @@ def pack_scene(scene: Scene, T_world_base: Any = None) -> PackedScene:
     return PackedScene(tuple(shape.name for shape in obstacles), scene.version, **arrays, **numbers)
 
 
-WIDTHS = {"boxes": 15, "capsules": 7, "cylinders": 8, "half_spaces": 4, "meshes": 0, "points": 4}
+WIDTHS = {"boxes": 15, "capsules": 7, "cylinders": 8, "half_spaces": 4, "meshes": 0, "clouds": 0}
 """The arrays, and the numbers of their rows; zero for lists of arrays."""
 
 PACKED = (Box, Sphere, Capsule, Cylinder, HalfSpace, Hull, Mesh, HeightField, PointCloud)
@@ -87,7 +87,7 @@ PACKED = (Box, Sphere, Capsule, Cylinder, HalfSpace, Hull, Mesh, HeightField, Po
 
 OWNERS = {
     **{"boxes": "box_object", "capsules": "capsule_object", "cylinders": "cylinder_object"},
-    **{"half_spaces": "half_space_object", "meshes": "mesh_object", "points": "point_object"},
+    **{"half_spaces": "half_space_object", "meshes": "mesh_object", "clouds": "cloud_object"},
 }
 """The array of owners beside each array."""
 
@@ -113,8 +113,7 @@ def pack_shape(shape: Shape, T: Array) -> tuple[str, list[Any]]:
     if isinstance(shape, HeightField):
         return "meshes", [(shape.surface(T), True)]
     if isinstance(shape, PointCloud):
-        centers = transform_points(T, shape.points)
-        return "points", list(np.column_stack([centers, np.full(len(centers), shape.radius)]))
+        return "clouds", [(transform_points(T, shape.points), shape.radius)]
     known = ", ".join(kind.__name__ for kind in PACKED)
     raise InputTypeError(
         f"{shape.name!r} is a {type(shape).__name__}, which no check reads; use one of {known}"

@@ -1,4 +1,5 @@
-// Squared distances of eight places from a mesh: from its nearest triangle, 0 inside the solid.
+// Squared distances of eight places from a mesh, from its nearest triangle and 0 inside the solid, and from a
+// cloud of points.
 //
 // A closed surface encloses the places that a ray leaves more often than it enters: where it winds around
 // them. The ray runs along z. Each edge lies on one side of it for both triangles that share the edge, since
@@ -12,10 +13,13 @@
 
 namespace cspace::collision::inline CSPACE_ISA {
 
-CSPACE_INLINE Floats square_gap(const TreeNode& box, const Place& at) {
-    const auto beyond = [](float low, Floats x, float high) { return max(max(low - x, x - high), fill_floats(0.0f)); };
-    return square(beyond(box.low[0], at.x, box.high[0])) + square(beyond(box.low[1], at.y, box.high[1])) +
-           square(beyond(box.low[2], at.z, box.high[2]));
+// From a box along the axes.
+CSPACE_INLINE Floats square_gap(const float* low, const float* high, const Place& at) {
+    const auto beyond = [](float from, Floats x, float to) {
+        return max(max(from - x, x - to), fill_floats(0.0f));
+    };
+    return square(beyond(low[0], at.x, high[0])) +
+           (square(beyond(low[1], at.y, high[1])) + square(beyond(low[2], at.z, high[2])));
 }
 
 // In the plane of the triangle a foot inside counts the height alone; others are nearest to a side.
@@ -84,21 +88,49 @@ inline FloatMask find_inside(const Mesh& mesh, const Place& at) {
     return within & (exits > 0.5f);
 }
 
-// Where it is at least `limit`, something at least as large.
-inline Floats square_gap(const Mesh& mesh, const Place& at, Floats limit) {
-    Floats least = limit;
-    for (int i = 0; i < mesh.n_nodes;) {
-        const TreeNode& node = mesh.nodes[i];
-        if (!bits_of(square_gap(node, at) < least)) {
+// What is looked for in a tree: squares of distances below `limit` in the lanes `wanted`. The search ends once
+// all of these are below `enough`, or one of them if `any`.
+struct Sought {
+    Floats limit, enough;
+    unsigned wanted;
+    bool any;
+    CSPACE_INLINE bool is_met(Floats squares) const {
+        const unsigned found = bits_of(squares < enough) & wanted;
+        return found == wanted || (any && found);
+    }
+};
+
+// The least squares of distances from the items of a tree, as far as they are below the limit; `measure`
+// finds those of an item.
+template <class Measure>
+CSPACE_INLINE Floats find_least(const TreeNode* nodes, int n_nodes, const Place& at, const Sought& sought,
+                                const Measure& measure) {
+    Floats least = sought.limit;
+    for (int i = 0; i < n_nodes;) {
+        const TreeNode& node = nodes[i];
+        if (!(bits_of(square_gap(node.low, node.high, at) < least) & sought.wanted)) {
             i = node.next;
             continue;
         }
-        for (int k = node.first; k < node.first + node.count; ++k)
-            least = min(least, square_gap(mesh.triangles[k], at));
         ++i;
+        if (node.count == 0) continue;
+        for (int k = node.first; k < node.first + node.count; ++k) least = min(least, measure(k));
+        if (sought.is_met(least)) break;
     }
-    if (!mesh.facets || bits_of(least < limit) == all_lanes) return least;
+    return least;
+}
+
+// Squared distances where they are below the limit and wanted, else something at least as large.
+inline Floats square_gap(const Mesh& mesh, const Place& at, const Sought& sought) {
+    const Floats least = find_least(mesh.nodes, mesh.n_nodes, at, sought,
+                                    [&](int k) { return square_gap(mesh.triangles[k], at); });
+    if (!mesh.facets || sought.is_met(least)) return least;
     return select(find_inside(mesh, at), fill_floats(0.0f), least);
+}
+inline Floats square_gap(const Cloud& cloud, const Place& at, const Sought& sought) {
+    return find_least(cloud.nodes, cloud.n_nodes, at, sought, [&](int k) {
+        return square(at.x - cloud.x[k]) + (square(at.y - cloud.y[k]) + square(at.z - cloud.z[k]));
+    });
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA
