@@ -87,8 +87,8 @@ std::shared_ptr<SceneData> make_scene(const ConstDoubles& boxes, const ConstDoub
             "every triangle needs a mesh");
     require(are_parts(clouds, points.shape(0)) && cloud_radii.size == cloud_sizes.size,
             "every point needs a cloud");
-    require(boxes.shape(0) + capsules.shape(0) + cylinders.shape(0) + half_spaces.shape(0) +
-                    mesh_sizes.size + cloud_sizes.size ==
+    require(boxes.shape(0) + capsules.shape(0) + cylinders.shape(0) + half_spaces.shape(0) + mesh_sizes.size +
+                    cloud_sizes.size ==
                 owners.size,
             "every primitive needs an owner");
     return std::make_shared<SceneData>(given);

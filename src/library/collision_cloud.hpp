@@ -9,6 +9,7 @@
 
 namespace cspace::collision {
 
+// The slack of robots covers the rounding of points: those that a ball touches are no farther away than it.
 class CloudData {
   public:
     // points: three numbers [m] each; radius [m]: of the balls around them.
@@ -16,16 +17,15 @@ class CloudData {
 
     Cloud view() const;
     const Bounds& bounds() const { return bounds_; }
-    double grown() const { return grown_; }  // [m], for the rounding of its numbers
     // The distance of a point from the nearest ball, up to `limit`; some distance beyond it elsewhere.
     shapes::Distance distance(const Vec3d& point, double limit) const;
 
   private:
-    std::vector<Vec3d> points_;
-    std::vector<float> x_, y_, z_;
+    std::vector<double> points_;
     std::vector<TreeNode> nodes_;
+    std::vector<float> x_, y_, z_;
     Bounds bounds_;
-    double radius_, grown_;
+    double radius_;
 };
 
 }  // namespace cspace::collision

@@ -16,13 +16,10 @@ using shapes::Corners;
 
 constexpr int leaf_size = 2;  // triangles: a triangle takes as long as three boxes
 
-double largest_number(std::span<const double> numbers) {
-    double largest = 0;
-    for (const double x : numbers) largest = std::max(largest, std::fabs(x));
-    return largest;
-}
 Vec3d read_vector(const double* v) { return {v[0], v[1], v[2]}; }
-void copy_rounded(const Vec3d& from, float* to) { to[0] = float(from.x), to[1] = float(from.y), to[2] = float(from.z); }
+void copy_rounded(const Vec3d& from, float* to) {
+    to[0] = float(from.x), to[1] = float(from.y), to[2] = float(from.z);
+}
 
 Bounds bound_triangle(const double* t) {
     Bounds box;
@@ -82,7 +79,9 @@ Facet<S> make_facet(const Corners& t) {
     const Vec3d normal = cross(*order[1] - *order[0], *order[2] - *order[0]);
     const double length = norm(normal), scale = length > 0 ? 1 / length : 0;
     Facet<S> facet = {};
-    const auto copy = [](const Vec3d& from, S* to) { to[0] = S(from.x), to[1] = S(from.y), to[2] = S(from.z); };
+    const auto copy = [](const Vec3d& from, S* to) {
+        to[0] = S(from.x), to[1] = S(from.y), to[2] = S(from.z);
+    };
     copy(*order[0], facet.low), copy(*order[1], facet.middle), copy(*order[2], facet.high);
     copy(scale * normal, facet.normal);
     facet.bottom = std::min({facet.low[2], facet.middle[2], facet.high[2]});
@@ -96,11 +95,15 @@ Facet<S> make_facet(const Corners& t) {
 MeshData::MeshData(std::span<const double> triangles, bool is_solid) {
     const std::size_t n = triangles.size() / 9;
     std::vector<Bounds> boxes(n);
-    visit_range(0, n, [&](std::size_t i) { boxes[i] = bound_triangle(&triangles[9 * i]); });
+    double largest = 0;
+    visit_range(0, n, [&](std::size_t i) {
+        const Bounds& box = boxes[i] = bound_triangle(&triangles[9 * i]);
+        for (std::size_t k = 0; k < 3; ++k) largest = std::max(largest, box.high[k] - box.low[k]);
+    });
     bounds_ = bound_all(boxes);
-    // Each corner is off by half a unit in its last place, and so are places in the frame of a triangle, which
-    // are as long as its sides.
-    grown_ = 2 * largest_number(triangles) * tolerance::float_rounding;
+    // Corners of a triangle that a ball touches are beyond its centre by the size of the triangle at most.
+    // The slack of robots covers the rounding of places as far away as the centre, this the rest.
+    grown_ = 4 * largest * tolerance::float_rounding;
     Tree tree = build_tree(boxes, leaf_size, grown_);
     nodes_ = std::move(tree.nodes);
     visit_range(0, n, [&](std::size_t i) {
@@ -114,15 +117,16 @@ MeshData::MeshData(std::span<const double> triangles, bool is_solid) {
 }
 
 Mesh MeshData::view() const {
-    return {nodes_.data(), triangles_.data(), rounded_facets_.empty() ? nullptr : rounded_facets_.data(), int(nodes_.size()),
-            float(grown_)};
+    return {nodes_.data(), triangles_.data(), rounded_facets_.empty() ? nullptr : rounded_facets_.data(),
+            int(nodes_.size()), float(grown_)};
 }
 
 bool MeshData::contains(const Vec3d& point) const {
     if (facets_.empty()) return false;
     const auto is_under = [&](const TreeNode& node) {
-        return point.x > double(node.low[0]) && point.x < double(node.high[0]) && point.y > double(node.low[1]) &&
-               point.y < double(node.high[1]) && point.z < double(node.high[2]);
+        return point.x > double(node.low[0]) && point.x < double(node.high[0]) &&
+               point.y > double(node.low[1]) && point.y < double(node.high[1]) &&
+               point.z < double(node.high[2]);
     };
     if (!is_under(nodes_[0]) || point.z < double(nodes_[0].low[2])) return false;
     double exits = 0;

@@ -170,7 +170,7 @@ void SceneData::add_clouds(const Primitives& given) {
     }
     for (const CloudData& cloud : cloud_data_) {
         clouds_.push_back(cloud.view());
-        add_bounds(cloud.bounds(), cloud.grown());
+        add_bounds(cloud.bounds(), 0);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "collision_tree.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -97,98 +98,119 @@ class Builder {
     const Bounds& item(int i) const { return items_[std::size_t(tree_.order[std::size_t(i)])]; }
 };
 
-// A point and its place on the curve.
-struct Key {
-    std::uint64_t place;
-    int point;
-};
-constexpr int digit_bits = 11, digits = 4, axis_bits = 14;  // three axes in four digits
+// Keys of points: the place on the curve above the number of the point. The bits of a place are sorted by
+// digits.
+using Key = std::uint64_t;
+constexpr int digit_bits = 11, digits = 4, most_axis_bits = 14;  // three axes in four digits
 
-// The lowest bits of x, two zeros behind each.
-std::uint64_t spread_bits(std::uint64_t x) {
+struct Curve {
+    std::vector<Key> keys;
+    int index_bits;
+    std::size_t point(std::size_t i) const { return std::size_t(keys[i] & ((Key(1) << index_bits) - 1)); }
+};
+
+// The lowest 14 bits of x, two zeros behind each.
+Key spread_bits(Key x) {
     x = (x | x << 16) & 0x0000ff0000ff;
     x = (x | x << 8) & 0x00f00f00f00f;
     x = (x | x << 4) & 0x0c30c30c30c3;
     return (x | x << 2) & 0x249249249249;
 }
-std::vector<Key> place_on_curve(std::span<const double> points) {
-    Bounds all = nothing;
+Curve place_on_curve(std::span<const double> points, const Bounds& all) {
     const std::size_t n = points.size() / 3;
-    visit_range(0, n, [&](std::size_t i) {
-        const double* p = &points[3 * i];
-        include_box(all, {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}});
-    });
+    Curve curve = {std::vector<Key>(n), int(std::bit_width(n))};
+    const int axis_bits = std::min(most_axis_bits, (64 - curve.index_bits) / 3);
     double extent = 0;
     for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, all.high[k] - all.low[k]);
     const double scale = extent > 0 ? ((1 << axis_bits) - 1) / extent : 0;
-    std::vector<Key> keys(n);
     visit_range(0, n, [&](std::size_t i) {
-        std::uint64_t place = 0;
+        Key place = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            place |= spread_bits(std::uint64_t((points[3 * i + k] - all.low[k]) * scale)) << k;
-        keys[i] = {place, int(i)};
+            place |= spread_bits(Key(std::int64_t((points[3 * i + k] - all.low[k]) * scale))) << k;
+        curve.keys[i] = place << curve.index_bits | i;
     });
-    return keys;
+    return curve;
 }
 // By digits from the lowest on.
-void sort_keys(std::vector<Key>& keys) {
+void sort_keys(Curve& curve) {
     constexpr std::size_t base = std::size_t(1) << digit_bits;
-    std::vector<Key> sorted(keys.size());
+    std::vector<Key> sorted(curve.keys.size());
+    std::vector<std::uint32_t> starts(base + 1);
     for (int digit = 0; digit < digits; ++digit) {
-        const auto digit_of = [&](const Key& key) { return key.place >> (digit * digit_bits) & (base - 1); };
-        std::array<std::size_t, base + 1> starts = {};
-        visit_range(0, keys.size(), [&](std::size_t i) { ++starts[digit_of(keys[i]) + 1]; });
+        const int shift = curve.index_bits + digit * digit_bits;
+        if (shift >= 64) break;
+        const auto digit_of = [&](Key key) { return std::size_t(key >> shift) & (base - 1); };
+        std::fill(starts.begin(), starts.end(), 0);
+        visit_range(0, sorted.size(), [&](std::size_t i) { ++starts[digit_of(curve.keys[i]) + 1]; });
         for (std::size_t d = 0; d < base; ++d) starts[d + 1] += starts[d];
-        visit_range(0, keys.size(), [&](std::size_t i) { sorted[starts[digit_of(keys[i])]++] = keys[i]; });
-        keys.swap(sorted);
+        visit_range(0, sorted.size(), [&](std::size_t i) {
+            const Key key = curve.keys[i];
+            sorted[starts[digit_of(key)]++] = key;
+        });
+        curve.keys.swap(sorted);
     }
 }
 
 // Nodes over points in order: halves of whole leaves.
 class PointBuilder {
   public:
-    PointBuilder(std::span<const double> points, int leaf_size, Tree& tree)
-        : points_(points), leaf_size_(leaf_size), tree_(tree) {}
+    PointBuilder(std::span<const double> points, int leaf_size, std::vector<TreeNode>& nodes)
+        : points_(points), leaf_size_(leaf_size), nodes_(nodes) {}
     Bounds add_node(int begin, int end) {
-        const std::size_t index = tree_.nodes.size();
-        tree_.nodes.emplace_back();
+        const std::size_t index = nodes_.size();
+        nodes_.emplace_back();
         Bounds box = nothing;
         const int leaves = (end - begin + leaf_size_ - 1) / leaf_size_;
         if (leaves <= 1) {
-            for (int i = begin; i < end; ++i) {
-                const double* p = &points_[3 * std::size_t(tree_.order[std::size_t(i)])];
-                include_box(box, {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}});
-            }
+            box = bound_points(points_.subspan(3 * std::size_t(begin), 3 * std::size_t(end - begin)));
             poll_.step();
         } else {
             const int middle = begin + leaves / 2 * leaf_size_;
             box = add_node(begin, middle);
             include_box(box, add_node(middle, end));
         }
-        TreeNode& node = tree_.nodes[index] = round_box(box, 0);
+        TreeNode& node = nodes_[index] = round_box(box, 0);
         if (leaves <= 1) node.first = begin, node.count = end - begin;
-        node.next = int(tree_.nodes.size());
+        node.next = int(nodes_.size());
         return box;
     }
 
   private:
     std::span<const double> points_;
     int leaf_size_;
-    Tree& tree_;
+    std::vector<TreeNode>& nodes_;
     InterruptPoll poll_{1 << 8};
 };
 
 }  // namespace
 
-Tree build_point_tree(std::span<const double> points, int leaf_size) {
-    std::vector<Key> keys = place_on_curve(points);
-    sort_keys(keys);
-    Tree tree;
-    tree.order.reserve(keys.size());
-    for (const Key& key : keys) tree.order.push_back(key.point);
-    tree.nodes.reserve(2 * keys.size() / std::size_t(leaf_size) + 2);
-    if (!keys.empty()) PointBuilder(points, leaf_size, tree).add_node(0, int(keys.size()));
-    return tree;
+Bounds bound_points(std::span<const double> points) {
+    Bounds all = nothing;
+    visit_range(0, points.size() / 3, [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double x = points[3 * i + k];
+            all.low[k] = x < all.low[k] ? x : all.low[k];
+            all.high[k] = x > all.high[k] ? x : all.high[k];
+        }
+    });
+    return all;
+}
+
+std::vector<double> sort_points(std::span<const double> points) {
+    Curve curve = place_on_curve(points, bound_points(points));
+    sort_keys(curve);
+    std::vector<double> sorted(points.size());
+    visit_range(0, curve.keys.size(),
+                [&](std::size_t i) { std::copy_n(&points[3 * curve.point(i)], 3, &sorted[3 * i]); });
+    return sorted;
+}
+
+std::vector<TreeNode> build_point_tree(std::span<const double> points, int leaf_size) {
+    const std::size_t n = points.size() / 3;
+    std::vector<TreeNode> nodes;
+    nodes.reserve(2 * n / std::size_t(leaf_size) + 2);
+    if (n > 0) PointBuilder(points, leaf_size, nodes).add_node(0, int(n));
+    return nodes;
 }
 
 float round_low(double x) { return float(x - 2 * tolerance::float_rounding * std::fabs(x)); }

@@ -25,10 +25,14 @@ struct Tree {
 // Leaves have at most so many items. The boxes are rounded outward, and grown.
 Tree build_tree(const std::vector<Bounds>& items, int leaf_size, double grown);
 
-// The same for points, three numbers each, in the order of a curve that fills space (Morton 1966, "A computer
-// oriented geodetic data base").
-Tree build_point_tree(std::span<const double> points, int leaf_size);
+// Points, three numbers each, in the order of a curve that fills space (Morton 1966, "A computer oriented
+// geodetic data base"): neighbours on it are near each other.
+std::vector<double> sort_points(std::span<const double> points);
+// The tree of points in such an order.
+std::vector<TreeNode> build_point_tree(std::span<const double> points, int leaf_size);
 
+// The box around points, three numbers each.
+Bounds bound_points(std::span<const double> points);
 // The box around all items.
 Bounds bound_all(const std::vector<Bounds>& items);
 
@@ -36,8 +40,8 @@ Bounds bound_all(const std::vector<Bounds>& items);
 float round_low(double x);
 float round_high(double x);
 
-// The item that is nearest to a point; −1 if none is nearer than the root of `least`, which receives the square
-// of its distance. measure(item) is the square of the distance of an item.
+// The item that is nearest to a point; −1 if none is nearer than the root of `least`, which receives the
+// square of its distance. measure(item) is the square of the distance of an item.
 template <class Measure>
 int find_nearest(std::span<const TreeNode> nodes, const Vec3d& point, double& least, const Measure& measure) {
     constexpr int most_levels = 64;

@@ -115,7 +115,8 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
         add(cell.boxes, place());
         for (int r = 0; r < 3; ++r) add(cell.boxes, row(R, r));
         const double most = many ? 0.06 : 0.3;
-        add(cell.boxes, {random.uniform(0.02, most), random.uniform(0.02, most), random.uniform(0.001, most)});
+        add(cell.boxes,
+            {random.uniform(0.02, most), random.uniform(0.02, most), random.uniform(0.001, most)});
     }
     for (int k = random.below(5); k > 0; --k) {
         const Vec3d a = place();
@@ -149,10 +150,9 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
     cell.checker = std::make_unique<collision::Checker>(
         std::make_shared<collision::RobotData>(cell.joints, coordinates, cell.lower, cell.upper,
                                                cell.link_bodies, cell.spheres, cell.pairs),
-        std::make_shared<collision::SceneData>(
-            collision::Primitives{cell.boxes, cell.capsules, cell.cylinders, cell.half_spaces, cell.triangles,
-                                  cell.points, cell.cloud_radii, cell.mesh_sizes, cell.is_solid,
-                                  cell.cloud_sizes, cell.owners}),
+        std::make_shared<collision::SceneData>(collision::Primitives{
+            cell.boxes, cell.capsules, cell.cylinders, cell.half_spaces, cell.triangles, cell.points,
+            cell.cloud_radii, cell.mesh_sizes, cell.is_solid, cell.cloud_sizes, cell.owners}),
         margin, allowed);
     return cell;
 }

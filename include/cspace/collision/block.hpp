@@ -136,7 +136,8 @@ class Block {
             Marks<Motion> marks(motion.growth(x, at));
             for (int k = 0; k < near.count; ++k) {
                 float radius;
-                const Floats gap = square_gap(scene, near.begin[k], at, Mover{r, marks.growth, wanted}, radius);
+                const Floats gap =
+                    square_gap(scene, near.begin[k], at, Mover{r, marks.growth, wanted}, radius);
                 marks.add(gap, r + radius);
             }
             if (settle(marks) && motion.is_done(*this))
@@ -196,7 +197,8 @@ class Block {
         float radius;
         Floats gap;
         if (touch.other_body < 0) {
-            gap = square_gap(scene, touch.other, at, Mover{ball.r + scene.margin, NoMotion{}, wanted}, radius);
+            gap =
+                square_gap(scene, touch.other, at, Mover{ball.r + scene.margin, NoMotion{}, wanted}, radius);
             radius += ball.r + scene.margin;
         } else {
             const Ball& other = robot.spheres[touch.other];

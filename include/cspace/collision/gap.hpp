@@ -1,6 +1,7 @@
 // Squared distances of eight places from a primitive, 0 inside: the test of a ball against an obstacle.
 #pragma once
 
+#include "cspace/collision/boxes.hpp"
 #include "cspace/collision/tree_gap.hpp"
 
 namespace cspace::collision::inline CSPACE_ISA {
@@ -93,28 +94,6 @@ CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at,
     float radius;
     const Floats gap = square_gap(scene, i, at, ball, radius, true);
     return bits_of(gap < ball.reach(radius)) & ball.wanted;
-}
-
-// Calls visit(primitive, lanes) for each whose box is of interest: meets(low, high) finds the lanes in which
-// a box of three coordinates is.
-template <class Meets, class Visit>
-CSPACE_INLINE void visit_boxes(const Scene& scene, const Meets& meets, const Visit& visit) {
-    const auto try_primitive = [&](int p) {
-        const float low[3] = {scene.low[0][p], scene.low[1][p], scene.low[2][p]};
-        const float high[3] = {scene.high[0][p], scene.high[1][p], scene.high[2][p]};
-        if (const unsigned lanes = meets(low, high)) visit(p, lanes);
-    };
-    if (scene.n_nodes == 0)
-        for (int p = 0; p < scene.n; ++p) try_primitive(p);
-    for (int i = 0; i < scene.n_nodes;) {
-        const TreeNode& node = scene.nodes[i];
-        if (!meets(node.low, node.high)) {
-            i = node.next;
-            continue;
-        }
-        for (int k = node.first; k < node.first + node.count; ++k) try_primitive(scene.order[k]);
-        ++i;
-    }
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA

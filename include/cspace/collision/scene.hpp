@@ -39,8 +39,8 @@ struct Facet {
     S low[3], middle[3], high[3], normal[3], bottom, top, turn;  // bottom, top: least and greatest z
 };
 
-// A surface of triangles, in the order of its tree; facets: of the solid that it encloses, null if the surface
-// alone counts.
+// A surface of triangles, in the order of its tree; facets: of the solid that it encloses, null if the
+// surface alone counts.
 struct Mesh {
     const TreeNode* nodes;
     const Triangle* triangles;

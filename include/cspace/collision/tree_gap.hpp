@@ -25,7 +25,8 @@ CSPACE_INLINE Floats square_gap(const float* low, const float* high, const Place
 // In the plane of the triangle a foot inside counts the height alone; others are nearest to a side.
 CSPACE_INLINE Floats square_gap(const Triangle& triangle, const Place& at) {
     const Floats zero = fill_floats(0.0f), one = fill_floats(1.0f);
-    const Floats dx = at.x - triangle.corner[0], dy = at.y - triangle.corner[1], dz = at.z - triangle.corner[2];
+    const Floats dx = at.x - triangle.corner[0], dy = at.y - triangle.corner[1],
+                 dz = at.z - triangle.corner[2];
     const auto along = [&](const float* axis) { return dx * axis[0] + (dy * axis[1] + dz * axis[2]); };
     const Floats x = along(triangle.axes), y = along(triangle.axes + 3), z = along(triangle.axes + 6);
     const float c_x = triangle.apex[0], c_y = triangle.apex[1], v = c_x - triangle.side;
@@ -52,7 +53,9 @@ CSPACE_INLINE V count_exits(const Facet<S>& f, const V& x, const V& y, const V& 
         return (y - a_y) * (b_x - a_x) > (x - a_x) * (b_y - a_y);
     };
     const auto is_lower = y < f.middle[1];
-    const auto choose = [&](S lower, S upper) { return select(is_lower, fill_as(x, lower), fill_as(x, upper)); };
+    const auto choose = [&](S lower, S upper) {
+        return select(is_lower, fill_as(x, lower), fill_as(x, upper));
+    };
     const V a_x = choose(f.low[0], f.middle[0]), a_y = choose(f.low[1], f.middle[1]);
     const V b_x = choose(f.middle[0], f.high[0]), b_y = choose(f.middle[1], f.high[1]);
     const V left_of_long = select(is_left_of(f.low[0], f.low[1], f.high[0], f.high[1]), one, zero);
@@ -88,8 +91,8 @@ inline FloatMask find_inside(const Mesh& mesh, const Place& at) {
     return within & (exits > 0.5f);
 }
 
-// What is looked for in a tree: squares of distances below `limit` in the lanes `wanted`. The search ends once
-// all of these are below `enough`, or one of them if `any`.
+// What is looked for in a tree: squares of distances below `limit` in the lanes `wanted`. The search ends
+// once all of these are below `enough`, or one of them if `any`.
 struct Sought {
     Floats limit, enough;
     unsigned wanted;
