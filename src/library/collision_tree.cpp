@@ -200,8 +200,10 @@ std::vector<double> sort_points(std::span<const double> points) {
     Curve curve = place_on_curve(points, bound_points(points));
     sort_keys(curve);
     std::vector<double> sorted(points.size());
-    visit_range(0, curve.keys.size(),
-                [&](std::size_t i) { std::copy_n(&points[3 * curve.point(i)], 3, &sorted[3 * i]); });
+    visit_range(0, curve.keys.size(), [&](std::size_t i) {
+        const double* from = &points[3 * curve.point(i)];
+        for (std::size_t k = 0; k < 3; ++k) sorted[3 * i + k] = from[k];
+    });
     return sorted;
 }
 
