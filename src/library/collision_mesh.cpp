@@ -111,14 +111,13 @@ MeshData::MeshData(std::span<const double> triangles, bool is_solid) {
         corners_.push_back({read_vector(t), read_vector(t + 3), read_vector(t + 6)});
         triangles_.push_back(round_triangle(corners_.back()));
         if (!is_solid) return;
-        facets_.push_back(make_facet<double>(corners_.back()));
-        rounded_facets_.push_back(make_facet<float>(corners_.back()));
+        facets_.push_back(make_facet<float>(corners_.back()));
     });
 }
 
 Mesh MeshData::view() const {
-    return {nodes_.data(), triangles_.data(), rounded_facets_.empty() ? nullptr : rounded_facets_.data(),
-            int(nodes_.size()), float(grown_)};
+    return {nodes_.data(), triangles_.data(), facets_.empty() ? nullptr : facets_.data(), int(nodes_.size()),
+            float(grown_)};
 }
 
 bool MeshData::contains(const Vec3d& point) const {
@@ -137,7 +136,7 @@ bool MeshData::contains(const Vec3d& point) const {
             continue;
         }
         for (int k = node.first; k < node.first + node.count; ++k)
-            exits += count_exits(facets_[std::size_t(k)], point.x, point.y, point.z);
+            exits += count_exits(make_facet<double>(corners_[std::size_t(k)]), point.x, point.y, point.z);
         ++i;
     }
     return exits > 0.5;

@@ -23,10 +23,9 @@ class MeshData {
 
   private:
     std::vector<shapes::Corners> corners_;
-    std::vector<Facet<double>> facets_;
     std::vector<TreeNode> nodes_;
     std::vector<Triangle> triangles_;
-    std::vector<Facet<float>> rounded_facets_;
+    std::vector<Facet<float>> facets_;  // none where the surface alone counts
     Bounds bounds_;
     double grown_;
 
