@@ -55,4 +55,5 @@
 #include "cspace/planning/two_joints/path.hpp"
 #include "cspace/shapes/cover.hpp"
 #include "cspace/shapes/distance.hpp"
+#include "cspace/shapes/triangle.hpp"
 #include "cspace/version.hpp"

@@ -49,17 +49,47 @@ std::shared_ptr<RobotData> make_robot(const ConstDoubles& joints, const ConstDou
                                        bodies, balls, read_pairs(pairs));
 }
 
+std::vector<int> read_integers(const Integers& given) { return {given.data, given.data + given.size}; }
+
+// Whether parts of these sizes, none of them empty, have so many items in all.
+bool are_parts(const std::vector<int>& sizes, npy_intp items) {
+    for (const int size : sizes) {
+        if (size <= 0) return false;
+        items -= size;
+    }
+    return items == 0;
+}
+
 std::shared_ptr<SceneData> make_scene(const ConstDoubles& boxes, const ConstDoubles& capsules,
                                       const ConstDoubles& cylinders, const ConstDoubles& half_spaces,
+                                      const ConstDoubles& triangles, const Integers& mesh_sizes,
+                                      const Integers& is_solid, const ConstDoubles& points,
+                                      const Integers& cloud_sizes, const ConstDoubles& cloud_radii,
                                       const Integers& owners) {
     const auto rows = [](const ConstDoubles& given, npy_intp width) {
         require(given.ndim() == 2 && given.shape(1) == width, "primitives have rows of another width");
         return std::span(given.data, std::size_t(given.size));
     };
-    const std::vector<int> numbers(owners.data, owners.data + owners.size);
-    const Primitives given = {rows(boxes, 15), rows(capsules, 7), rows(cylinders, 8), rows(half_spaces, 4),
+    const std::vector<int> meshes = read_integers(mesh_sizes), solid = read_integers(is_solid),
+                           clouds = read_integers(cloud_sizes), numbers = read_integers(owners);
+    const Primitives given = {rows(boxes, 15),
+                              rows(capsules, 7),
+                              rows(cylinders, 8),
+                              rows(half_spaces, 4),
+                              rows(triangles, 9),
+                              rows(points, 3),
+                              std::span(cloud_radii.data, std::size_t(cloud_radii.size)),
+                              meshes,
+                              solid,
+                              clouds,
                               numbers};
-    require(boxes.shape(0) + capsules.shape(0) + cylinders.shape(0) + half_spaces.shape(0) == owners.size,
+    require(are_parts(meshes, triangles.shape(0)) && solid.size() == meshes.size(),
+            "every triangle needs a mesh");
+    require(are_parts(clouds, points.shape(0)) && cloud_radii.size == cloud_sizes.size,
+            "every point needs a cloud");
+    require(boxes.shape(0) + capsules.shape(0) + cylinders.shape(0) + half_spaces.shape(0) + mesh_sizes.size +
+                    cloud_sizes.size ==
+                owners.size,
             "every primitive needs an owner");
     return std::make_shared<SceneData>(given);
 }
@@ -113,7 +143,8 @@ void bind_collision(nb::module_& m) {
         .def(nb::new_(&make_robot), "joints"_a, "bounds"_a, "link_bodies"_a, "spheres"_a, "sphere_links"_a,
              "pairs"_a);
     nb::class_<SceneData>(m, "CollisionScene", "Obstacles in the frame of a robot's base.")
-        .def(nb::new_(&make_scene), "boxes"_a, "capsules"_a, "cylinders"_a, "half_spaces"_a, "owners"_a);
+        .def(nb::new_(&make_scene), "boxes"_a, "capsules"_a, "cylinders"_a, "half_spaces"_a, "triangles"_a,
+             "mesh_sizes"_a, "is_solid"_a, "points"_a, "cloud_sizes"_a, "cloud_radii"_a, "owners"_a);
     nb::class_<Checker>(m, "CollisionChecker", "A robot among obstacles.")
         .def(nb::new_([](std::shared_ptr<const RobotData> robot, std::shared_ptr<const SceneData> scene,
                          double margin, const Integers& allowed) {

@@ -339,7 +339,7 @@ class CollisionRobot:
 class CollisionScene:
     """Obstacles in the frame of a robot's base."""
 
-    def __init__(self, boxes: numpy.typing.NDArray[numpy.float64], capsules: numpy.typing.NDArray[numpy.float64], cylinders: numpy.typing.NDArray[numpy.float64], half_spaces: numpy.typing.NDArray[numpy.float64], owners: numpy.typing.NDArray[numpy.int64]) -> None: ...
+    def __init__(self, boxes: numpy.typing.NDArray[numpy.float64], capsules: numpy.typing.NDArray[numpy.float64], cylinders: numpy.typing.NDArray[numpy.float64], half_spaces: numpy.typing.NDArray[numpy.float64], triangles: numpy.typing.NDArray[numpy.float64], mesh_sizes: numpy.typing.NDArray[numpy.int64], is_solid: numpy.typing.NDArray[numpy.int64], points: numpy.typing.NDArray[numpy.float64], cloud_sizes: numpy.typing.NDArray[numpy.int64], cloud_radii: numpy.typing.NDArray[numpy.float64], owners: numpy.typing.NDArray[numpy.int64]) -> None: ...
 
 class CollisionChecker:
     """A robot among obstacles."""

@@ -33,10 +33,7 @@ unsigned check_rows(const Robot& robot, const Scene& scene, Workspace& w, const 
 
 bool ball_touches(const Scene& scene, int i, const Ball& ball) {
     const Place at = {fill_floats(ball.x), fill_floats(ball.y), fill_floats(ball.z)};
-    float radius;
-    const Floats gap = square_gap(scene, i, at, radius);
-    const float r = ball.r + scene.margin + radius;
-    return bits_of(gap < fill_floats(r * r)) != 0;
+    return find_touching(scene, i, at, Mover{ball.r + scene.margin, NoMotion{}, 1u}) != 0;
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA

@@ -37,13 +37,16 @@ class Search {
 
     Clearance run() {
         const auto spheres = robot_.given_spheres();
-        for (std::size_t s = 0; s < spheres.size(); ++s)
-            for (int i = 0; i < scene_.n; ++i) {
-                if (scene_.allowed && scene_.allowed[spheres[s].link * scene_.n + i]) continue;
-                const shapes::Distance d = data_.distance(i, centers_[s]);
-                offer({spheres[s].link, i, false, 0}, d.value - spheres[s].radius, d.normal, centers_[s],
-                      spheres[s].link, centers_[s], -1);
-            }
+        for (std::size_t s = 0; s < spheres.size(); ++s) {
+            const int link = spheres[s].link;
+            const double r = spheres[s].radius;
+            const auto limit = [&] { return result_.distance + r + tolerance::same_distance; };
+            data_.visit_near(centers_[s], limit, [&](int i) {
+                if (scene_.allowed && scene_.allowed[link * scene_.n + i]) return;
+                const shapes::Distance d = data_.distance(i, centers_[s], limit());
+                offer({link, i, false, 0}, d.value - r, d.normal, centers_[s], link, centers_[s], -1);
+            });
+        }
         for (const auto& [a, b] : robot_.given_pairs())
             for (std::size_t s = 0; s < spheres.size(); ++s) {
                 if (spheres[s].link != a) continue;

@@ -95,23 +95,33 @@ SceneData::SceneData(const Primitives& given)
         }
         add_bounds(low, high, half_space.radius);
     }
+    add_meshes(given);
+    add_clouds(given);
+    build_boxes();
     view_ = {boxes_.data(),
              capsules_.data(),
              cylinders_.data(),
              half_spaces_.data(),
+             meshes_.data(),
+             clouds_.data(),
              int(boxes_.size()),
              int(capsules_.size()),
              int(cylinders_.size()),
              int(half_spaces_.size()),
+             int(meshes_.size()),
+             int(clouds_.size()),
              int(low_[0].size()),
              {low_[0].data(), low_[1].data(), low_[2].data()},
              {high_[0].data(), high_[1].data(), high_[2].data()},
+             tree_.nodes.data(),
+             tree_.order.data(),
+             int(tree_.nodes.size()),
              nullptr,
              0,
              0};
 }
 
-shapes::Distance SceneData::distance(int primitive, const Vec3d& point) const {
+shapes::Distance SceneData::distance(int primitive, const Vec3d& point, double limit) const {
     const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
     std::size_t i = std::size_t(primitive);
     if (i < boxes_.size()) {
@@ -129,15 +139,58 @@ shapes::Distance SceneData::distance(int primitive, const Vec3d& point) const {
         const double* row = &cylinder_rows_[8 * i];
         return shapes::distance_from_cylinder(point, vector(row), vector(row + 3), row[6], row[7]);
     }
-    const double* row = &half_space_rows_[4 * (i - cylinders_.size())];
-    return shapes::distance_from_half_space(point, vector(row), row[3]);
+    i -= cylinders_.size();
+    if (i < half_spaces_.size()) {
+        const double* row = &half_space_rows_[4 * i];
+        return shapes::distance_from_half_space(point, vector(row), row[3]);
+    }
+    i -= half_spaces_.size();
+    if (i < mesh_data_.size()) return mesh_data_[i].distance(point, limit);
+    return cloud_data_[i - mesh_data_.size()].distance(point, limit);
 }
 
+void SceneData::add_meshes(const Primitives& given) {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < given.mesh_sizes.size(); ++i) {
+        const std::size_t count = 9 * std::size_t(given.mesh_sizes[i]);
+        mesh_data_.emplace_back(given.triangles.subspan(first, count), given.is_solid[i] != 0);
+        first += count;
+    }
+    for (const MeshData& mesh : mesh_data_) {
+        meshes_.push_back(mesh.view());
+        add_bounds(mesh.bounds(), mesh.grown());
+    }
+}
+void SceneData::add_clouds(const Primitives& given) {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < given.cloud_sizes.size(); ++i) {
+        const std::size_t count = 3 * std::size_t(given.cloud_sizes[i]);
+        cloud_data_.emplace_back(given.points.subspan(first, count), given.cloud_radii[i]);
+        first += count;
+    }
+    for (const CloudData& cloud : cloud_data_) {
+        clouds_.push_back(cloud.view());
+        add_bounds(cloud.bounds(), 0);
+    }
+}
+
+void SceneData::build_boxes() {
+    constexpr std::size_t most_without_tree = 64;
+    constexpr int leaf_size = 4;  // boxes: a test of one costs what that of a node does
+    if (low_[0].size() <= most_without_tree) return;
+    std::vector<Bounds> boxes(low_[0].size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) boxes[i].low[k] = low_[k][i], boxes[i].high[k] = high_[k][i];
+    tree_ = build_tree(boxes, leaf_size, 0);
+}
+
+void SceneData::add_bounds(const Bounds& box, double grown) {
+    add_bounds({box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}, grown);
+}
 void SceneData::add_bounds(const double (&low)[3], const double (&high)[3], double grown) {
-    const double round_up = 2 * tolerance::float_rounding;
     for (int k = 0; k < 3; ++k) {
-        low_[k].push_back(float(low[k] - grown - round_up * std::fabs(low[k])));
-        high_[k].push_back(float(high[k] + grown + round_up * std::fabs(high[k])));
+        low_[k].push_back(round_low(low[k] - grown));
+        high_[k].push_back(round_high(high[k] + grown));
     }
 }
 

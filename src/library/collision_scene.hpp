@@ -4,17 +4,22 @@
 #include <span>
 #include <vector>
 
-#include "cspace/collision/scene.hpp"
+#include "collision_cloud.hpp"
+#include "collision_mesh.hpp"
+#include "cspace/collision/boxes.hpp"
 #include "cspace/shapes/distance.hpp"
 
 namespace cspace::collision {
 
 // Rows of numbers [m]: boxes (15): centre, rotation row-major (columns: the axes), half sizes; capsules (7):
 // two ends, radius; cylinders (8): centre, unit axis, half length, radius; half spaces (4): outward unit
-// normal n, offset o (solid where n · x ≤ o). owners: the object of each primitive, in this order.
+// normal n, offset o (solid where n · x ≤ o); triangles (9): three corners, counter-clockwise from outside.
+// Mesh i has the next mesh_sizes[i] triangles; is_solid[i]: they enclose a solid, and corners that meet are
+// equal bit for bit. Cloud i has the next cloud_sizes[i] points (3), and the radius cloud_radii[i]. owners:
+// the object of each box, capsule, cylinder, half space, mesh and cloud, in this order.
 struct Primitives {
-    std::span<const double> boxes, capsules, cylinders, half_spaces;
-    std::span<const int> owners;
+    std::span<const double> boxes, capsules, cylinders, half_spaces, triangles, points, cloud_radii;
+    std::span<const int> mesh_sizes, is_solid, cloud_sizes, owners;
 };
 
 class SceneData {
@@ -22,8 +27,23 @@ class SceneData {
     explicit SceneData(const Primitives& given);
     const Scene& view() const { return view_; }  // without margins, and nothing allowed
     int owner(int primitive) const { return owners_[std::size_t(primitive)]; }
-    // The distance of a point from a primitive, in double.
-    shapes::Distance distance(int primitive, const Vec3d& point) const;
+    // The distance of a point from a primitive, in double; some distance beyond `limit` where it is larger.
+    shapes::Distance distance(int primitive, const Vec3d& point, double limit) const;
+
+    // Calls visit(primitive) for those whose boxes are within limit() of a point; it may shrink meanwhile.
+    template <class Limit, class Visit>
+    void visit_near(const Vec3d& point, const Limit& limit, const Visit& visit) const {
+        const auto is_near = [&](const float* low, const float* high) {
+            const double at[] = {point.x, point.y, point.z}, reach = limit();
+            double square = 0;
+            for (int k = 0; k < 3; ++k) {
+                const double beyond = std::max({double(low[k]) - at[k], at[k] - double(high[k]), 0.0});
+                square += beyond * beyond;
+            }
+            return square == 0 || (reach > 0 && square <= reach * reach);
+        };
+        visit_boxes(view_, is_near, [&](int primitive, bool) { visit(primitive); });
+    }
 
   private:
     std::vector<double> box_rows_, capsule_rows_, cylinder_rows_, half_space_rows_;
@@ -32,9 +52,18 @@ class SceneData {
     std::vector<Capsule> capsules_;
     std::vector<Cylinder> cylinders_;
     std::vector<HalfSpace> half_spaces_;
+    std::vector<MeshData> mesh_data_;
+    std::vector<Mesh> meshes_;
+    std::vector<CloudData> cloud_data_;
+    std::vector<Cloud> clouds_;
+    Tree tree_;  // of the boxes; empty where they are few
     std::vector<int> owners_;
     std::vector<float> low_[3], high_[3];
 
+    void add_meshes(const Primitives& given);
+    void add_clouds(const Primitives& given);
+    void build_boxes();
+    void add_bounds(const Bounds& box, double grown);
     void add_bounds(const double (&low)[3], const double (&high)[3], double grown);
 };
 

@@ -33,8 +33,8 @@ def distances(packed, p):
         note(owner, np.linalg.norm(np.maximum(s, 0)) + min(s.max(), 0))
     for row, owner in zip(packed.half_spaces, packed.half_space_object, strict=True):
         note(owner, row[:3] @ p - row[3])
-    for row, owner in zip(packed.points, packed.point_object, strict=True):
-        note(owner, np.linalg.norm(p - row[:3]) - row[3])
+    for (points, radius), owner in zip(packed.clouds, packed.cloud_object, strict=True):
+        note(owner, np.linalg.norm(p - points, axis=1).min() - radius)
     return found
 
 
@@ -50,17 +50,14 @@ def test_distances_from_the_arrays_are_those_of_the_shapes():
         found, p_world = distances(packed, p), cs.transform_points(T_world_base, p)
         for name in ("box_1", "sphere_1", "capsule_1", "cylinder_1", "half_space_1", "point_cloud_1"):
             assert found[named[name]] == pytest.approx(scene[name].distance(p_world), abs=1e-12)
-    (planes, vertices), hull = (
-        packed.hulls[packed.hull_object.tolist().index(named["hull_1"])],
-        scene["hull_1"],
-    )
-    assert np.abs((vertices @ planes[:, :3].T - planes[:, 3]).max(axis=1)).max() < 1e-11
-    points = rng.normal(size=(100, 3))
-    beyond = (points @ planes[:, :3].T - planes[:, 3]).max(axis=1)
-    assert np.array_equal(beyond <= 0, hull.contains(cs.transform_points(T_world_base, points)))
-    assert [packed.names[k] for k in packed.mesh_object] == ["mesh_1", "height_field_1"]
-    triangles = cs.transform_points(T_world_base, packed.meshes[0][0].reshape(-1, 3))
-    assert np.abs(scene["mesh_1"].distance(triangles)).max() < 1e-12
+    assert [packed.names[k] for k in packed.mesh_object] == ["hull_1", "mesh_1", "height_field_1"]
+    for owner, (triangles, solid) in zip(packed.mesh_object, packed.meshes, strict=True):
+        corners = cs.transform_points(T_world_base, triangles.reshape(-1, 3))
+        most = 1e-11 if packed.names[owner] == "hull_1" else 1e-12
+        assert np.abs(scene[packed.names[owner]].distance(corners)).max() < most
+        assert solid
+        first = triangles.reshape(-1, 3)
+        assert len(np.unique(first, axis=0)) == len(np.unique(first.round(9), axis=0))
 
 
 def test_attached_objects_are_no_obstacles_and_an_empty_scene_has_empty_arrays():
@@ -70,7 +67,7 @@ def test_attached_objects_are_no_obstacles_and_an_empty_scene_has_empty_arrays()
     packed = pack_scene(scene)
     assert packed.names == ()
     assert (packed.boxes.shape, packed.capsules.shape, packed.cylinders.shape) == ((0, 15), (0, 7), (0, 8))
-    assert (packed.half_spaces.shape, packed.points.shape, packed.hulls) == ((0, 4), (0, 4), ())
+    assert (packed.half_spaces.shape, packed.meshes, packed.clouds) == ((0, 4), (), ())
 
 
 def test_a_shape_of_another_class_is_refused_by_name():

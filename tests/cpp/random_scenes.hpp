@@ -15,8 +15,8 @@ struct RandomCell {
     std::vector<int> link_bodies;
     std::vector<cspace::collision::Sphere> spheres;
     std::vector<std::pair<int, int>> pairs;
-    std::vector<double> boxes, capsules, cylinders, half_spaces;
-    std::vector<int> owners;
+    std::vector<double> boxes, capsules, cylinders, half_spaces, triangles, points, cloud_radii;
+    std::vector<int> mesh_sizes, is_solid, cloud_sizes, owners;
     std::unique_ptr<cspace::collision::Checker> checker;
 
     std::vector<double> configuration(Random& random) const {
@@ -31,6 +31,44 @@ inline cspace::Mat3d random_rotation(Random& random) {
     const cspace::Mat3d turned = cspace::frame_along(z);
     const double angle = random.uniform(-3, 3), c = std::cos(angle), s = std::sin(angle);
     return turned * cspace::Mat3d{{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
+}
+
+// A closed surface around `center`, of rings of corners at random distances: a star of spikes and dents. A
+// third of them are surfaces without a solid.
+inline void add_mesh(Random& random, RandomCell& cell, const cspace::Vec3d& center) {
+    using namespace cspace;
+    const int rings = 2 + random.below(5), sectors = 3 + random.below(6);
+    const Mat3d R = random_rotation(random);
+    const double size = random.uniform(0.02, 0.4), rough = random.uniform(0, 0.8);
+    const auto corner = [&](double polar, double angle) {
+        const double r = size * (1 - rough * random.uniform(0, 1));
+        return center + r * (R * Vec3d{std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
+                                       std::cos(polar)});
+    };
+    constexpr double pi = 3.14159265358979323846;
+    const Vec3d top = corner(0, 0), bottom = corner(pi, 0);
+    std::vector<std::vector<Vec3d>> grid;
+    for (int i = 0; i < rings; ++i) {
+        grid.emplace_back();
+        for (int j = 0; j < sectors; ++j)
+            grid.back().push_back(corner(pi * (i + 1) / (rings + 1), 2 * pi * j / sectors));
+    }
+    int count = 0;
+    const auto add = [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+        for (const Vec3d& v : {a, b, c}) cell.triangles.insert(cell.triangles.end(), {v.x, v.y, v.z});
+        ++count;
+    };
+    for (int j = 0; j < sectors; ++j) {
+        const auto at = [&](int i, int k) { return grid[std::size_t(i)][std::size_t((j + k) % sectors)]; };
+        add(top, at(0, 0), at(0, 1));
+        add(bottom, at(rings - 1, 1), at(rings - 1, 0));
+        for (int i = 0; i + 1 < rings; ++i) {
+            add(at(i, 0), at(i + 1, 0), at(i + 1, 1));
+            add(at(i, 0), at(i + 1, 1), at(i, 1));
+        }
+    }
+    cell.mesh_sizes.push_back(count);
+    cell.is_solid.push_back(random.uniform(0, 1) < 0.67);
 }
 
 // A tree of n joints: some prismatic, some that mimic another, one link or two per body, up to 20 spheres a
@@ -71,11 +109,14 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
         rows.insert(rows.end(), {v.x, v.y, v.z});
     };
     const auto place = [&] { return 0.5 * random.vector() + random.uniform(0.4, 1.0) * random.axis(); };
-    for (int k = random.below(6); k > 0; --k) {
+    const int many = random.uniform(0, 1) < 0.1 ? 100 : 0;  // the boxes of primitives are in a tree then
+    for (int k = random.below(6) + many; k > 0; --k) {
         const Mat3d R = random_rotation(random);
         add(cell.boxes, place());
         for (int r = 0; r < 3; ++r) add(cell.boxes, row(R, r));
-        add(cell.boxes, {random.uniform(0.02, 0.3), random.uniform(0.02, 0.3), random.uniform(0.001, 0.3)});
+        const double most = many ? 0.06 : 0.3;
+        add(cell.boxes,
+            {random.uniform(0.02, most), random.uniform(0.02, most), random.uniform(0.001, most)});
     }
     for (int k = random.below(5); k > 0; --k) {
         const Vec3d a = place();
@@ -92,8 +133,15 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
         add(cell.half_spaces, random.axis());
         cell.half_spaces.push_back(-random.uniform(0.5, 1.0));
     }
+    for (int k = random.below(3); k > 0; --k) add_mesh(random, cell, place());
+    for (int k = random.below(2); k > 0; --k) {
+        const Vec3d center = place();
+        cell.cloud_sizes.push_back(1 + random.below(100));
+        cell.cloud_radii.push_back(random.uniform(0, 0.03));
+        for (int i = 0; i < cell.cloud_sizes.back(); ++i) add(cell.points, center + 0.2 * random.vector());
+    }
     const std::size_t count = cell.boxes.size() / 15 + cell.capsules.size() / 7 + cell.cylinders.size() / 8 +
-                              cell.half_spaces.size() / 4;
+                              cell.half_spaces.size() / 4 + cell.mesh_sizes.size() + cell.cloud_sizes.size();
     for (std::size_t i = 0; i < count; ++i) cell.owners.push_back(int(i));
     std::vector<std::pair<int, int>> allowed;  // the base stands where it stands
     for (std::size_t l = 0; l < cell.link_bodies.size(); ++l)
@@ -102,8 +150,9 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
     cell.checker = std::make_unique<collision::Checker>(
         std::make_shared<collision::RobotData>(cell.joints, coordinates, cell.lower, cell.upper,
                                                cell.link_bodies, cell.spheres, cell.pairs),
-        std::make_shared<collision::SceneData>(
-            collision::Primitives{cell.boxes, cell.capsules, cell.cylinders, cell.half_spaces, cell.owners}),
+        std::make_shared<collision::SceneData>(collision::Primitives{
+            cell.boxes, cell.capsules, cell.cylinders, cell.half_spaces, cell.triangles, cell.points,
+            cell.cloud_radii, cell.mesh_sizes, cell.is_solid, cell.cloud_sizes, cell.owners}),
         margin, allowed);
     return cell;
 }

@@ -10,13 +10,6 @@
 
 namespace cspace::collision::inline CSPACE_ISA {
 
-inline constexpr unsigned all_lanes = (1u << float_lanes) - 1;
-
-// How far a ball may move: not at all.
-struct NoMotion {};
-CSPACE_INLINE Floats square_of(NoMotion, float r) { return fill_floats(r * r); }
-CSPACE_INLINE Floats square_of(Floats growth, float r) { return square(growth + r); }
-
 // A set of primitives, by number.
 struct Candidates {
     const int* begin;
@@ -92,9 +85,7 @@ class Block {
         int n = 0;
         for (int k = 0; k < from.count; ++k) {
             const int i = from.begin[k];
-            float radius;
-            const Floats gap = square_gap(scene, i, at, radius);
-            if (bits_of(gap < square_of(growth, r + radius)) & wanted) into[n++] = i;
+            if (find_touching(scene, i, at, Mover{r, growth, wanted})) into[n++] = i;
         }
         return {into, n};
     }
@@ -203,7 +194,8 @@ class Block {
         float radius;
         Floats gap;
         if (touch.other_body < 0) {
-            gap = square_gap(scene, touch.other, at, radius);
+            gap =
+                square_gap(scene, touch.other, at, Mover{ball.r + scene.margin, NoMotion{}, wanted}, radius);
             radius += ball.r + scene.margin;
         } else {
             const Ball& other = robot.spheres[touch.other];
@@ -253,13 +245,14 @@ class Block {
     CSPACE_INLINE void compare_primitive(int x, const Place& at, int i, float r, const Motion& motion,
                                          Marks<Motion>& marks) {
         float radius;
-        const Floats gap = square_gap(scene, i, at, radius);
+        const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
         marks.touching = marks.touching | (gap < fill_floats(sum * sum));
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
             if (bits_of(near) & wanted)
-                marks.near = marks.near | (near & motion.may_reach(x, i, at, gap, sum));
+                marks.near =
+                    marks.near | (is_convex(scene, i) ? near & motion.may_reach(x, i, at, gap, sum) : near);
         }
     }
     // The same for a sphere of body b of a pair against one of body a.
@@ -285,7 +278,7 @@ class Block {
     CSPACE_COLD bool record_primitive(int l, int s, const Place& at, float r, Candidates near) {
         for (int k = 0; k < near.count; ++k) {
             float radius;
-            const Floats gap = square_gap(scene, near.begin[k], at, radius);
+            const Floats gap = square_gap(scene, near.begin[k], at, Mover{r, NoMotion{}, wanted}, radius);
             if (!touches(gap, r + radius)) continue;
             const Contact contact = {l, near.begin[k], false, 0};
             return record_touch({robot.links[l].body, s, -1, near.begin[k], contact});

@@ -303,15 +303,17 @@ class EdgeCheck {
             const Floats r = load_floats(radius);
             for (int k = 0; k < 3; ++k) low[k] = low[k] - r, high[k] = high[k] + r;
             for (int i = 0; i < count; ++i) w_.near_counts[first + i] = 0;
-            for (int p = 0; p < scene_.n; ++p) {
-                FloatMask meets = (low[0] < scene_.high[0][p]) & (high[0] > scene_.low[0][p]);
-                for (int k = 1; k < 3; ++k)
-                    meets = meets & (low[k] < scene_.high[k][p]) & (high[k] > scene_.low[k][p]);
-                for (unsigned bits = bits_of(meets); bits; bits &= bits - 1) {
+            const auto meets = [&](const float* box_low, const float* box_high) {
+                FloatMask all = (low[0] < box_high[0]) & (high[0] > box_low[0]);
+                for (int k = 1; k < 3; ++k) all = all & (low[k] < box_high[k]) & (high[k] > box_low[k]);
+                return bits_of(all);
+            };
+            visit_boxes(scene_, meets, [&](int p, unsigned bits) {
+                for (; bits; bits &= bits - 1) {
                     const int b = first + lowest_lane(bits);
                     w_.near[b * w_.near_stride + w_.near_counts[b]++] = p;
                 }
-            }
+            });
         }
     }
 

@@ -1,8 +1,8 @@
 // Squared distances of eight places from a primitive, 0 inside: the test of a ball against an obstacle.
 #pragma once
 
-#include "cspace/collision/placement.hpp"
-#include "cspace/collision/scene.hpp"
+#include "cspace/collision/boxes.hpp"
+#include "cspace/collision/tree_gap.hpp"
 
 namespace cspace::collision::inline CSPACE_ISA {
 
@@ -36,8 +36,35 @@ CSPACE_INLINE Floats square_gap(const HalfSpace& half_space, const Place& at) {
     return square(clamp_positive(at.x * n[0] + (at.y * n[1] + at.z * n[2]) - half_space.offset));
 }
 
-// Of primitive i; `radius` receives what it is grown by.
-CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, float& radius) {
+// How far a ball may move: not at all.
+struct NoMotion {};
+CSPACE_INLINE Floats square_of(NoMotion, float r) { return fill_floats(r * r); }
+CSPACE_INLINE Floats square_of(Floats growth, float r) { return square(growth + r); }
+
+// A ball of radius r, and by how much it may move, in the lanes that are wanted.
+template <class Growth>
+struct Mover {
+    float r;
+    Growth growth;
+    unsigned wanted;
+    CSPACE_INLINE Floats reach(float radius) const { return square_of(growth, r + radius); }
+    CSPACE_INLINE Sought seek(float radius, bool any) const {
+        return {reach(radius), any ? reach(radius) : square_of(NoMotion{}, r + radius), wanted, any};
+    }
+};
+template <class Growth>
+Mover(float, Growth, unsigned) -> Mover<Growth>;
+
+// Meshes and clouds come last, and are not.
+CSPACE_INLINE bool is_convex(const Scene& scene, int i) {
+    return i < scene.n_boxes + scene.n_capsules + scene.n_cylinders + scene.n_half_spaces;
+}
+
+// Of primitive i; `radius` receives what it is grown by. Exact in the lanes in which the ball may touch the
+// primitive, and beyond its reach in the others; if `any`, in one of these lanes.
+template <class Growth>
+CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball,
+                                float& radius, bool any = false) {
     if (i < scene.n_boxes) {
         radius = scene.boxes[i].radius;
         return square_gap(scene.boxes[i], at);
@@ -53,8 +80,25 @@ CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, floa
         return square_gap(scene.cylinders[i], at);
     }
     i -= scene.n_cylinders;
-    radius = scene.half_spaces[i].radius;
-    return square_gap(scene.half_spaces[i], at);
+    if (i < scene.n_half_spaces) {
+        radius = scene.half_spaces[i].radius;
+        return square_gap(scene.half_spaces[i], at);
+    }
+    i -= scene.n_half_spaces;
+    if (i < scene.n_meshes) {
+        radius = scene.meshes[i].radius;
+        return square_gap(scene.meshes[i], at, ball.seek(radius, any));
+    }
+    i -= scene.n_meshes;
+    radius = scene.clouds[i].radius;
+    return square_gap(scene.clouds[i], at, ball.seek(radius, any));
+}
+// The lanes in which a ball may touch primitive i; at least one of them.
+template <class Growth>
+CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball) {
+    float radius;
+    const Floats gap = square_gap(scene, i, at, ball, radius, true);
+    return bits_of(gap < ball.reach(radius)) & ball.wanted;
 }
 
 // δ · v, where δ leads from the nearest point of a primitive to a place: how fast the squared gap grows, by

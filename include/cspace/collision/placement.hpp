@@ -6,6 +6,8 @@
 
 namespace cspace::collision::inline CSPACE_ISA {
 
+inline constexpr unsigned all_lanes = (1u << float_lanes) - 1;
+
 struct Place {
     Floats x, y, z;
 };

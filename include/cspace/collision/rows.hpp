@@ -17,20 +17,38 @@ struct Apart {
     }
 };
 
+// What rounding may cost the squared gap of a box [m].
+inline constexpr float box_slack = 1e-6f;
+
+// The primitives that the ball of a body touches in some lane.
+inline Candidates find_candidates(Block& block, int body) {
+    const Place& at = block.body_place(body);
+    const float r = block.robot.bodies[body].ball.r + block.scene.margin;
+    const Floats reach = fill_floats((r + box_slack) * (r + box_slack));
+    int n = 0;
+    if (block.scene.n_nodes == 0)
+        while (n < block.scene.n) block.w.near[n] = n, ++n;
+    else
+        visit_boxes(
+            block.scene,
+            [&](const float* low, const float* high) {
+                return bits_of(square_gap(low, high, at) < reach) & block.wanted;
+            },
+            [&](int p, unsigned) { block.w.near[n++] = p; });
+    return block.narrow({block.w.near, n}, at, r, NoMotion{}, block.w.near_body);
+}
+
 // The lanes, among those wanted, of configurations q that touch something.
 inline unsigned lanes_in_collision(Block& block, const Floats* q, unsigned wanted) {
     const Robot& robot = block.robot;
     const Apart apart;
     block.wanted = wanted;
     block.begin(q, robot.n_joints);
-    for (int i = 0; i < block.scene.n; ++i) block.w.near[i] = i;
     for (int k = 0; k < block.w.n_order && block.wanted; ++k) {
         const int test = block.w.order[k];
         if (test < robot.n_bodies) {
             if (robot.bodies[test].count == 0) continue;
-            const Candidates near =
-                block.narrow({block.w.near, block.scene.n}, block.body_place(test),
-                             robot.bodies[test].ball.r + block.scene.margin, NoMotion{}, block.w.near_body);
+            const Candidates near = find_candidates(block, test);
             if (near.count && block.test_links(test, near, apart)) break;
             continue;
         }

@@ -7,9 +7,10 @@ from itertools import permutations
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace._core import CollisionChecker, CollisionRobot, CollisionScene
-from cspace.arrays import bounded_number
+from cspace.arrays import Array, bounded_number
 from cspace.collision.pack_scene import PackedScene, pack_scene
 from cspace.collision.robot_geometry import RobotGeometry, split_rows
 from cspace.collision.scene import Scene
@@ -80,18 +81,7 @@ def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checke
     scene.check_links({*geometry.links, *geometry.frames}, geometry.frames, geometry.robot)
     robot = add_attached(geometry, scene)
     packed = pack_scene(scene, geometry.T_world_base)
-    refuse_unread(packed)
-    capsules = np.concatenate([packed.capsules, packed.points[:, [0, 1, 2, 0, 1, 2, 3]]])
-    owners = np.concatenate(
-        [
-            packed.box_object,
-            packed.capsule_object,
-            packed.point_object,
-            packed.cylinder_object,
-            packed.half_space_object,
-        ]
-    ).astype(np.int64)
-    core = CollisionScene(packed.boxes, capsules, packed.cylinders, packed.half_spaces, owners)
+    core = compile_scene(packed)
     number = {name: k for k, name in enumerate(packed.names)}
     links = {name: k for k, name in enumerate(robot.links)}
     allowed = [
@@ -104,14 +94,38 @@ def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checke
     return Checker(CollisionChecker(robot.core, core, margin, pairs), robot, packed.names, margin)
 
 
-def refuse_unread(packed: PackedScene) -> None:
-    """Complain about obstacles that checks do not read yet."""
-    for kind, owners in (("hull", packed.hull_object), ("mesh or height field", packed.mesh_object)):
-        if len(owners):
-            raise InputError(
-                f"{packed.names[owners[0]]!r} is a {kind}, which checks of robots do not read yet; use boxes,"
-                " spheres, capsules, cylinders, half spaces or point clouds, such as its cover by spheres"
-            )
+def compile_scene(packed: PackedScene) -> CollisionScene:
+    """The compiled obstacles."""
+    owners = [
+        packed.box_object,
+        packed.capsule_object,
+        packed.cylinder_object,
+        packed.half_space_object,
+        packed.mesh_object,
+        packed.cloud_object,
+    ]
+    triangles, mesh_sizes = join_parts([mesh for mesh, _ in packed.meshes], 9)
+    points, cloud_sizes = join_parts([cloud for cloud, _ in packed.clouds], 3)
+    return CollisionScene(
+        packed.boxes,
+        packed.capsules,
+        packed.cylinders,
+        packed.half_spaces,
+        triangles,
+        mesh_sizes,
+        np.array([solid for _, solid in packed.meshes], dtype=np.int64),
+        points,
+        cloud_sizes,
+        np.array([radius for _, radius in packed.clouds], dtype=np.float64),
+        np.concatenate(owners).astype(np.int64),
+    )
+
+
+def join_parts(parts: list[Array], width: int) -> tuple[Array, npt.NDArray[np.int64]]:
+    """The rows (n, width) of all parts below each other, contiguous, and how many each part has."""
+    rows = [np.ascontiguousarray(part).reshape(-1, width) for part in parts]
+    sizes = np.array([len(part) for part in rows], dtype=np.int64)
+    return np.concatenate([np.empty((0, width)), *rows]), sizes
 
 
 def touching_pairs(scene: Scene) -> set[frozenset[str]]:

@@ -38,9 +38,9 @@ class PackedScene:
     names: of the obstacles; the arrays ending in _object hold the number of the obstacle per row.
     boxes (n, 15): centre, rotation by rows (its columns are the axes), half sizes. capsules (n, 7): both ends
     and the radius; spheres are capsules of equal ends. cylinders (n, 8): centre, unit axis, half length,
-    radius. half_spaces (n, 4): outward normal and offset o, solid where normal · x ≤ o. hulls: planes (n, 4)
-    and vertices (k, 3) each. meshes: triangles (m, 3, 3) each and whether they enclose a solid; height fields
-    are among them. points (n, 4): centres and radii of the points of clouds.
+    radius. half_spaces (n, 4): outward normal and offset o, solid where normal · x ≤ o. meshes: triangles
+    (m, 3, 3) each and whether they enclose a solid; hulls and height fields are among them, and corners of
+    triangles that meet are equal bit for bit. clouds: points (n, 3) each and the radius of all.
     """
 
     names: tuple[str, ...]
@@ -53,12 +53,10 @@ class PackedScene:
     cylinder_object: Numbers
     half_spaces: Array
     half_space_object: Numbers
-    hulls: tuple[tuple[Array, Array], ...]
-    hull_object: Numbers
     meshes: tuple[tuple[Array, bool], ...]
     mesh_object: Numbers
-    points: Array
-    point_object: Numbers
+    clouds: tuple[tuple[Array, float], ...]
+    cloud_object: Numbers
 
 
 def pack_scene(scene: Scene, T_world_base: Any = None) -> PackedScene:
@@ -81,7 +79,7 @@ def pack_scene(scene: Scene, T_world_base: Any = None) -> PackedScene:
     return PackedScene(tuple(shape.name for shape in obstacles), scene.version, **arrays, **numbers)
 
 
-WIDTHS = {"boxes": 15, "capsules": 7, "cylinders": 8, "half_spaces": 4, "hulls": 0, "meshes": 0, "points": 4}
+WIDTHS = {"boxes": 15, "capsules": 7, "cylinders": 8, "half_spaces": 4, "meshes": 0, "clouds": 0}
 """The arrays, and the numbers of their rows; zero for lists of arrays."""
 
 PACKED = (Box, Sphere, Capsule, Cylinder, HalfSpace, Hull, Mesh, HeightField, PointCloud)
@@ -89,8 +87,7 @@ PACKED = (Box, Sphere, Capsule, Cylinder, HalfSpace, Hull, Mesh, HeightField, Po
 
 OWNERS = {
     **{"boxes": "box_object", "capsules": "capsule_object", "cylinders": "cylinder_object"},
-    **{"half_spaces": "half_space_object", "hulls": "hull_object", "meshes": "mesh_object"},
-    "points": "point_object",
+    **{"half_spaces": "half_space_object", "meshes": "mesh_object", "clouds": "cloud_object"},
 }
 """The array of owners beside each array."""
 
@@ -110,16 +107,13 @@ def pack_shape(shape: Shape, T: Array) -> tuple[str, list[Any]]:
     if isinstance(shape, HalfSpace):
         return "half_spaces", [shape.placed(T).plane]
     if isinstance(shape, Hull):
-        normals = shape.planes[:, :3] @ R.T
-        planes = np.column_stack([normals, shape.planes[:, 3] + normals @ p])
-        return "hulls", [(planes, transform_points(T, shape.vertices))]
+        return "meshes", [(transform_points(T, shape.vertices)[shape.facets], True)]
     if isinstance(shape, Mesh):
-        return "meshes", [(transform_points(T, shape.vertices[shape.faces]), shape.solid)]
+        return "meshes", [(transform_points(T, shape.vertices)[shape.faces], shape.solid)]
     if isinstance(shape, HeightField):
-        return "meshes", [(transform_points(T, shape.triangles), True)]
+        return "meshes", [(shape.surface(T), True)]
     if isinstance(shape, PointCloud):
-        centers = transform_points(T, shape.points)
-        return "points", list(np.column_stack([centers, np.full(len(centers), shape.radius)]))
+        return "clouds", [(transform_points(T, shape.points), shape.radius)]
     known = ", ".join(kind.__name__ for kind in PACKED)
     raise InputTypeError(
         f"{shape.name!r} is a {type(shape).__name__}, which no check reads; use one of {known}"

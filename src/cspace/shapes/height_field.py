@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array, one_array, one_number
 from cspace.errors import InputError
 from cspace.shapes.mesh import Mesh, measure_mesh
-from cspace.shapes.shape import ORIGIN, Shape, find_bounds
+from cspace.shapes.shape import IDENTITY, ORIGIN, Shape, find_bounds
 from cspace.shapes.triangles import Faces
 from cspace.spatial.poses import transform_points
 from cspace.tables import shown
@@ -61,16 +61,19 @@ class HeightField(Shape):
     @cached_property
     def triangles(self) -> Array:
         """The closed surface (m, 3, 3) [m] in the shape frame: the field, its four sides and the bottom."""
+        return self.surface(IDENTITY)
+
+    def surface(self, T: Array) -> Array:
+        """The closed surface (m, 3, 3) [m] moved by T (4, 4): corners that meet are equal bit for bit."""
         rows, columns = self.heights.shape
         x, y = (np.linspace(-s / 2.0, s / 2.0, n) for s, n in zip(self.size, (columns, rows), strict=True))
         top = np.stack([*np.meshgrid(x, y), self.heights], axis=-1)
         floor = top.copy()
         floor[..., 2] = self.bottom
+        top, floor = transform_points(T, top), transform_points(T, floor)
         parts = [cut_cells(top), cut_cells(floor)[:, ::-1]]
-        for rim in (top[0], top[:, -1], top[-1, ::-1], top[::-1, 0]):
-            low = rim.copy()
-            low[:, 2] = self.bottom
-            parts.append(cut_cells(np.stack([low, rim])))
+        for side in (np.s_[0], np.s_[:, -1], np.s_[-1, ::-1], np.s_[::-1, 0]):
+            parts.append(cut_cells(np.stack([floor[side], top[side]])))
         return np.concatenate(parts)
 
     @property

@@ -1,0 +1,50 @@
+#include "collision_cloud.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "cspace/math/interrupts.hpp"
+
+namespace cspace::collision {
+
+namespace {
+
+constexpr int leaf_size = 8;  // points
+
+}  // namespace
+
+CloudData::CloudData(std::span<const double> points, double radius)
+    : points_(sort_points(points)),
+      nodes_(build_point_tree(points_, leaf_size)),
+      bounds_(bound_points(points)),
+      radius_(radius) {
+    const std::size_t n = points.size() / 3;
+    x_.resize(n), y_.resize(n), z_.resize(n);
+    visit_range(0, n, [&](std::size_t i) {
+        const double* p = &points_[3 * i];
+        x_[i] = float(p[0]), y_[i] = float(p[1]), z_[i] = float(p[2]);
+    });
+    for (std::size_t k = 0; k < 3; ++k) bounds_.low[k] -= radius, bounds_.high[k] += radius;
+}
+
+Cloud CloudData::view() const {
+    return {nodes_.data(), x_.data(), y_.data(), z_.data(), int(nodes_.size()), round_high(radius_)};
+}
+
+shapes::Distance CloudData::distance(const Vec3d& point, double limit) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double reach = std::max(limit + radius_, 0.0);
+    double square = reach * reach;
+    const auto place = [&](int k) {
+        const double* p = &points_[3 * std::size_t(k)];
+        return Vec3d{p[0], p[1], p[2]};
+    };
+    const int found = find_nearest(nodes_, point, square, [&](int k) {
+        const Vec3d apart = point - place(k);
+        return dot(apart, apart);
+    });
+    if (found < 0) return {infinity, {0, 0, 1}};
+    return shapes::from_place(point, place(found), radius_);
+}
+
+}  // namespace cspace::collision

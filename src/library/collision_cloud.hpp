@@ -1,0 +1,31 @@
+// The owner of a point cloud as an obstacle: its points in double and rounded to float, and their tree.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision_tree.hpp"
+#include "cspace/shapes/distance.hpp"
+
+namespace cspace::collision {
+
+// The slack of robots covers the rounding of points: those that a ball touches are no farther away than it.
+class CloudData {
+  public:
+    // points: three numbers [m] each; radius [m]: of the balls around them.
+    CloudData(std::span<const double> points, double radius);
+
+    Cloud view() const;
+    const Bounds& bounds() const { return bounds_; }
+    // The distance of a point from the nearest ball, up to `limit`; some distance beyond it elsewhere.
+    shapes::Distance distance(const Vec3d& point, double limit) const;
+
+  private:
+    std::vector<double> points_;
+    std::vector<TreeNode> nodes_;
+    std::vector<float> x_, y_, z_;
+    Bounds bounds_;
+    double radius_;
+};
+
+}  // namespace cspace::collision
