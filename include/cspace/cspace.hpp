@@ -54,6 +54,5 @@
 #include "cspace/planning/two_joints/boundaries.hpp"
 #include "cspace/planning/two_joints/path.hpp"
 #include "cspace/shapes/cover.hpp"
-#include "cspace/shapes/distance.hpp"
 #include "cspace/shapes/triangle.hpp"
 #include "cspace/version.hpp"

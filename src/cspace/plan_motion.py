@@ -17,9 +17,15 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.wrapping import nearest_winding
 from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
 from cspace.robot import Robot
+from cspace.spatial import as_pose
 from cspace.tables import html_table, one_line, shown
 
+__all__ = ["Plans", "plan", "plan_many"]
+
 Seed = int | np.random.Generator | None
+
+GOAL_SAMPLES: Final = 16
+"""Configurations that are looked for where a goal leaves freedom."""
 
 MOST_THREADS: Final = 1024
 """Threads that are believed."""
@@ -53,9 +59,9 @@ def plan(
     chosen = find_planner(planner, options)
     space = ArmSpace(robot, scene, margin)
     starts = space.as_rows(start, "start")
-    goals = find_goals(robot, space, starts, goal)
+    goals = _find_goals(robot, space, starts, goal)
     if not len(goals.rows):
-        return make_negative(space, chosen, "unreachable", goals.reason)
+        return _make_negative(space, chosen, "unreachable", goals.reason)
     found = chosen.plan(space, starts, goals.rows, rng=rng)
     if found.status == "invalid_start":
         raise InputError(
@@ -64,7 +70,7 @@ def plan(
     if found.status == "invalid_goal":
         if goals.is_given:
             raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
-        return make_negative(space, chosen, "unreachable", explain_goals(space, goals.rows))
+        return _make_negative(space, chosen, *_explain_goals(space, goals))
     return found
 
 
@@ -94,14 +100,15 @@ def plan_many(
     if len(rows) not in (1, len(wanted)):
         raise InputError(f"there are {len(rows)} starts and {len(wanted)} goals; give one start, or as many")
     rows = np.broadcast_to(rows, (len(wanted), space.dof)) if len(rows) == 1 else rows
-    sets = [find_goals(robot, space, row[None], goal) for row, goal in zip(rows, wanted, strict=True)]
+    sets = [_find_goals(robot, space, row[None], goal) for row, goal in zip(rows, wanted, strict=True)]
     open_rows = [k for k, each in enumerate(sets) if len(each.rows)]
     problems = [(rows[k], sets[k].rows) for k in open_rows]
     found = chosen.plan_each(space, problems, rng=rng, threads=count)
-    plans = [make_negative(space, chosen, "unreachable", each.reason) for each in sets]
+    plans = [_make_negative(space, chosen, "unreachable", each.reason) for each in sets]
     for k, each in zip(open_rows, found, strict=True):
         if each.status == "invalid_goal" and not sets[k].is_given:
-            each = replace(each, status="unreachable", reason=explain_goals(space, sets[k].rows))
+            status, reason = _explain_goals(space, sets[k])
+            each = replace(each, status=status, reason=reason)
         plans[k] = each
     return Plans(plans)
 
@@ -146,19 +153,21 @@ class Plans(Sequence[Plan]):
 
 
 @dataclass(frozen=True, eq=False)
-class Goals:
-    """The configurations of a goal: rows (g, dof); reason: why there are none; is_given: by the caller."""
+class _Goals:
+    """The configurations of a goal: rows (g, dof); reason: why there are none; is_given: by the caller;
+    is_whole: they are all that reach it, not samples of a self-motion."""
 
     rows: Array
     reason: str
     is_given: bool
+    is_whole: bool = True
 
 
-def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals:
+def _find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> _Goals:
     """The configurations of a goal as `plan` takes it, IK solutions at the turns nearest to the start."""
     if isinstance(goal, Mapping):
         solutions = robot.ik(**goal)
-    elif np.shape(goal) == (4, 4) and is_pose(goal):
+    elif np.shape(goal) == (4, 4) and _is_pose(goal):
         solutions = robot.ik(goal)
     else:
         if isinstance(goal, str) or np.ndim(goal) not in (1, 2):
@@ -166,31 +175,47 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals
                 f"goal is a {type(goal).__name__}; it must be configurations (dof,) or (g, dof), a pose"
                 " (4, 4), or a dict of keywords of robot.ik"
             )
-        return Goals(space.as_rows(goal, "goal"), "", True)
+        return _Goals(space.as_rows(goal, "goal"), "", True)
     if not solutions:
-        return Goals(np.empty((0, space.dof)), f"no IK solution: {solutions.reason}", False)
+        return _Goals(np.empty((0, space.dof)), f"no IK solution: {solutions.reason}", False)
     inside = solutions.within(robot.limits)
     if not inside:
-        return Goals(np.empty((0, space.dof)), f"no IK solution within limits: {inside.reason}", False)
+        return _Goals(np.empty((0, space.dof)), f"no IK solution within limits: {inside.reason}", False)
+    found = list(inside.q)
+    if solutions.freedom and isinstance(goal, Mapping) and "near" not in goal:
+        found += _sample_goal(robot, goal)
     lower, upper = robot.limits.lower, robot.limits.upper
-    rows = [nearest_winding(q, starts[0], robot.joint_types, lower, upper) for q in inside.q]
-    return Goals(np.ascontiguousarray(rows), "", False)
+    rows = [nearest_winding(q, starts[0], robot.joint_types, lower, upper) for q in found]
+    is_whole = bool(solutions.complete) and not solutions.freedom and not solutions.self_motions
+    return _Goals(np.ascontiguousarray(rows), "", False, is_whole)
 
 
-def is_pose(goal: Any) -> bool:
+def _is_pose(goal: Any) -> bool:
     """Whether (4, 4) numbers are a pose rather than four configurations of four joints."""
-    T = np.asarray(goal, dtype=np.float64)
-    R = T[:3, :3]
-    return bool((T[3] == (0, 0, 0, 1)).all() and np.abs(R @ R.T - np.eye(3)).max() < 1e-3)
+    try:
+        as_pose(goal)
+    except InputError:
+        return False
+    return True
 
 
-def explain_goals(space: ArmSpace, rows: Array) -> str:
-    """What the IK solutions touch."""
-    named = explain_contacts(space.geometry, rows, space.scene, space.margin)
-    return f"all {len(rows)} IK solutions within limits touch something: {named}"
+def _sample_goal(robot: Robot, goal: Mapping[str, Any]) -> list[Array]:
+    """Configurations that reach a goal that leaves freedom, each the nearest to a random one."""
+    seeds = robot.random_configuration(GOAL_SAMPLES, rng=0, reach=1.0)
+    found = [robot.ik(**goal, near=q) for q in seeds]
+    return [solutions.q[0] for solutions in found if solutions]
 
 
-def make_negative(space: ArmSpace, planner: ArmPlanner, status: str, reason: str) -> Plan:
+def _explain_goals(space: ArmSpace, goals: _Goals) -> tuple[str, str]:
+    """The status where no IK solution is free, and what they touch: a proof if they are all there are."""
+    named = explain_contacts(space.geometry, goals.rows, space.scene, space.margin)
+    if goals.is_whole:
+        return "unreachable", f"all {len(goals.rows)} IK solutions within limits touch something: {named}"
+    text = f"all {len(goals.rows)} sampled IK solutions touch something, though others exist: {named}"
+    return "undetermined", text
+
+
+def _make_negative(space: ArmSpace, planner: ArmPlanner, status: str, reason: str) -> Plan:
     """A plan without a path."""
     path = np.empty((0, space.dof))
     return Plan(status, reason, path, np.inf, -1, -1, False, {}, space, planner)

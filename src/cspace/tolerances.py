@@ -467,4 +467,10 @@ SAME_CORNER: Final = 1e-13
 """Distance between corners of a section, and of a corner from the line between its neighbours, relative to
 the size of the section, up to which a corner is none: where a plane cuts edges is off by some 1e-16."""
 
+BEYOND_MARGIN: Final = 1e-4
+"""Clearance [m] beyond the margin at which an escape from a collision aims: its steps end on the far side."""
+
+FLAT_CLEARANCE: Final = 1e-9
+"""Gradient of a clearance [m/rad or 1] at which no direction leads out of a collision."""
+
 __all__ = [name for name in globals() if name.isupper()]

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "collision_tree.hpp"
-#include "cspace/shapes/distance.hpp"
+#include "cspace/shapes/plain.hpp"
 
 namespace cspace::collision {
 

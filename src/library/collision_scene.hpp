@@ -7,7 +7,7 @@
 #include "collision_cloud.hpp"
 #include "collision_mesh.hpp"
 #include "cspace/collision/boxes.hpp"
-#include "cspace/shapes/distance.hpp"
+#include "cspace/shapes/plain.hpp"
 
 namespace cspace::collision {
 

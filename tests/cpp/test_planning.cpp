@@ -88,11 +88,12 @@ struct BallInPlane {
             boxes.insert(boxes.end(), {w[0], w[1], 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, w[2], w[3], 0.5});
             owners.push_back(int(owners.size()));
         }
+        collision::Primitives given = {};
+        given.boxes = boxes, given.owners = owners;
         checker = std::make_unique<collision::Checker>(
             std::make_shared<collision::RobotData>(joints, 2, lower, upper, bodies, spheres,
                                                    std::vector<std::pair<int, int>>{}),
-            std::make_shared<collision::SceneData>(collision::Primitives{boxes, {}, {}, {}, owners}), 0.0,
-            std::vector<std::pair<int, int>>{});
+            std::make_shared<collision::SceneData>(given), 0.0, std::vector<std::pair<int, int>>{});
     }
     ArmPlan plan(const Row& starts, const Row& goals, const ArmOptions& options = {}) const {
         return plan_arm({*checker, lower, upper, {}}, {starts, goals}, options);

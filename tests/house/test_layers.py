@@ -22,6 +22,7 @@ PLAIN_HEADERS = {
     "cspace/navigation/curves/curve.hpp",
     "cspace/navigation/route.hpp",
     "cspace/planning/options.hpp",
+    "cspace/shapes/plain.hpp",
 }
 
 

@@ -116,6 +116,11 @@ def test_what_cannot_be_reached_says_why():
     blocked = cs.plan(robot, start, {"position": goal}, cs.Scene([cs.Sphere(0.1, goal, name="ball")]))
     assert blocked.status == "unreachable"
     assert "IK solutions within limits touch something: link_2 touches ball" in blocked.reason
+    six = cs.load_robot("ur5e", geometry="skeleton")
+    deep = cs.Scene([cs.Box([0.8, 0.8, 0.8], [0.6, 0.0, 0.6], name="block")])
+    open_goal = cs.plan(six, np.radians([180, -90, 90, -90, -90, 0]), {"position": [0.6, 0.0, 0.6]}, deep)
+    assert open_goal.status == "undetermined"
+    assert "sampled IK solutions touch something, though others exist" in open_goal.reason
     hard = cs.plan(
         robot, start, [2.5, 0.3], cs.Scene([cs.Box([0.05, 1.0, 1.0], [0.0, 1.3, 0.0], name="bar")]), edges=50
     )

@@ -107,7 +107,9 @@ def test_published_spheres_have_their_centres_inside(name):
     links = set(robot.collision.links)
     for q in robot.random_configuration(3, rng=8):
         values = dict(zip(robot.joint_names, q, strict=True))
-        poses = published_poses(published["joints"], "base_link" if name != "panda" else "panda_link0", values)
+        poses = published_poses(
+            published["joints"], "base_link" if name != "panda" else "panda_link0", values
+        )
         spheres = world_spheres(robot, q)
         for row in published["spheres"]:
             if row["link"] in links:

@@ -4,15 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cspace/math/vec.hpp"
+#include "cspace/shapes/plain.hpp"
 
 namespace cspace::shapes {
-
-// Negative inside. normal: the unit gradient of the distance at the point.
-struct Distance {
-    double value;
-    Vec3d normal;
-};
 
 // From the ball of this radius around the nearest place of something of no volume.
 inline Distance from_place(const Vec3d& point, const Vec3d& place, double radius) {

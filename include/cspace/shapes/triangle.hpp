@@ -5,11 +5,6 @@
 
 namespace cspace::shapes {
 
-// A triangle with corners a, b, c.
-struct Corners {
-    Vec3d a, b, c;
-};
-
 // Twice the area of a triangle over the square of its longest side, up to which its plane is unknown: its
 // sides alone count then.
 inline constexpr double flat_triangle = 1e-12;

@@ -12,16 +12,10 @@ from cspace.arrays import Array, bounded_number, positive_number
 from cspace.collision.checks import HasGeometry, clearance, one_configuration
 from cspace.collision.scene import Scene
 from cspace.tables import one_line, shown
-from cspace.tolerances import LARGEST_NUMBER
+from cspace.tolerances import BEYOND_MARGIN, FLAT_CLEARANCE, LARGEST_NUMBER
 
 LONGEST_STEP: Final = 0.02
 """Of one step [L2 norm of the joints]: the nearest pair is looked up anew so often."""
-
-BEYOND: Final = 1e-4
-"""Clearance [m] that is aimed at beyond the margin: steps end on its far side."""
-
-FLAT: Final = 1e-9
-"""Gradient [m/rad or 1] at which no direction leads out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,17 +62,19 @@ def escape(
     rows = [at]
     while True:
         nearest = clearance(geometry, at, scene)
-        if nearest.distance > gap + BEYOND / 2.0:
+        if nearest.distance > gap + BEYOND_MARGIN / 2.0:
             way = f"moved by {shown(most - left)}; the least distance is {1000 * nearest.distance:.3g} mm"
             return Escape(at, np.array(rows), nearest.distance, way, True)
         slope = float(np.linalg.norm(nearest.gradient))
-        if slope <= FLAT or left <= 0.0:
+        if slope <= FLAT_CLEARANCE or left <= 0.0:
             cause = (
-                "no direction leads out" if slope <= FLAT else f"it is not free after a motion of {most:g}"
+                "no direction leads out"
+                if slope <= FLAT_CLEARANCE
+                else f"it is not free after a motion of {most:g}"
             )
             pair = " and ".join(nearest.pair or ())
             return Escape(at, np.array(rows), nearest.distance, f"{cause}: {pair} still touch", False)
-        step = min((gap + BEYOND - nearest.distance) / slope, LONGEST_STEP, left)
+        step = min((gap + BEYOND_MARGIN - nearest.distance) / slope, LONGEST_STEP, left)
         to = np.clip(at + step / slope * nearest.gradient, geometry.lower, geometry.upper)
         moved = float(np.linalg.norm(to - at))
         left = left - moved if moved > 0.0 else 0.0

@@ -24,6 +24,6 @@ class AORRTC(RRTConnect):
 
     improve: int = option(5000, "motions that may be checked for shorter paths", minimum=0, maximum=1 << 40)
 
-    def core_options(self, rng: Seed) -> ArmOptions:
+    def _core_options(self, rng: Seed) -> ArmOptions:
         """See RRTConnect."""
-        return self.make_options(rng, self.improve)
+        return self._make_options(rng, self.improve)

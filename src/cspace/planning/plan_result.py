@@ -13,8 +13,8 @@ from cspace.arrays import Array
 from cspace.tables import one_line, shown
 
 if TYPE_CHECKING:
-    from cspace.planning.arm_planner import ArmPlanner
     from cspace.planning.space import ArmSpace
+    from cspace.search import Planner
 
 STATUSES = ("found", "unreachable", "undetermined", "invalid_start", "invalid_goal")
 """What a plan can be: only "found" has a path; "unreachable" is proved; "undetermined" used up its budget."""
@@ -43,7 +43,7 @@ class Plan:
     certified: bool
     stats: Mapping[str, Any]
     space: ArmSpace
-    planner: ArmPlanner
+    planner: Planner
 
     def __bool__(self) -> bool:
         return self.status == "found"

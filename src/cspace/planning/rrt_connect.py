@@ -51,10 +51,13 @@ class RRTConnect(ArmPlanner):
     )
 
     def plan(self, space: ArmSpace, starts: ArrayLike, goals: ArrayLike, *, rng: Seed = 0) -> Plan:
-        """See ArmPlanner.plan. Raises InputError for configurations of another shape, or with NaN."""
+        """From starts (dof,) or (s, dof) to goals (dof,) or (g, dof); see ArmPlanner.plan.
+
+        Raises InputError for configurations of another shape, or with NaN.
+        """
         rows = space.as_rows(starts, "start"), space.as_rows(goals, "goal")
-        found = plan_arm(space.checker.core, space.bounds, space.wraps, *rows, self.core_options(rng))
-        return self.name_plan(space, rows, found)
+        found = plan_arm(space.checker.core, space.bounds, space.wraps, *rows, self._core_options(rng))
+        return self._name_plan(space, rows, found)
 
     def plan_each(
         self, space: ArmSpace, problems: Sequence[tuple[Any, Any]], *, rng: Seed = 0, threads: int = 0
@@ -64,15 +67,15 @@ class RRTConnect(ArmPlanner):
             (space.as_rows(starts, f"start {k}"), space.as_rows(goals, f"goal {k}"))
             for k, (starts, goals) in enumerate(problems)
         ]
-        options = self.core_options(rng)
+        options = self._core_options(rng)
         found = plan_arms(space.checker.core, space.bounds, space.wraps, rows, options, threads)
-        return [self.name_plan(space, ends, plan) for ends, plan in zip(rows, found, strict=True)]
+        return [self._name_plan(space, ends, plan) for ends, plan in zip(rows, found, strict=True)]
 
-    def core_options(self, rng: Seed) -> ArmOptions:
+    def _core_options(self, rng: Seed) -> ArmOptions:
         """The options as the core takes them."""
-        return self.make_options(rng)
+        return self._make_options(rng)
 
-    def make_options(self, rng: Seed, improve: int = 0) -> ArmOptions:
+    def _make_options(self, rng: Seed, improve: int = 0) -> ArmOptions:
         """The options as the core takes them. improve: motions that may be checked for shorter paths."""
         proved = self.search == "proved"
         return ArmOptions(
@@ -87,7 +90,7 @@ class RRTConnect(ArmPlanner):
             self.resolution,
         )
 
-    def name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> Plan:
+    def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> Plan:
         """The Plan of what the core found."""
         status, reason = explain_end(space, rows, found)
         path = found.path

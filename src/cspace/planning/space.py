@@ -13,12 +13,9 @@ from cspace.collision import Clearance, Edge, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
 from cspace.collision.checks import HasGeometry
 from cspace.errors import InputError
-from cspace.math.wrapping import wrap_near
+from cspace.math.wrapping import TURN, wrap_near
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
-
-TURN = 2.0 * np.pi
-"""The range of a revolute joint that has a limit on one side only."""
 
 
 class ArmSpace:
