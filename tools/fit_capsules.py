@@ -2,8 +2,8 @@
 
     python tools/fit_capsules.py ur5e ur.urdf.xacro --package-path ros --xacro-arg ur_type=ur5e --write
 
-The links of the robot file must have the frames of the catalogue, which is checked. A capsule (a, b, r) is the
-set of points within r of the segment a b. The capsules of a link minimise
+The links of the robot file must have the frames of the catalogue, which is checked. A capsule (a, b, r) is
+the set of points within r of the segment a b. The capsules of a link minimise
 
     Σ w₁ max(0, s − d)² + w₂ max(0, s − d − OUTSIDE)² + max(0, d − s)²
 

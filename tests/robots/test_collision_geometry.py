@@ -14,8 +14,8 @@ from data import shared_data
 
 GIVEN = [row.name for row in rows() if "collision" not in row.missing]
 SELF_FREE = {"Universal Robots": 0.38}
-"""Share of random configurations without self-collision, by maker: the meshes of UR5e have 0.63, since its joints
-turn twice around and the upper arm passes the base by millimetres; those of Panda 0.91, of iiwa 14 0.997."""
+"""Share of random configurations without self-collision, by maker: the meshes of UR5e have 0.63, since its
+joints turn twice around and the upper arm passes the base by millimetres; of Panda 0.91, of iiwa 14 0.997."""
 MOSTLY_FREE = 0.8
 """That of the others."""
 NEAR = 0.03
@@ -107,7 +107,7 @@ def test_geometry_and_pairs_survive_toml(name):
 @pytest.mark.data
 @pytest.mark.parametrize("name", ["panda", "ur5", "fetch_torso"])
 def test_published_spheres_have_their_centres_inside(name):
-    """At random configurations, by forward kinematics of the published joints, which have frames of their own."""
+    """At random configurations, by forward kinematics of the published joints with their own frames."""
     if name not in GIVEN:
         pytest.skip("has no geometry")
     file = shared_data() / "planning" / f"robot_{name.removesuffix('_torso')}.json"
@@ -116,7 +116,8 @@ def test_published_spheres_have_their_centres_inside(name):
     links = set(robot.collision.links)
     for q in robot.random_configuration(3, rng=8):
         values = dict(zip(robot.joint_names, q, strict=True))
-        poses = published_poses(published["joints"], "base_link" if name != "panda" else "panda_link0", values)
+        root = "panda_link0" if name == "panda" else "base_link"
+        poses = published_poses(published["joints"], root, values)
         spheres = world_spheres(robot, q)
         for row in published["spheres"]:
             if row["link"] in links:
