@@ -2,8 +2,8 @@
 
     python tools/fit_capsules.py ur5e ur.urdf.xacro --package-path ros --xacro-arg ur_type=ur5e --write
 
-The links of the robot file must have the frames of the catalogue, which is checked. A capsule (a, b, r) is the
-set of points within r of the segment a b. The capsules of a link minimise
+The links of the robot file must have the frames of the catalogue, which is checked. A capsule (a, b, r) is
+the set of points within r of the segment a b. The capsules of a link minimise
 
     Σ w₁ max(0, s − d)² + w₂ max(0, s − d − OUTSIDE)² + max(0, d − s)²
 
@@ -236,15 +236,15 @@ def descend(start: Capsules, points: Array, distance: Array) -> tuple[float, Cap
     return best, Capsules(best_x[:, :3], best_x[:, 3:6], best_x[:, 6])
 
 
-def fit_link(meshes: Sequence[Mesh], rng: np.random.Generator) -> Capsules:
+def fit_link(meshes: Sequence[Mesh], rng: np.random.Generator, least: int = 1) -> Capsules:
     """Few capsules of a link, in its frame."""
     dense, occlusion = outer_surface(meshes, rng)
     tree = cKDTree(dense.points)
     some = dense.points[rng.choice(len(dense.points), min(FIT_POINTS, len(dense.points)), replace=False)]
     around, distance = points_around(dense, tree, occlusion, rng)
     points, distances = np.concatenate([some, around]), np.concatenate([np.zeros(len(some)), distance])
-    best, fewest, best_k = np.inf, start_capsules(some, 1, rng), 1
-    for k in range(1, MOST + 1):
+    best, fewest, best_k = np.inf, start_capsules(some, least, rng), least
+    for k in range(least, MOST + 1):
         tries = [descend(start_capsules(some, k, rng), points, distances) for _ in range(STARTS)]
         cost, found = min(tries, key=lambda item: item[0])
         if cost < GAIN ** (k - best_k) * best:
@@ -397,6 +397,8 @@ def arguments(summary: str) -> argparse.Namespace:
     parser.add_argument("file", help="the URDF or xacro file of the robot")
     parser.add_argument("--package-path", action="append", default=[])
     parser.add_argument("--xacro-arg", action="append", default=[], metavar="NAME=VALUE")
+    parser.add_argument("--link", action="append", help="fit this link alone, and keep the others")
+    parser.add_argument("--least", type=int, default=1, help="capsules per link, at least")
     parser.add_argument("--measure", action="store_true", help="only what is in the catalogue file")
     parser.add_argument("--write", action="store_true", help="change the catalogue file")
     return parser.parse_args()
@@ -417,7 +419,12 @@ def main() -> None:
     links = [link for link in description.link_by_name if link in whole.link_by_name]
     links = [link for link in links if meshes_of(whole, link)]
     check_frames(Robot(description), Robot(whole), links, rng)
-    fitted = {} if given.measure else {link: fit_link(meshes_of(whole, link), rng) for link in links}
+    fitted = {}
+    for link in [] if given.measure else links:
+        again = not given.link or link in given.link
+        fitted[link] = (
+            fit_link(meshes_of(whole, link), rng, given.least) if again else capsules_of(description, link)
+        )
     if given.write:
         write_capsules(given.name, fitted)
         description = from_toml(catalogue_file(given.name))

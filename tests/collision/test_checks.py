@@ -188,7 +188,7 @@ def small_arm():
 
 
 BAD = {
-    "no geometry": (lambda r, s: cs.load_robot("ur5e").collides(np.zeros(6), s), InputError, "with_spheres"),
+    "no geometry": (lambda r, s: cs.load_robot("ur16e").collides(np.zeros(6), s), InputError, "with_spheres"),
     "shape": (lambda r, s: r.collides([0.0], s), InputError, "q has shape"),
     "nan": (lambda r, s: r.collides([0.0, np.nan], s), InputError, "nan at index"),
     "text": (lambda r, s: r.collides("home", s), InputTypeError, "q"),

@@ -121,11 +121,11 @@ def test_files_of_spheres_give_what_a_mapping_gives(seed, tmp_path):
 
 
 def test_a_robot_without_geometry_says_so_and_has_a_skeleton_on_request():
-    robot = cs.load_robot("ur5e")
+    robot = cs.load_robot("ur16e")
     assert not robot.collision
-    assert "the catalogue has no collision geometry for ur5e" in robot.collision.reason
+    assert "the catalogue has no collision geometry for ur16e" in robot.collision.reason
     assert "empty" in repr(robot.collision)
-    thin = cs.load_robot("ur5e", geometry="skeleton")
+    thin = cs.load_robot("ur16e", geometry="skeleton")
     assert thin.collision
     assert thin.collision.source == "capsules of the skeleton"
     scene = cs.Scene([cs.HalfSpace(name="floor", offset=-0.2)])

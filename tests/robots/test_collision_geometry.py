@@ -13,10 +13,13 @@ from cspace.spatial.poses import transform_points
 from data import shared_data
 
 GIVEN = [row.name for row in rows() if "collision" not in row.missing]
-SELF_FREE = 0.8
-"""Share of random configurations without self-collision: Panda's meshes have 0.91, published spheres the same."""
-NEAR = 0.16
-"""How far [m] the origin of a joint frame may be from the solid of its link: thicker than any of these arms."""
+SELF_FREE = {"Universal Robots": 0.38}
+"""Share of random configurations without self-collision, by maker: the meshes of UR5e have 0.63, since its
+joints turn twice around and the upper arm passes the base by millimetres; of Panda 0.91, of iiwa 14 0.997."""
+MOSTLY_FREE = 0.8
+"""That of the others."""
+NEAR = 0.03
+"""How far [m] the solids of links may be apart that a joint connects."""
 
 
 def world_spheres(robot, q):
@@ -30,7 +33,9 @@ def world_spheres(robot, q):
 
 
 def test_the_arms_that_have_geometry():
-    assert set(GIVEN) >= {"panda", "fr3", "iiwa14", "xarm7", "fetch", "fetch_torso", "planar_2r", "planar_3r"}
+    arms = "fetch fetch_torso fr3 gen3 iiwa14 panda planar_2r planar_3r puma560 so101"
+    arms += " ur10e ur3e ur5 ur5e xarm7"
+    assert set(GIVEN) >= set(arms.split())
     for row in rows():
         description = load_description(row.name)
         has = any(link.collision for link in description.links)
@@ -51,7 +56,8 @@ def test_named_poses_and_most_configurations_are_free(name):
     for pose, q in robot.named_poses.items():
         assert robot.contact(q) is None, pose
     q = robot.random_configuration(2000, rng=5)
-    assert 1.0 - robot.collides(q).mean() > SELF_FREE
+    least = SELF_FREE.get(robot.description.provenance.vendor, MOSTLY_FREE)
+    assert 1.0 - robot.collides(q).mean() > least
 
 
 @pytest.mark.parametrize("name", GIVEN)
@@ -69,19 +75,22 @@ def test_pairs_that_are_not_checked_are_listed_with_their_reason(name):
     assert not listed & checked
     adjacent = adjacent_pairs(geometry.link_bodies.tolist(), robot._assembly.parent.tolist())
     given = {frozenset(pair[:2]) for pair in robot.description.allowed_pairs} & every
-    assert listed == given | {frozenset((geometry.links[a], geometry.links[b])) for a, b in adjacent}
+    always = {frozenset(pair[:2]) for pair in geometry.allowed if pair[2].startswith("touch at each of")}
+    joined = {frozenset((geometry.links[a], geometry.links[b])) for a, b in adjacent}
+    assert listed == given | joined | always
+    assert len(always) <= 1
     assert all(pair[2] for pair in geometry.allowed)
 
 
 @pytest.mark.parametrize("name", GIVEN)
-def test_the_solids_stand_in_the_frames_of_their_links(name):
-    """The axis of a joint passes through or near the links that it connects, which foreign frames would not."""
+def test_the_solids_of_joined_links_meet(name):
+    """At any configuration, which solids in foreign frames would not."""
     robot = load_robot(name)
     for q in robot.random_configuration(3, rng=6):
-        for link, spheres in world_spheres(robot, q).items():
-            origin = robot.fk(q, link)[:3, 3]
-            gap = np.linalg.norm(spheres[:, :3] - origin, axis=1) - spheres[:, 3]
-            assert gap.min() < NEAR, link
+        spheres = world_spheres(robot, q)
+        for a, b in ((a, b) for a, b, why in robot.collision.allowed if why == "adjacent"):
+            gap = np.linalg.norm(spheres[a][:, None, :3] - spheres[b][:, :3], axis=-1)
+            assert (gap - spheres[a][:, None, 3] - spheres[b][:, 3]).min() < NEAR, (a, b)
 
 
 @pytest.mark.parametrize("name", GIVEN)
@@ -98,7 +107,7 @@ def test_geometry_and_pairs_survive_toml(name):
 @pytest.mark.data
 @pytest.mark.parametrize("name", ["panda", "ur5", "fetch_torso"])
 def test_published_spheres_have_their_centres_inside(name):
-    """At random configurations, by forward kinematics of the published joints, which have frames of their own."""
+    """At random configurations, by forward kinematics of the published joints with their own frames."""
     if name not in GIVEN:
         pytest.skip("has no geometry")
     file = shared_data() / "planning" / f"robot_{name.removesuffix('_torso')}.json"
@@ -107,9 +116,8 @@ def test_published_spheres_have_their_centres_inside(name):
     links = set(robot.collision.links)
     for q in robot.random_configuration(3, rng=8):
         values = dict(zip(robot.joint_names, q, strict=True))
-        poses = published_poses(
-            published["joints"], "base_link" if name != "panda" else "panda_link0", values
-        )
+        root = "panda_link0" if name == "panda" else "base_link"
+        poses = published_poses(published["joints"], root, values)
         spheres = world_spheres(robot, q)
         for row in published["spheres"]:
             if row["link"] in links:

@@ -72,20 +72,20 @@ def ends_of_joints(
     moving = [joint for joint in joints.values() if joint.moving]
     if not moving:
         raise InputError(
-            f"group {group!r} moves no joint of {description.name!r}; {list_choices(srdf, group)}"
+            f"group {group!r} moves no joint of {description.name!r}; {name_choices(srdf, group)}"
         )
     path = max((joints_to(description, joint) for joint in moving), key=len)
     off = [joint.name for joint in moving if joint not in path]
     if off:
         raise InputError(
             f"group {group!r} branches: the chain to {path[-1].child!r} is without {list_names(off)};"
-            f" {list_choices(srdf, group)}"
+            f" {name_choices(srdf, group)}"
         )
     first = next(k for k, joint in enumerate(path) if joint in moving)
     gaps = [joint.name for joint in path[first:] if joint.moving and joint.name not in joints]
     if gaps:
         left_out = list_names(gaps)
-        raise InputError(f"group {group!r} leaves out {left_out} of its chain; {list_choices(srdf, group)}")
+        raise InputError(f"group {group!r} leaves out {left_out} of its chain; {name_choices(srdf, group)}")
     base, tip = path[first].parent, path[-1].child
     fixed = [joint for joint in joints.values() if not joint.moving]
     while len(onward := [joint for joint in fixed if joint.parent == tip]) == 1:
@@ -103,7 +103,7 @@ def joints_to(description: Description, joint: Joint) -> list[Joint]:
     return path[::-1]
 
 
-def list_choices(srdf: Srdf, group: str) -> str:
+def name_choices(srdf: Srdf, group: str) -> str:
     """The remedy: the other groups."""
     others = [name for name in srdf.groups if name != group]
     named = f"one of the groups {list_names(others)}, or " if others else ""
