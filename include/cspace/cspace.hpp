@@ -50,7 +50,6 @@
 #include "cspace/planning/options.hpp"
 #include "cspace/planning/rrt_connect.hpp"
 #include "cspace/planning/simplify.hpp"
-#include "cspace/shapes/distance.hpp"
 #include "cspace/shapes/smallest_ball.hpp"
 #include "cspace/shapes/triangle.hpp"
 #include "cspace/version.hpp"
