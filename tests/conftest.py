@@ -8,6 +8,7 @@ from collections.abc import Generator
 import pytest
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+os.environ.setdefault("CSPACE_CACHE", "")  # tests keep no covers in the home folder
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -130,6 +130,30 @@ def cast_rays() -> Call:
     return lambda: cs.navigation.cast_rays(world, np.full((len(angles), 2), 3.5), angles)
 
 
+@call
+def cover() -> Call:
+    corners = np.random.default_rng(1).normal(size=(200, 3))
+    hull = cs.Hull(corners)
+    return lambda: cs.shapes.cover_mesh(hull, 0.02, cache=False)
+
+
+def two_joints(use: Callable[[Any], Any]) -> Callable[[], Call]:
+    """A call of an arm among small squares that touch each other."""
+
+    def make() -> Call:
+        places = 0.1 * np.stack(np.meshgrid(np.arange(-19, 19), np.arange(-19, 19)), axis=-1).reshape(-1, 2)
+        places = places[np.hypot(*(places + 0.05).T) > 1.2][::2]
+        squares = [place + 0.1 * np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) for place in places]
+        space = cs.configuration_space(cs.load_robot("planar_2r"), squares)
+        return lambda: use(space)
+
+    return make
+
+
+CALLS["components"] = two_joints(lambda space: space.components)
+CALLS["bitmap"] = two_joints(lambda space: [space.bitmap(5000) for _ in range(50)])
+
+
 def batch(name: str, rows: int, use: Callable[[Any, Any, Any], Any]) -> Callable[[], Call]:
     """A call over rows of configurations and their poses, of which there are only some different ones."""
 

@@ -20,6 +20,7 @@ COURSE += (
     "shapes",
     "collision",
     "planning",
+    "two-joint-space",
     "maps",
     "navigation",
     "planners",

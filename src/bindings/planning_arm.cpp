@@ -52,12 +52,14 @@ std::span<const double> read_rows(const collision::Checker& checker, const Const
 }
 
 ArmOptions read_options(bool proves_search, bool proves_answer, bool simplify, std::uint64_t seed,
-                        std::int64_t edges, double time_limit, double range, double resolution) {
+                        std::int64_t edges, std::int64_t improve, double time_limit, double range,
+                        double resolution) {
     const auto test = [](bool proves) { return proves ? EdgeTest::proved : EdgeTest::sampled; };
     ArmOptions options;
     options.search = test(proves_search), options.answer = test(proves_answer);
     options.simplify = simplify, options.seed = seed;
-    options.edges = edges, options.time_limit = time_limit;
+    options.edges = edges, options.improve = improve;
+    options.time_limit = time_limit;
     options.range = float(range), options.resolution = float(resolution);
     return options;
 }
@@ -92,7 +94,8 @@ nb::dict stats_of(const NamedPlan& named) {
     stats["blocked"] = s.blocked, stats["blocks"] = s.blocks, stats["nodes"] = s.nodes;
     stats["removed"] = s.removed, stats["shortcuts"] = s.shortcuts, stats["proofs"] = s.proofs;
     stats["search_seconds"] = s.search_seconds, stats["simplify_seconds"] = s.simplify_seconds;
-    stats["proof_seconds"] = s.proof_seconds;
+    stats["proof_seconds"] = s.proof_seconds, stats["improve_seconds"] = s.improve_seconds;
+    stats["improvements"] = s.improvements;
     return stats;
 }
 
@@ -101,7 +104,7 @@ nb::dict stats_of(const NamedPlan& named) {
 void bind_planning_arm(nb::module_& m) {
     nb::class_<ArmOptions>(m, "ArmOptions", "Options of plans of arms.")
         .def(nb::new_(&read_options), "proves_search"_a, "proves_answer"_a, "simplify"_a, "seed"_a, "edges"_a,
-             "time_limit"_a, "range"_a, "resolution"_a);
+             "improve"_a, "time_limit"_a, "range"_a, "resolution"_a);
     nb::class_<NamedPlan>(m, "ArmPlan", "A plan of an arm.")
         .def_prop_ro("status", [](const NamedPlan& p) { return int(p.plan.status); })
         .def_prop_ro("path", &NamedPlan::path, "The configurations (m, dof).")

@@ -17,8 +17,8 @@ struct RobotObject {
 };
 RobotObject* robot_of(PyObject* self) { return reinterpret_cast<RobotObject*>(self); }
 
-using Slots = Collected<RobotObject, free_kinematics, &RobotObject::solver, &RobotObject::scene,
-                        &RobotObject::checker>;
+using Slots =
+    Collected<RobotObject, free_kinematics, &RobotObject::solver, &RobotObject::scene, &RobotObject::checker>;
 
 // The property `solver` of the Python class builds the solver and leaves it in `_solver`.
 PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
@@ -45,7 +45,8 @@ int set_solver(PyObject* self, PyObject* value, void*) {
     return 0;
 }
 
-// The answer for one configuration in the scene that was checked last; null, without an error, for other calls.
+// The answer for one configuration in the scene that was checked last; null, without an error, for other
+// calls.
 PyObject* collides_in_last_scene(RobotObject* robot, PyObject* const* args, Py_ssize_t nargs) {
     if (!robot->checker || nargs < 1 || nargs > 2 || (nargs == 2 ? args[1] : Py_None) != robot->scene)
         return nullptr;
@@ -94,10 +95,10 @@ const char collides_doc[] =
 // A signature begins with the name of its method.
 const std::string ik_doc = "ik" + std::string(solve_doc).substr(std::strlen("solve"));
 
-PyMethodDef robot_methods[] = {{"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, ik_doc.c_str()},
-                               {"collides", as_method(&robot_collides), METH_FASTCALL | METH_KEYWORDS,
-                                collides_doc},
-                               {nullptr, nullptr, 0, nullptr}};
+PyMethodDef robot_methods[] = {
+    {"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, ik_doc.c_str()},
+    {"collides", as_method(&robot_collides), METH_FASTCALL | METH_KEYWORDS, collides_doc},
+    {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef robot_attributes[] = {
     {"_solver", &get_solver, &set_solver, "The solver, None before it is built; set once.", nullptr},
     {"_checked", &get_checked, &set_checked, "The scene checked last with its checker, or None.", nullptr},

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
     from cspace.plan_motion import plan, plan_many
+    from cspace.planning import configuration_space
     from cspace.robot import Robot
     from cspace.robots import load_robot
     from cspace.shapes import (
@@ -62,6 +63,7 @@ __all__ = [
     "Scene",
     "__version__",
     "collision",
+    "configuration_space",
     "export",
     "ik",
     "kinematics",
@@ -106,6 +108,7 @@ _LATER = {
     "Sphere": "cspace.shapes",
     "__version__": "cspace._core",
     "collision": "",
+    "configuration_space": "cspace.planning",
     "export": "",
     "ik": "",
     "kinematics": "",

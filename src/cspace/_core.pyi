@@ -321,6 +321,16 @@ class PolygonCore:
     def path_clearance(self, path: numpy.typing.NDArray[numpy.float64]) -> float:
         """The least distance from a path to a wall."""
 
+def find_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.typing.NDArray[numpy.int32], solid: bool, within: float, inside: bool, seconds: float) -> tuple[str, numpy.typing.NDArray[numpy.float64], float, float, int]:
+    """
+    Outcome, spheres (n, 4), bounds of the stick-out and of the uncovered depth, parts of the proof.
+    """
+
+def measure_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.typing.NDArray[numpy.int32], solid: bool, spheres: numpy.typing.NDArray[numpy.float64], inside: bool, tolerance: float, seconds: float) -> tuple[str, tuple[float, float], tuple[float, float], tuple[float, float]]:
+    """
+    Outcome, and two bounds each of stick-out, uncovered depth and uncovered share.
+    """
+
 class CollisionRobot:
     """A robot made of spheres."""
 
@@ -351,7 +361,7 @@ class CollisionChecker:
 class ArmOptions:
     """Options of plans of arms."""
 
-    def __init__(self, proves_search: bool, proves_answer: bool, simplify: bool, seed: int, edges: int, time_limit: float, range: float, resolution: float) -> None: ...
+    def __init__(self, proves_search: bool, proves_answer: bool, simplify: bool, seed: int, edges: int, improve: int, time_limit: float, range: float, resolution: float) -> None: ...
 
 class ArmPlan:
     """A plan of an arm."""
@@ -542,6 +552,41 @@ class NavigationCore:
 
     def path(self, start: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64] | None:
         """The way down from a free point."""
+
+class TwoJointSpace:
+    """The compiled half of cspace.planning.ConfigurationSpace."""
+
+    def __init__(self, base: numpy.typing.ArrayLike, lengths: numpy.typing.ArrayLike, link_radius: float, joint_1: numpy.typing.ArrayLike, joint_2: numpy.typing.ArrayLike, wraps_1: bool, wraps_2: bool, corners: numpy.typing.NDArray[numpy.float64], ends: numpy.typing.NDArray[numpy.int32], radii: numpy.typing.NDArray[numpy.float64], obstacles: numpy.typing.NDArray[numpy.int32]) -> None:
+        """
+        Joints as sign, offset, lower, upper; convex pieces as corners (n, 2), the end, the radius and the obstacle of each.
+        """
+
+    def bitmap(self, rows: int, columns: int) -> numpy.typing.NDArray[numpy.uint8]:
+        """A byte per cell (rows, columns): 1 where the arm touches."""
+
+    def obstacle_map(self, rows: int, columns: int) -> numpy.typing.NDArray[numpy.int32]:
+        """The obstacle in each cell (rows, columns), -1 where it is free."""
+
+    def obstacles_at(self, q: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.int32]:
+        """The obstacle at each configuration (n, 2), -1 where it is free."""
+
+    def boundaries(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.int32]]:
+        """
+        Points (k, 2) of all curves; the end, the kind and the obstacle of each.
+        """
+
+    def components(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
+        """
+        Least and greatest area (n, 2), a configuration (n, 2) and the region (n,) of each.
+        """
+
+    def component_at(self, q: numpy.typing.ArrayLike) -> int:
+        """
+        The component of a configuration; -1 where it is not free, -2 where it is not known.
+        """
+
+    def find_path(self, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """A free path (m, 2); empty where none is known."""
 
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...

@@ -17,6 +17,7 @@ __all__ = [
     "MeshError",
     "MissingExtraError",
     "Renamed",
+    "TimeLimitError",
     "UnknownNameError",
     "attribute_error",
     "keyword_error",
@@ -114,6 +115,10 @@ class InputTypeError(CspaceError, TypeError):
 
 class UnknownNameError(CspaceError, KeyError):
     """A name that is not in the list: robot, frame, joint, method. The message suggests the nearest."""
+
+
+class TimeLimitError(CspaceError, TimeoutError):
+    """A computation that took longer than its time_limit."""
 
 
 class _FileError(CspaceError, ValueError):

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, whole_number
 from cspace.collision import Scene
+from cspace.collision.checks import explain_contacts
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.wrapping import nearest_winding
 from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
@@ -19,9 +20,6 @@ from cspace.robot import Robot
 from cspace.tables import html_table, one_line, shown
 
 Seed = int | np.random.Generator | None
-
-MOST_CAUSES: Final = 3
-"""Contacts of IK solutions that a reason names."""
 
 MOST_THREADS: Final = 1024
 """Threads that are believed."""
@@ -60,7 +58,9 @@ def plan(
         return make_negative(space, chosen, "unreachable", goals.reason)
     found = chosen.plan(space, starts, goals.rows, rng=rng)
     if found.status == "invalid_start":
-        raise InputError(f"{found.reason}; move it away from there, or allow the pair in the scene")
+        raise InputError(
+            f"{found.reason}; robot.escape leads away from there, or allow the pair in the scene"
+        )
     if found.status == "invalid_goal":
         if goals.is_given:
             raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
@@ -185,14 +185,9 @@ def is_pose(goal: Any) -> bool:
 
 
 def explain_goals(space: ArmSpace, rows: Array) -> str:
-    """What the IK solutions touch, the most frequent pairs first."""
-    pairs: Counter[str] = Counter()
-    for q in rows:
-        pair = space.checker.core.find_contact(q)
-        pairs[" touches ".join(space.checker.name_pair(pair)) if pair else "none"] += 1
-    named = ", ".join(f"{name} ({n})" for name, n in pairs.most_common(MOST_CAUSES))
-    more = " and others" if len(pairs) > MOST_CAUSES else ""
-    return f"all {len(rows)} IK solutions within limits touch something: {named}{more}"
+    """What the IK solutions touch."""
+    named = explain_contacts(space.geometry, rows, space.scene, space.margin)
+    return f"all {len(rows)} IK solutions within limits touch something: {named}"
 
 
 def make_negative(space: ArmSpace, planner: ArmPlanner, status: str, reason: str) -> Plan:

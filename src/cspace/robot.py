@@ -21,6 +21,7 @@ from cspace.spatial.checks import PoseLike, one_pose
 if TYPE_CHECKING:
     from cspace import ik
     from cspace.collision import RobotGeometry, checks
+    from cspace.collision.escape import escape as escape_collision
     from cspace.export import Export
 
     Seed = int | np.random.Generator | None
@@ -211,6 +212,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         clearance = checks.clearance
         contact = checks.contact
         edge = checks.edge
+        escape = escape_collision
         ik_many_starts = ik.ik_many_starts
         ik_numeric = ik.ik_numeric
         ik_plan = ik.ik_plan
@@ -230,7 +232,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         ) -> Export: ...
 
     else:
-        clearance, contact, edge = (_Later("cspace.collision") for _ in range(3))
+        clearance, contact, edge, escape = (_Later("cspace.collision") for _ in range(4))
         export = _Later("cspace.export")
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
@@ -295,7 +297,9 @@ class Robot(Renamed, RobotBase, KinematicModel):
         if self._solver is None:
             from cspace.ik import solver_of_robot
 
-            self._solver = solver_of_robot(self)
+            made = solver_of_robot(self)
+            made._robot = self
+            self._solver = made
         return cast("ik.Solver", self._solver)
 
     def with_tool(self, T_tip_tool: PoseLike) -> Robot:

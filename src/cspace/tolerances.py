@@ -454,8 +454,17 @@ operations lose less than sixteen times 2^-53."""
 MESH_BYTES: Final = 256 * 2**20
 """Largest mesh file that is read (bytes): five million triangles, a hundred times a detailed robot link."""
 
-MOST_COVER_CELLS: Final = 200_000
-"""Most cells of a cover by spheres that are evaluated at once: a link needs some thousand, and checks against
-more spheres are slower than those against the mesh."""
+MEASURE_TOLERANCE: Final = 1.0 / 2000.0
+"""Share of the diagonal of a mesh by which the bounds of a measured cover may be apart: 0.1 mm of a link of
+20 cm, below the tolerance of its casting."""
+
+IN_PLANE: Final = 1e-9
+"""Distance [m] from the plane of an arm, relative to the size of a shape (at least 1 m), up to which a corner
+lies in it, and sine up to which an axis is normal to it or lies in it: coordinates computed with rotations
+are off by some 1e-16."""
+
+SAME_CORNER: Final = 1e-13
+"""Distance between corners of a section, and of a corner from the line between its neighbours, relative to
+the size of the section, up to which a corner is none: where a plane cuts edges is off by some 1e-16."""
 
 __all__ = [name for name in globals() if name.isupper()]

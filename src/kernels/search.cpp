@@ -7,4 +7,10 @@ NearRow find_nearest(const float* blocks, int count, int width, const float* q, 
                  : find_nearest_row<false>(blocks, count, width, q, wraps);
 }
 
+NearRow find_nearest_within(const float* blocks, const float* costs, int count, int width, const float* q,
+                            const unsigned char* wraps, float bound) {
+    return wraps ? find_nearest_row_within<true>(blocks, costs, count, width, q, wraps, bound)
+                 : find_nearest_row_within<false>(blocks, costs, count, width, q, wraps, bound);
+}
+
 }  // namespace cspace::search::inline CSPACE_ISA

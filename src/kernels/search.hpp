@@ -5,3 +5,6 @@
 // See cspace/search/nearest_row.hpp.
 CSPACE_NARROW_KERNEL(cspace::search, cspace::search::NearRow, find_nearest,
                      (const float* blocks, int count, int width, const float* q, const unsigned char* wraps))
+CSPACE_NARROW_KERNEL(cspace::search, cspace::search::NearRow, find_nearest_within,
+                     (const float* blocks, const float* costs, int count, int width, const float* q,
+                      const unsigned char* wraps, float bound))

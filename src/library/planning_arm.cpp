@@ -8,6 +8,7 @@
 #include "cspace/math/made_once.hpp"
 #include "cspace/math/threads.hpp"
 #include "cspace/math/wrapping.hpp"
+#include "cspace/planning/aorrtc.hpp"
 #include "cspace/planning/rrt_connect.hpp"
 #include "cspace/planning/simplify.hpp"
 #include "kernels/search.hpp"
@@ -98,6 +99,12 @@ class ArmEdges {
     const Box& box() const { return box_; }
     search::NearRow find_nearest(const search::ConfigurationTree& tree, const float* q) const {
         return kernels::find_nearest(tree.blocks(), tree.size(), tree.width(), q, box_.wraps);
+    }
+
+    search::NearRow find_nearest_within(const search::ConfigurationTree& tree, const float* q,
+                                        float bound) const {
+        return kernels::find_nearest_within(tree.blocks(), tree.costs(), tree.size(), tree.width(), q,
+                                            box_.wraps, bound);
     }
 
     // An edge of a tree.
@@ -225,6 +232,7 @@ class ArmSearch {
     std::vector<RowReport> report_rows(std::span<const double> rows, std::vector<int>& free) {
         std::vector<RowReport> reports(rows.size() / width_);
         for (std::size_t i = 0; i < reports.size(); ++i) {
+            edges_.has_time();  // polls
             const double* q = &rows[i * width_];
             RowReport& report = reports[i];
             if (!is_within_bounds(q))
@@ -257,11 +265,15 @@ class ArmSearch {
             const SearchEnd end = grow_trees();
             if (end == SearchEnd::edge_budget) return give_up(PlanStatus::edge_budget);
             if (end == SearchEnd::no_time) return give_up(PlanStatus::time_limit);
-            write_raw_path();
+            write_raw_path(trees_);
+            plan_.raw_cost = path_.length();
             if (options_.simplify) simplify();
             const bool is_whole = options_.answer == EdgeTest::sampled || prove_rest();
             if (edges_.is_late()) return give_up(PlanStatus::time_limit);
-            if (is_whole) return accept_path();
+            if (!is_whole) continue;
+            accept_path();
+            if (options_.improve > 0) improve();
+            return PlanStatus::found;
         }
     }
     SearchEnd grow_trees() {
@@ -270,20 +282,20 @@ class ArmSearch {
     }
 
     // The path of the trees, unwound: joints that wrap go on beyond ±π. Roots are the first nodes.
-    void write_raw_path() {
-        const auto& nodes = trees_.path();
+    template <class AnyTrees>
+    void write_raw_path(const AnyTrees& trees) {
+        const auto& nodes = trees.path();
         plan_.start = starts_[std::size_t(nodes.front().node)];
         plan_.goal = goals_[std::size_t(nodes.back().node)];
         std::vector<double> row(start_row(plan_.start), start_row(plan_.start) + width_);
         path_.clear();
         path_.append(row.data(), Path::checked);
         for (std::size_t i = 1; i + 1 < nodes.size(); ++i) {
-            continue_to_node(trees_.tree(nodes[i].tree), nodes[i].node, row);
+            continue_to_node(trees.tree(nodes[i].tree), nodes[i].node, row);
             path_.append(row.data(), int(i - 1));
         }
         continue_to_goal(row);
         path_.append(row.data(), int(nodes.size() - 2));
-        plan_.raw_cost = path_.length();
     }
     void continue_to_node(const search::ConfigurationTree& tree, int node, std::vector<double>& row) const {
         Trees::Row to;
@@ -329,11 +341,47 @@ class ArmSearch {
         return true;
     }
 
-    PlanStatus accept_path() {
+    void accept_path() {
         plan_.path = path_.rows();
         plan_.cost = path_.length();
         plan_.certified = options_.answer == EdgeTest::proved;
-        return PlanStatus::found;
+    }
+
+    // Looks for shorter paths, below the cost of the last one, as long as the budget lasts.
+    void improve() {
+        const StageTimer timer(plan_.stats.improve_seconds);
+        InformedSamples samples(edges_.box(), options_.seed);
+        std::int64_t left = options_.improve;
+        while (left > 0) {
+            CostBoundedTrees<ArmEdges> trees(edges_, samples, options_.range);
+            for (const int i : starts_) trees.add_start(round_row(start_row(i)).data());
+            for (const int i : goals_) trees.add_goal(round_row(goal_row(i)).data());
+            const std::int64_t before = edges_.answer_edges();
+            const SearchEnd end = trees.run(float(plan_.cost), left);
+            if (end == SearchEnd::met) keep_shorter(trees);
+            left -= trees.counts().edges + edges_.answer_edges() - before;
+            plan_.stats.samples += trees.counts().samples, plan_.stats.edges += trees.counts().edges;
+            plan_.stats.blocked += trees.counts().blocked;
+            if (end != SearchEnd::met) return;
+        }
+    }
+    void keep_shorter(const CostBoundedTrees<ArmEdges>& trees) {
+        const ArmPlan last = plan_;
+        write_raw_path(trees);
+        if (options_.simplify) Simplifier(edges_, path_).run();
+        const bool is_whole = options_.answer == EdgeTest::sampled || prove_improved();
+        if (is_whole && path_.length() < plan_.cost) {
+            accept_path();
+            ++plan_.stats.improvements;
+        } else {
+            plan_.start = last.start, plan_.goal = last.goal, plan_.turns = last.turns;
+        }
+    }
+    bool prove_improved() {
+        for (std::size_t i = 0; i + 1 < path_.size(); ++i)
+            if (path_.source(i) != Path::checked && !edges_.is_free(path_.row(i), path_.row(i + 1)))
+                return false;
+        return true;
     }
     PlanStatus give_up(PlanStatus status) {
         plan_.start = plan_.goal = -1;
@@ -350,8 +398,8 @@ class ArmSearch {
     void write_stats() {
         const Trees::Counts& counts = trees_.counts();
         ArmStats& stats = plan_.stats;
-        stats.samples = counts.samples, stats.rejected = counts.rejected;
-        stats.edges = counts.edges, stats.blocked = counts.blocked;
+        stats.samples += counts.samples, stats.rejected = counts.rejected;
+        stats.edges += counts.edges, stats.blocked += counts.blocked;
         stats.blocks = edges_.blocks();
         stats.nodes = trees_.tree(0).size() + trees_.tree(1).size();
         edges_.tally().write_most(plan_);
@@ -383,7 +431,7 @@ void check_problem(const ArmSpace& space, const ArmProblem& problem) {
                 "starts and goals must be rows with one entry per coordinate, one row at least");
 }
 void check_options(const ArmOptions& options) {
-    require(options.edges >= 0, "the budget of edges must not be negative");
+    require(options.edges >= 0 && options.improve >= 0, "budgets of edges must not be negative");
     require(options.range > 0 && std::isfinite(options.range), "the range must be positive");
     require(options.resolution > 0 && std::isfinite(options.resolution), "the resolution must be positive");
     require(options.time_limit >= 0, "the time limit must not be negative");

@@ -113,6 +113,40 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "refused": dict,
         "written": [TEXT],
     },
+    "cspace.plan/1": {
+        "robot": TEXT,
+        "base": TEXT,
+        "tip": TEXT,
+        "joints": [TEXT],
+        "start": VECTOR,
+        "goal": {
+            "configurations": LIST_OR_NULL,
+            "matrix": LIST_OR_NULL,
+            "position": LIST_OR_NULL,
+            "rotation": LIST_OR_NULL,
+            "angle": NUMBER_OR_NULL,
+            "direction": LIST_OR_NULL,
+            "look_at": LIST_OR_NULL,
+            "ray": LIST_OR_NULL,
+            "angle_to": LIST_OR_NULL,
+            "tool_axis": (list, str, type(None)),
+        },
+        "scene": TEXT_OR_NULL,
+        "margin": NUMBER,
+        "planner": TEXT,
+        "options": dict,
+        "seed": int,
+        "status": TEXT,
+        "reason": TEXT,
+        "path": MATRIX,
+        "cost": NUMBER_OR_NULL,
+        "goal_index": (int, type(None)),
+        "certified": bool,
+        "clearance": NUMBER_OR_NULL,
+        "seconds": NUMBER,
+        "stats": dict,
+        "written": [TEXT],
+    },
     "cspace.planners/1": {
         "planners": [
             {
@@ -131,6 +165,26 @@ SCHEMAS: dict[str, dict[str, Any]] = {
                 ],
             }
         ]
+    },
+    "cspace.space/1": {
+        "robot": TEXT,
+        "scene": TEXT,
+        "link_radius": NUMBER,
+        "obstacles": [TEXT],
+        "lower": VECTOR,
+        "upper": VECTOR,
+        "wraps": [bool],
+        "components": [
+            {"area": NUMBER, "area_bounds": VECTOR, "point": VECTOR, "region": int, "proved": bool}
+        ],
+        "boundaries": [{"kind": TEXT, "obstacle": TEXT, "points": MATRIX}],
+        "start": LIST_OR_NULL,
+        "goals": MATRIX,
+        "status": TEXT_OR_NULL,
+        "reason": TEXT_OR_NULL,
+        "path": MATRIX,
+        "length": NUMBER_OR_NULL,
+        "written": [TEXT],
     },
     "cspace.export/1": {
         "language": TEXT,

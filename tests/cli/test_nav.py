@@ -82,9 +82,12 @@ def test_values_are_of_the_type_of_their_option(typed, value):
 def test_planners_and_their_options():
     document = cspace("planners --json").json
     check(document, "cspace.planners/1")
-    assert [row["name"] for row in document["planners"]] == list(cs.navigation.PLANNERS)
+    every = [*cs.navigation.PLANNERS.values(), *cs.planning.PLANNERS.values()]
+    assert [row["name"] for row in document["planners"]] == [row.name for row in every]
+    worlds = {"polygons", "grid", "arm"}
+    assert {row["world"] for row in document["planners"]} == worlds
     table = cspace("planners").out
-    assert all(row.summary in table for row in cs.navigation.PLANNERS.values())
+    assert all(row.summary in table for row in every)
     told = cspace("planners rrt any_angle").out
     assert all(option.meaning in told for option in cs.navigation.PLANNERS["rrt"].options.values())
     assert "no options" in told

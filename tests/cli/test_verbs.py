@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -19,7 +21,9 @@ LINES = {
     "dh": "dh ur5e",
     "export": "export planar_2r",
     "nav": f"nav {ROOT}/examples/yard.txt --start 1 1 --goal 9 9",
+    "plan": "plan ur5e --geometry skeleton --from home --to up",
     "planners": "planners rrt",
+    "space": f"space planar_2r --scene {ROOT}/examples/two_links.txt --from -0.3 0.5 --to -1.2 1.25",
     "doctor": "doctor",
 }
 Q = [0.1, -1.2, 1.0, 0.2, 0.4, 0.3]
@@ -72,9 +76,10 @@ def test_help_has_examples_that_parse(verb):
 
 def test_examples_of_the_help_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    shutil.copy(ROOT / "examples/cell.toml", tmp_path)
     for verb in VERBS:
         for line in import_verb(verb).EXAMPLES.strip().splitlines():
-            if not any(word in line for word in ("arm.urdf", "--plot", "yard.geojson")):
+            if not any(word in line for word in ("arm.urdf", "--plot", "yard.geojson", "spheres.json")):
                 result = cspace(line.removeprefix("cspace "))
                 assert result.code == 0, f"{line}\n{result.err}"
 

@@ -12,8 +12,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from model.mutation import exercise, mutant
-from model.test_fuzz import SEEDS
+from model.mutation import exercise, exercise_srdf, mutant
+from model.test_fuzz import SEEDS, damaged_srdf
+from model.test_srdf import panda
 
 
 def main():
@@ -25,10 +26,11 @@ def main():
     slowest = 0.0
     with tempfile.TemporaryDirectory() as folder:
         while time.monotonic() < end:
-            data = mutant(rng, SEEDS)
+            semantic = rng.random() < 0.2
+            data = damaged_srdf(rng) if semantic else mutant(rng, SEEDS)
             start = time.perf_counter()
             try:
-                accepted += exercise(data, Path(folder) / "x")
+                accepted += exercise_srdf(data, panda()) if semantic else exercise(data, Path(folder) / "x")
             except Exception as error:
                 faults += 1
                 print(f"{type(error).__name__}: {error}\n{data!r}\n")

@@ -14,7 +14,7 @@ CPP_FILES = sorted(path for ending in ("*.hpp", "*.cpp") for path in (tree.ROOT 
 KERNEL_FILES = sorted((tree.ROOT / "src/kernels").glob("*.cpp"))
 BINDING_FILES = sorted((tree.ROOT / "src/bindings").glob("*.cpp"))
 # Rooms whose solvers src/kernels and src/library compile, and the headers of plain data that bindings share.
-COMPILED_ROOMS = {"ik", "maps", "navigation", "planning", "search"}
+COMPILED_ROOMS = {"ik", "maps", "navigation", "planning", "search", "shapes"}
 PLAIN_HEADERS = {
     "cspace/ik/chain.hpp",
     "cspace/ik/solution.hpp",

@@ -6,7 +6,20 @@ import re
 import numpy as np
 
 from cspace.errors import CspaceError
-from cspace.model import chain, default_tip, from_mjcf, from_toml, from_urdf, to_dh, to_toml, to_urdf, tree
+from cspace.model import (
+    chain,
+    default_tip,
+    from_mjcf,
+    from_toml,
+    from_urdf,
+    group_ends,
+    read_srdf,
+    to_dh,
+    to_toml,
+    to_urdf,
+    tree,
+    with_srdf,
+)
 
 POISON = [
     *(b"nan inf -inf 1e999 -0 1e-320 0x10 1_0 true false null".split()),
@@ -63,6 +76,10 @@ POISON = [
     b"free",
     b"ball",
     b"slide",
+    b"<group name='g'>",
+    b"<disable_collisions link1='base' link2='hand'/>",
+    b"<exclude body1='thigh' body2='shank'/>",
+    b"allowed_pairs = [['base', 'hand']]",
 ]
 
 
@@ -139,6 +156,21 @@ def exercise(data, path):
         file.write_bytes(data)
         accepted += exercise_file(read, file)
     return accepted
+
+
+def exercise_srdf(data, description):
+    """Read `data` as SRDF of a robot and use its groups; anything but CspaceError escapes.
+
+    Returns whether it worked.
+    """
+    with contextlib.suppress(CspaceError):
+        srdf = read_srdf(data)
+        for group in srdf.groups:
+            with contextlib.suppress(CspaceError):
+                chain(description, *group_ends(description, srdf, group))
+        use(with_srdf(description, srdf))
+        return True
+    return False
 
 
 def exercise_file(read, file):

@@ -6,12 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cspace.errors import CspaceError
-from cspace.model import from_mjcf, from_toml, from_urdf, to_toml, to_urdf
+from cspace.model import from_mjcf, from_toml, from_urdf, read_srdf, to_toml, to_urdf
 from cspace.robots import load_description
 from model.mjcf.models import ARM as MJCF
 from model.mjcf.models import random_model
-from model.mutation import POISON, exercise, mutant
+from model.mutation import POISON, exercise, exercise_srdf, mutant
 from model.random_robots import random_tree
+from model.test_srdf import PANDA, panda
 from model.test_toml import DH, SCREWS, TREE
 from model.test_urdf import ARM
 
@@ -35,6 +36,17 @@ def test_damaged_files_end_in_an_error_of_ours_or_in_a_robot(seed, tmp_path):
     assert accepted > 0, "the damage is too coarse to reach the deeper checks"
 
 
+def damaged_srdf(rng):
+    """An SRDF file of the Panda, damaged."""
+    return mutant(rng, [PANDA.encode()])
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_damaged_srdf_files_end_in_an_error_of_ours_or_in_a_robot(seed):
+    rng = np.random.default_rng(seed)
+    assert sum(exercise_srdf(damaged_srdf(rng), panda()) for _ in range(150)) > 0
+
+
 @pytest.mark.parametrize("arm", [ARM, MJCF], ids=["urdf", "mjcf"])
 def test_every_poison_in_every_attribute_is_refused_or_read(arm, tmp_path):
     """Each attribute value of the arms, each poison in its place."""
@@ -50,7 +62,7 @@ def test_every_poison_in_every_attribute_is_refused_or_read(arm, tmp_path):
 @settings(max_examples=150, deadline=None)
 @given(st.text(max_size=200))
 def test_any_text_is_refused_by_every_reader(text):
-    for read in (from_urdf, from_mjcf, from_toml):
+    for read in (from_urdf, from_mjcf, from_toml, read_srdf):
         with pytest.raises(CspaceError):
             read("x\n" + text if read is from_toml else "<" + text)
 
@@ -58,6 +70,6 @@ def test_any_text_is_refused_by_every_reader(text):
 @settings(max_examples=100, deadline=None)
 @given(st.binary(max_size=200))
 def test_any_bytes_are_refused(data):
-    for read in (from_urdf, from_mjcf):
+    for read in (from_urdf, from_mjcf, read_srdf):
         with pytest.raises(CspaceError):
             read(data)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -262,4 +264,40 @@ def test_a_file_that_is_no_robot_is_refused(content, says, tmp_path):
     elif content is not None:
         path.write_bytes(content)
     with pytest.raises(DescriptionError, match=says):
+        from_toml(path)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_allowed_pairs_are_written_and_read_back(seed):
+    rng = np.random.default_rng(seed)
+    robot = random_tree(rng, n=6)
+    links = list(robot.link_by_name)
+    chosen = [sorted(rng.choice(links, 2, replace=False).tolist()) for _ in range(4)]
+    pairs = tuple((a, b, reason) for (a, b), reason in zip(chosen, ["Never", "", 'a "b"', "é"], strict=True))
+    again = from_toml(to_toml(replace(robot, allowed_pairs=pairs)))
+    assert again.allowed_pairs == pairs
+    assert to_toml(again) == to_toml(replace(robot, allowed_pairs=pairs))
+
+
+def test_allowed_pairs_of_screws_and_tables_and_without_reasons():
+    for text, base, tip in ((SCREWS, "base_link", "tool0"), (DH, "base", "tip")):
+        robot = from_toml(f'allowed_pairs = [["{base}", "{tip}"]]\n{text}')
+        assert from_toml(to_toml(robot)).allowed_pairs == robot.allowed_pairs == ((base, tip, ""),)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "message"),
+    [
+        ("3", "allowed_pairs contains 3; a row is"),
+        ('["base", "hand"]', "allowed_pairs contains 'base'; a row is"),
+        ('[["base"]]', r"allowed_pairs contains \['base'\]; a row is"),
+        ('[["base", 1]]', "a row is"),
+        ('[["base", "hnad"]]', "no link 'hnad' in robot 'arm'; did you mean 'hand'"),
+        ('[["base", "base"]]', "names link 'base' twice"),
+    ],
+)
+def test_faulty_allowed_pairs_are_refused(pairs, message, tmp_path):
+    path = tmp_path / "arm.toml"
+    path.write_text(f"allowed_pairs = {pairs}\n{TREE}")
+    with pytest.raises(DescriptionError, match=f"arm.toml.*{message}"):
         from_toml(path)

@@ -39,7 +39,7 @@ def test_primitives_have_the_balls_of_the_rule():
 def test_a_half_space_and_too_fine_a_cover_are_refused():
     with pytest.raises(cs.errors.InputError, match="unbounded"):
         shapes.cover_shape(shapes.HalfSpace())
-    with pytest.raises(cs.errors.InputError, match="use a larger excess"):
+    with pytest.raises(cs.errors.InputError, match="use a larger one"):
         shapes.cover_shape(shapes.Box([1, 1, 1]), 1e-6)
     with pytest.raises(cs.errors.InputError, match="excess is 0"):
         shapes.cover_shape(shapes.Box([1, 1, 1]), 0.0)

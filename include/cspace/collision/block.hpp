@@ -135,10 +135,7 @@ class Block {
             const float r = robot.spheres[group.first + s].r + scene.margin;
             Marks<Motion> marks(motion.growth(x, at));
             for (int k = 0; k < near.count; ++k) {
-                float radius;
-                const Floats gap =
-                    square_gap(scene, near.begin[k], at, Mover{r, marks.growth, wanted}, radius);
-                marks.add(gap, r + radius);
+                compare_primitive(x, at, near.begin[k], r, motion, marks);
             }
             if (settle(marks) && motion.is_done(*this))
                 return record_primitive(l, group.first + s, at, r, near);
@@ -241,13 +238,24 @@ class Block {
         FloatMask touching = fill_floats(0.0f) < fill_floats(0.0f), near = touching;
 
         CSPACE_INLINE explicit Marks(decltype(Motion::no_growth()) growth) : growth(growth) {}
-        CSPACE_INLINE void add(Floats gap, float r) {
-            touching = touching | (gap < fill_floats(r * r));
-            if constexpr (Motion::is_moving) near = near | (gap < square_of(growth, r));
-        }
     };
-    // A sphere of body b of a pair against one of body a. The growth bounds the motion first; where it does
-    // not suffice, the part of the motion that brings them nearer.
+    // A sphere against a primitive. The growth bounds the motion first; where it does not suffice, the part
+    // of the motion that brings them nearer.
+    template <class Motion>
+    CSPACE_INLINE void compare_primitive(int x, const Place& at, int i, float r, const Motion& motion,
+                                         Marks<Motion>& marks) {
+        float radius;
+        const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
+        const float sum = r + radius;
+        marks.touching = marks.touching | (gap < fill_floats(sum * sum));
+        if constexpr (Motion::is_moving) {
+            const FloatMask near = gap < square_of(marks.growth, sum);
+            if (bits_of(near) & wanted)
+                marks.near =
+                    marks.near | (is_convex(scene, i) ? near & motion.may_reach(x, i, at, gap, sum) : near);
+        }
+    }
+    // The same for a sphere of body b of a pair against one of body a.
     template <class Motion>
     CSPACE_INLINE void compare_balls(int p, const Place& at, const Place& other, float r,
                                      const Motion& motion, Marks<Motion>& marks) {
@@ -256,7 +264,7 @@ class Block {
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
             if (bits_of(near) & wanted)
-                marks.near = marks.near | (near & motion.may_approach(p, at, other, gap, r));
+                marks.near = marks.near | (near & motion.may_meet(p, at, other, gap, r));
         }
     }
     template <class Motion>

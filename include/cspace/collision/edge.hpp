@@ -6,8 +6,11 @@
 // bounds its acceleration: h are the rates of the revolute joints that carry it, ρ_j bounds its distance from
 // axis j (a prismatic joint has ρ = 1 and no square of its own). If no ball, grown by that, touches anything,
 // the interval is proved free. If one touches at the middle, the edge is blocked. Other intervals are split.
-// The idea is that of Schwarzer, Saha & Latombe (2005, "Adaptive dynamic collision checking for single and
-// multiple articulated robots in complex environments"), who bound the length of the motion by levers alone.
+// Where a ball grown so does touch something convex, only the part of its velocity along the unit vector n
+// from there to its centre counts: with a distance d at the middle it keeps d − |n · v| w − ½ κ w² from the
+// plane through the nearest point across n, behind which all of it lies. The idea is that of Schwarzer, Saha
+// & Latombe (2005, "Adaptive dynamic collision checking for single and multiple articulated robots in complex
+// environments"), who bound the length of the motion by levers alone.
 #pragma once
 
 #include "cspace/collision/block.hpp"
@@ -111,14 +114,22 @@ class EdgeCheck {
             return relative_velocity(block.frames[pair.a], block.rates[pair.a], block.frames[pair.b],
                                      block.rates[pair.b], at);
         }
-        // Where a ball of body b may come as near to one of body a as r: only the part of its velocity along
-        // the line between them counts, for the other ball is convex.
-        CSPACE_INLINE FloatMask may_approach(int p, const Place& at, const Place& other, Floats gap,
-                                             float r) const {
+        // Where a ball of body b may come as near to one of body a as r.
+        CSPACE_INLINE FloatMask may_meet(int p, const Place& at, const Place& other, Floats gap,
+                                         float r) const {
             const Velocity v = velocity_in_pair(p, at);
-            const Floats along = (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
-            const Floats distance = sqrt(gap), left = distance - r - edge.width_2_ * edge.w_.pair_kappa[p];
-            return distance * left < abs(along) * edge.width_;
+            const Floats rate = (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
+            return may_approach(gap, rate, r, edge.w_.pair_kappa[p]);
+        }
+        // Where a ball of body x may come as near to a primitive as r.
+        CSPACE_INLINE FloatMask may_reach(int x, int primitive, const Place& at, Floats gap, float r) const {
+            const Velocity v = velocity_at(block.frames[x], block.rates[x], at);
+            return may_approach(gap, gap_rate(edge.scene_, primitive, at, v), r, edge.w_.kappa[x]);
+        }
+        // Both are convex, so only the part of the velocity along the line between them counts.
+        CSPACE_INLINE FloatMask may_approach(Floats gap, Floats rate, float r, float kappa) const {
+            const Floats distance = sqrt(gap), left = distance - r - edge.width_2_ * kappa;
+            return distance * left < abs(rate) * edge.width_;
         }
         // An upper bound of pair_growth at all places on body b.
         CSPACE_INLINE Floats pair_bound(int p) const {

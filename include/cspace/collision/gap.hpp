@@ -55,6 +55,11 @@ struct Mover {
 template <class Growth>
 Mover(float, Growth, unsigned) -> Mover<Growth>;
 
+// Meshes and clouds come last, and are not.
+CSPACE_INLINE bool is_convex(const Scene& scene, int i) {
+    return i < scene.n_boxes + scene.n_capsules + scene.n_cylinders + scene.n_half_spaces;
+}
+
 // Of primitive i; `radius` receives what it is grown by. Exact in the lanes in which the ball may touch the
 // primitive, and beyond its reach in the others; if `any`, in one of these lanes.
 template <class Growth>
@@ -94,6 +99,54 @@ CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at,
     float radius;
     const Floats gap = square_gap(scene, i, at, ball, radius, true);
     return bits_of(gap < ball.reach(radius)) & ball.wanted;
+}
+
+// δ · v, where δ leads from the nearest point of a primitive to a place: how fast the squared gap grows, by
+// halves.
+CSPACE_INLINE Floats beyond_signed(Floats x, float half) {
+    const Floats zero = fill_floats(0.0f);
+    return max(x - half, zero) + min(x + half, zero);
+}
+CSPACE_INLINE Floats gap_rate(const Box& box, const Place& at, const Velocity& v) {
+    const Floats x = at.x - box.center[0], y = at.y - box.center[1], z = at.z - box.center[2];
+    Floats sum = fill_floats(0.0f);
+    for (int k = 0; k < 3; ++k) {
+        const float* axis = box.axes + 3 * k;
+        const Floats beyond = beyond_signed(x * axis[0] + (y * axis[1] + z * axis[2]), box.half[k]);
+        sum = sum + beyond * (v.x * axis[0] + (v.y * axis[1] + v.z * axis[2]));
+    }
+    return sum;
+}
+CSPACE_INLINE Floats gap_rate(const Capsule& capsule, const Place& at, const Velocity& v) {
+    const float* a = capsule.along;
+    const Floats x = at.x - capsule.start[0], y = at.y - capsule.start[1], z = at.z - capsule.start[2];
+    const Floats share = (x * a[0] + (y * a[1] + z * a[2])) * capsule.inverse_square;
+    const Floats t = min(clamp_positive(share), fill_floats(1.0f));
+    return (x - t * a[0]) * v.x + ((y - t * a[1]) * v.y + (z - t * a[2]) * v.z);
+}
+CSPACE_INLINE Floats gap_rate(const Cylinder& cylinder, const Place& at, const Velocity& v) {
+    const float* n = cylinder.axis;
+    const Floats x = at.x - cylinder.center[0], y = at.y - cylinder.center[1], z = at.z - cylinder.center[2];
+    const Floats along = x * n[0] + (y * n[1] + z * n[2]);
+    const Floats ex = x - along * n[0], ey = y - along * n[1], ez = z - along * n[2];
+    const Floats across = sqrt(square(ex) + (square(ey) + square(ez)));
+    constexpr float nonzero = 1e-30f;  // on the axis nothing is outside: the quotient is zero
+    const Floats share = clamp_positive(across - cylinder.rim) / max(across, fill_floats(nonzero));
+    return share * (ex * v.x + (ey * v.y + ez * v.z)) +
+           beyond_signed(along, cylinder.half) * (v.x * n[0] + (v.y * n[1] + v.z * n[2]));
+}
+CSPACE_INLINE Floats gap_rate(const HalfSpace& half_space, const Place& at, const Velocity& v) {
+    const float* n = half_space.normal;
+    const Floats beyond = clamp_positive(at.x * n[0] + (at.y * n[1] + at.z * n[2]) - half_space.offset);
+    return beyond * (v.x * n[0] + (v.y * n[1] + v.z * n[2]));
+}
+CSPACE_INLINE Floats gap_rate(const Scene& scene, int i, const Place& at, const Velocity& v) {
+    if (i < scene.n_boxes) return gap_rate(scene.boxes[i], at, v);
+    i -= scene.n_boxes;
+    if (i < scene.n_capsules) return gap_rate(scene.capsules[i], at, v);
+    i -= scene.n_capsules;
+    if (i < scene.n_cylinders) return gap_rate(scene.cylinders[i], at, v);
+    return gap_rate(scene.half_spaces[i - scene.n_cylinders], at, v);
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA

@@ -13,11 +13,12 @@ namespace cspace::planning {
 enum class EdgeTest { sampled, proved };
 
 struct ArmOptions {
-    EdgeTest search = EdgeTest::sampled;  // of the trees
-    EdgeTest answer = EdgeTest::proved;   // of the path that is returned
+    EdgeTest search = EdgeTest::proved;  // of the trees
+    EdgeTest answer = EdgeTest::proved;  // of the path that is returned
     bool simplify = true;
     std::uint64_t seed = 0;                                       // shifts the samples; 0: not at all
     std::int64_t edges = 1 << 20;                                 // the search may check so many
+    std::int64_t improve = 0;                                     // so many more, to find shorter paths
     double time_limit = std::numeric_limits<double>::infinity();  // [s], decides only whether there is a path
     float range = 1;                                              // the longest edge of a tree [rad, m]
     float resolution = 1.0f / 32;                                 // of sampled edges [rad, m]
@@ -37,8 +38,9 @@ struct ArmStats {
     std::int64_t edges = 0, blocked = 0, blocks = 0;  // of the search; blocks of eight configurations in all
     std::int64_t nodes = 0, removed = 0;              // of both trees; edges whose proof failed
     std::int64_t shortcuts = 0,
-                 proofs = 0;  // edges checked for simplification; of what was left of the trees
-    double search_seconds = 0, simplify_seconds = 0, proof_seconds = 0;
+                 proofs = 0;        // edges checked for simplification; of what was left of the trees
+    std::int64_t improvements = 0;  // shorter paths after the first
+    double search_seconds = 0, simplify_seconds = 0, proof_seconds = 0, improve_seconds = 0;
 };
 
 // The nearest nodes of the two trees.

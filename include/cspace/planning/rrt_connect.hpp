@@ -1,7 +1,7 @@
 // RRT-Connect: two trees grow towards samples and towards each other (Kuffner & LaValle 2000, "RRT-Connect:
 // an efficient approach to single-query path planning"). Starts and goals are the roots of the trees. The
-// smaller tree grows. Nodes near obstacles take only samples near to them: the dynamic domain of Yershova,
-// Jaillet, Siméon & LaValle (2005), which is given up when nothing grows any more.
+// smaller tree grows. Nodes near obstacles take only samples near to them (dynamic_domain.hpp), which
+// is given up when nothing grows any more.
 //
 // A space offers:
 //   space.box()                   see box.hpp
@@ -18,7 +18,9 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/planning/box.hpp"
+#include "cspace/planning/dynamic_domain.hpp"
 #include "cspace/search/configuration_tree.hpp"
 #include "cspace/search/halton.hpp"
 #include "cspace/search/nearest_row.hpp"
@@ -79,11 +81,7 @@ class RrtConnect {
         search::ConfigurationTree nodes;
         std::vector<float> radii;  // of the domains of the nodes
     };
-    static constexpr float unbounded = std::numeric_limits<float>::infinity();
-    // In multiples of the range: the domain of a node whose extension was blocked, and the least.
-    static constexpr float first_radius = 4, least_radius = 1;
-    // By which share blocked and free extensions change it.
-    static constexpr float radius_change = 1e-4f;
+    static constexpr float unbounded = DynamicDomain::unbounded;
     // So many samples in a row outside all domains: the trees starve.
     static constexpr int most_rejections = 20000;
 
@@ -129,13 +127,15 @@ class RrtConnect {
     void list_straight_edges() {
         std::vector<std::pair<float, std::pair<int, int>>> pairs;
         Row a, b;
+        InterruptPoll poll(1024);
         for (int s = 0; s < nodes(0).size(); ++s)
             for (int g = 0; g < nodes(1).size(); ++g) {
+                poll.step();
                 nodes(0).copy_row(s, a.data()), nodes(1).copy_row(g, b.data());
                 pairs.push_back({box_.distance(a.data(), b.data()), {s, g}});
                 note_distance(pairs.back().first, a.data(), b.data());
             }
-        std::sort(pairs.begin(), pairs.end());
+        sort_polled(pairs);
         for (const auto& pair : pairs) straight_.push_back(pair.second);
     }
     bool try_straight_edge() {
@@ -163,12 +163,10 @@ class RrtConnect {
         else
             box_.interpolate(from.data(), sample.data(), range_ / far, to.data());
         if (!check_edge(from.data(), to.data())) {
-            radius(t, near.row) = domain == unbounded
-                                      ? first_radius * range_
-                                      : std::max(domain * (1 - radius_change), least_radius * range_);
+            radius(t, near.row) = DynamicDomain::after_blocked(domain, range_);
             return false;
         }
-        radius(t, near.row) = domain * (1 + radius_change);
+        radius(t, near.row) = DynamicDomain::after_free(domain);
         return connect(t, add_node(t, to.data(), near.row, length), to.data());
     }
     bool reject() {

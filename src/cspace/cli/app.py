@@ -28,12 +28,26 @@ VERBS: Final[Mapping[str, str]] = MappingProxyType(
         "jacobian": "the Jacobian, its singular values and the distance to singularity",
         "dh": "the Denavit-Hartenberg table and the link matrices",
         "nav": "a path through a map, by one planner or by all of them for comparison",
-        "planners": "the planners of nav, and their options",
+        "plan": "a free path of an arm among obstacles, every motion of it proved",
+        "planners": "the planners of nav and plan, and their options",
+        "space": "the configuration space of a planar arm with two joints, and a path through it",
         "export": "the inverse kinematics of an arm as C++, C or Python code that does not depend on cspace",
         "doctor": "versions, optional parts and a self-check",
     }
 )
 """The verbs, one line each. The verb `x` lives in verbs/x.py, which is imported only to run it."""
+
+
+SHELL_WORDS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "cs.robots.names()": "cspace robots",
+        "cs.robots.search()": "cspace robots WORD",
+        "robot.with_spheres(…)": "--spheres FILE",
+        'load the robot with geometry="skeleton"': "--geometry skeleton",
+        "robot.escape leads away from there": "move it away from there",
+    }
+)
+"""What messages of the library say for Python, and what is typed instead."""
 
 
 class VerbModule(Protocol):
@@ -141,10 +155,10 @@ def write_overview() -> str:
 
 
 def in_words_of_shell(message: str) -> str:
-    """The message of an error with the verbs that list robots instead of the functions."""
-    return message.replace("cs.robots.names()", "cspace robots").replace(
-        "cs.robots.search()", "cspace robots WORD"
-    )
+    """The message of an error with the words of the command line instead of the functions."""
+    for call, words in SHELL_WORDS.items():
+        message = message.replace(call, words)
+    return message
 
 
 def print_message(message: str) -> None:

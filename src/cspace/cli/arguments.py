@@ -19,6 +19,8 @@ OF_PI: Final = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?\*?pi(?:/(\d+(?:\.\d*)?
 NEGATIVE_AXES: Final = frozenset({"-x", "-y", "-z"})
 NO_VALUE: Final = re.compile(r"(--[\w-]+=|-[a-z]=?)--")
 """An option with -- for its value, of which argparse makes none."""
+LENGTHS: Final = {"mm": 1000.0, "cm": 100.0, "m": 1.0}
+"""The units of lengths, in units per metre; of those that fit the end of a word the first counts."""
 OPEN: Final = "any"
 """What is typed for a coordinate that does not matter."""
 
@@ -102,6 +104,33 @@ def read_seconds(text: str) -> float:
             f"{threading.TIMEOUT_MAX:.2g} s"
         )
     return value
+
+
+def read_length(text: str) -> float:
+    """A length [m], or with its unit: 0.005, 5mm, 0.5cm."""
+    word = text.strip()
+    unit = next((unit for unit in LENGTHS if word.lower().endswith(unit)), "")
+    return read_number(word[: len(word) - len(unit)]) / LENGTHS.get(unit, 1.0)
+
+
+def read_seed(text: str) -> int:
+    """A seed of random numbers: a whole number below 2⁶⁴, not negative."""
+    word = text.strip()
+    if not re.fullmatch(r"\d{1,20}", word, re.ASCII) or int(word) >= 2**64:
+        raise argparse.ArgumentTypeError(
+            f"{word!r} is not a seed; expected a whole number from 0 to 2^64 - 1"
+        )
+    return int(word)
+
+
+def split_numbers(words: Sequence[str], option: str) -> list[float] | None:
+    """Words as numbers, or None for one word that is a name. Raises UsageError for a mixture."""
+    if len(words) == 1 and not is_number(words[0].strip()):
+        return None
+    try:
+        return [read_number(word) for word in words]
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"{option} takes a value per joint, or one named pose: {error}") from None
 
 
 def named_value(text: str) -> tuple[str, str]:

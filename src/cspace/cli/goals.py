@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -20,6 +21,11 @@ POINTED: Final = ("direction", "look_at", "ray", "angle_to")
 """Parts of a goal that constrain the tool axis."""
 GOAL_WORDS: Final = ("xyz", "xy", "angle", *ORIENTATIONS, "matrix", *POINTED)
 """Every word of a goal."""
+KEYWORDS: Final = re.compile(
+    r"\b(position|rotation|direction|look_at|ray|angle_to|angle|tool_axis|locked|swivel|samples|near"
+    r"|least_squares|goal_parts)=(?=[^=]|$)"
+)
+"""The keywords of robot.ik that are options here."""
 NO_GOAL: Final = (
     "no goal is given: give a pose (--matrix, or --xyz with one of --rpy, --wxyz, --xyzw and --rotation), or"
     " the parts of one that matter (--xyz, --xy, --direction, --look-at, --ray, an orientation alone)"
@@ -36,7 +42,12 @@ class Goal:
 
     def ask(self, robot: Any, **options: Any) -> Any:
         """The result of robot.ik."""
-        return robot.ik(self.T, **self.parts, tool_axis=self.tool_axis, **options)
+        return robot.ik(**self.keywords, **options)
+
+    @property
+    def keywords(self) -> dict[str, Any]:
+        """The keywords of robot.ik."""
+        return {"goal": self.T, **self.parts, "tool_axis": self.tool_axis}
 
     @property
     def rows(self) -> str | tuple[str, ...]:
@@ -111,6 +122,11 @@ def goal_of(args: argparse.Namespace) -> Goal:
     if args.angle is not None:
         parts["angle"] = read_radians(args.angle, degrees=args.deg)
     return Goal(None, parts, axis_of(args))
+
+
+def name_options(message: str) -> str:
+    """A message of the library with the options of the command line: near= is --near."""
+    return KEYWORDS.sub(lambda match: "--" + match[1].replace("_", "-"), message)
 
 
 def is_rounded(R: Array) -> bool:

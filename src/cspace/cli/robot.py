@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Sequence
+from itertools import cycle
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 GRIPPER: Final = re.compile("grip|jaw|finger|claw", re.IGNORECASE)
 """What joints and links of grippers are called."""
+FEWER_DECIMALS: Final = 2
+"""How many decimals joints may lose where a terminal is narrow."""
 
 
 def load_chosen(args: argparse.Namespace) -> Robot:
@@ -34,6 +37,7 @@ def load_chosen(args: argparse.Namespace) -> Robot:
         package_paths=args.package_path,
         xacro_args=dict(args.xacro_arg),
         calibration=args.calibration,
+        geometry=getattr(args, "geometry", None) or "collision",
     )
 
 
@@ -72,10 +76,13 @@ def read_configuration(values: Sequence[float], robot: Robot, subject: str, *, d
     return np.array([read_radians(value, degrees=degrees and kind == "R") for value, kind in typed])
 
 
-def degrees_note(args: argparse.Namespace, robot: Robot) -> str:
-    """A remark on typed angles beyond a full revolution, which were probably meant in degrees."""
-    joints = getattr(args, "near", None) or getattr(args, "q", None) or []
-    turning = (value for value, kind in zip(joints, robot.joint_types, strict=False) if kind == "R")
+def degrees_note(args: argparse.Namespace, robot: Robot, typed: Sequence[float] | None = None) -> str:
+    """A remark on typed angles beyond a full revolution, which were probably meant in degrees.
+
+    typed: values of the joints, one configuration after the other, if not those of --near or of the verb.
+    """
+    joints = typed or getattr(args, "near", None) or getattr(args, "q", None) or []
+    turning = (value for value, kind in zip(joints, cycle(robot.joint_types), strict=False) if kind == "R")
     angles = [*turning, *(getattr(args, "rpy", None) or []), getattr(args, "angle", None) or 0.0]
     if args.deg or max(map(abs, angles)) <= TURN:
         return ""

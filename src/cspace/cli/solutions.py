@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.goals import Goal
 from cspace.cli.output import Cell, Output, Table
-from cspace.cli.robot import joint_headings, joint_texts
+from cspace.cli.robot import FEWER_DECIMALS, joint_headings, joint_texts
 from cspace.tolerances import LARGE_RESIDUAL, NEARLY_SINGULAR
 
 if TYPE_CHECKING:
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
 RADIANS: Final = re.compile(r"(\d[\d.e+-]*) rad\b")
 """An angle in a sentence of the library."""
-
-FEWER_DECIMALS: Final = 2
-"""How many decimals joints may lose where a terminal is narrow."""
 
 
 def solution_rows(

@@ -1,6 +1,7 @@
 """Collision: scenes of obstacles, the collision geometry of robots, and checks of one in the other."""
 
 from cspace.collision.checks import Clearance, Edge, clearance, collides, contact, edge
+from cspace.collision.escape import Escape, escape
 from cspace.collision.pack_scene import PackedScene, pack_scene
 from cspace.collision.robot_geometry import RobotGeometry, robot_geometry
 from cspace.collision.scene import Attachment, Scene
@@ -10,6 +11,7 @@ __all__ = [
     "Attachment",
     "Clearance",
     "Edge",
+    "Escape",
     "PackedScene",
     "RobotGeometry",
     "Scene",
@@ -17,6 +19,7 @@ __all__ = [
     "collides",
     "contact",
     "edge",
+    "escape",
     "pack_scene",
     "replace_spheres",
     "robot_geometry",

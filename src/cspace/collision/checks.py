@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from math import prod
 from typing import Any, Protocol
@@ -18,6 +19,9 @@ from cspace.errors import InputError
 from cspace.kinematics.batch import thread_count
 from cspace.tables import one_line, show_fields, shown
 from cspace.tolerances import LARGEST_NUMBER
+
+MOST_CAUSES = 3
+"""Pairs that an explanation names."""
 
 
 class HasGeometry(Protocol):
@@ -170,6 +174,15 @@ def edge(
         reason = "the motion passes an obstacle too closely to prove it free; add clearance or a margin"
         return Edge(verdict, False, float("nan"), None, reason)
     return Edge(verdict, resolution is None, float("nan"), None, "")
+
+
+def explain_contacts(robot: HasGeometry, rows: Array, scene: Scene | None, margin: float = 0.0) -> str:
+    """What configurations (n, dof) touch, the most frequent pairs first, in words."""
+    checker = checker_of(robot.collision, scene, margin)
+    found = (checker.core.find_contact(q) for q in rows)
+    pairs = Counter(" touches ".join(checker.name_pair(pair)) for pair in found if pair is not None)
+    named = ", ".join(f"{name} ({n})" for name, n in pairs.most_common(MOST_CAUSES))
+    return named + (" and others" if len(pairs) > MOST_CAUSES else "")
 
 
 def as_configurations(geometry: RobotGeometry, q: ArrayLike, subject: str = "q") -> Array:

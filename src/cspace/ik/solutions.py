@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import InputTypeError
+from cspace.errors import InputError, InputTypeError
 from cspace.ik.answers import INCOMPLETE, METRICS, NEAREST, SINGULAR, UNREACHABLE, VERDICTS, Answers
 from cspace.ik.branches import branch_labels
 from cspace.ik.context import About
@@ -23,6 +23,10 @@ from cspace.kinematics.batch import check_choice, limits_of
 from cspace.model import Limits
 from cspace.tables import html_table, one_line, shown
 from cspace.tolerances import FAR_GOAL, ORIENTATION_KEPT, SLIGHT_MISS
+
+if TYPE_CHECKING:
+    from cspace.collision import Scene
+    from cspace.collision.checks import HasGeometry
 
 ORIENTATION_FIRST: Final = 1e4
 """Weight of a radian, in lengths of the arm, in the search for the distance: the orientation is kept."""
@@ -161,6 +165,27 @@ class Solutions(Answers, _core.SolutionsBase):
         if len(rows) == 0 and len(self):
             note = limits_reason(self.solver, settled, bounds)
         return self._take(rows, q, note)
+
+    def free(
+        self, scene: Scene | None = None, *, robot: HasGeometry | None = None, margin: float = 0.0
+    ) -> Solutions:
+        """The solutions at which the robot touches neither the obstacles of a scene nor itself.
+
+        robot: whose collision geometry counts; the robot that was asked unless given. margin [m]: everything
+        closer than this counts as touching. If none is left, the reason says what they touch. Raises
+        InputError for a robot without collision geometry, and for a Solver without a robot.
+        """
+        from cspace.collision.checks import collides, explain_contacts
+
+        whose = self.solver._robot if robot is None else robot
+        if whose is None:
+            raise InputError(f"{self.solver.name} is a solver without a robot; give free(scene, robot=…)")
+        q = np.ascontiguousarray(self.q)
+        touching = collides(whose, q, scene, margin=margin)
+        note = None
+        if len(q) and touching.all():
+            note = f"every solution touches something: {explain_contacts(whose, q, scene, margin)}"
+        return self._take(np.flatnonzero(~touching), q[~touching], note)
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Solutions:
         """The one solution nearest to q (dof,), each revolute joint taken by the turn that brings it closest.

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from typing import Any, Protocol, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from cspace.kinematics import KinematicModel, assemble_chain
 from cspace.kinematics.batch import limits_of
 from cspace.model import Chain, Limits, chain, from_screws
 from cspace.tolerances import REACH_ROUNDING
+
+if TYPE_CHECKING:
+    from cspace.collision.checks import HasGeometry
 
 MAX_JOINTS = 16
 MAX_SETTLED = 6
@@ -51,6 +54,9 @@ class Solver(_core.SolverBase, KinematicModel):
     Raises NoClosedFormError for mimic joints, no joint or more than sixteen; InputError for limits of another
     number of joints.
     """
+
+    _robot: HasGeometry | None = None
+    """The robot whose solver it is: `Solutions.free` checks it for collisions."""
 
     def __init__(self, chain: Chain, limits: Limits | bool | None = None, *, name: str | None = None) -> None:
         if not isinstance(chain, Chain):

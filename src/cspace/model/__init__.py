@@ -12,12 +12,14 @@ from cspace.model.degrees_of_freedom import (
 from cspace.model.description import Description, Provenance, Source, named_poses
 from cspace.model.dh import DHTable, dh_matrix, from_dh
 from cspace.model.dh_derivation import to_dh
+from cspace.model.group_ends import group_ends
 from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.link_matrices import LinkMatrices, link_matrices
 from cspace.model.mjcf import from_mjcf
 from cspace.model.mounting import mounted, with_frame
 from cspace.model.screws import from_screws, twists
+from cspace.model.srdf import GroupState, JointGroup, Srdf, read_srdf, with_srdf
 from cspace.model.toml import from_toml
 from cspace.model.toml_writer import to_toml
 from cspace.model.tree import Tree, tree
@@ -30,8 +32,10 @@ __all__ = [
     "DHTable",
     "Description",
     "Geometry",
+    "GroupState",
     "Inertial",
     "Joint",
+    "JointGroup",
     "Limits",
     "Link",
     "LinkMatrices",
@@ -40,6 +44,7 @@ __all__ = [
     "Mimic",
     "Provenance",
     "Source",
+    "Srdf",
     "Tree",
     "body_freedoms",
     "calibrated",
@@ -52,11 +57,13 @@ __all__ = [
     "from_toml",
     "from_urdf",
     "from_xacro",
+    "group_ends",
     "link_matrices",
     "mobility",
     "mounted",
     "named_poses",
     "point_freedoms",
+    "read_srdf",
     "task_word",
     "to_dh",
     "to_toml",
@@ -65,4 +72,5 @@ __all__ = [
     "tree_freedoms",
     "twists",
     "with_frame",
+    "with_srdf",
 ]

@@ -29,7 +29,7 @@ FORMAT: Final = 1
 T = TypeVar("T")
 Poses = dict[str, dict[str, float]]
 
-ABOUT = ("format", "name", "title", "vendor", "aliases", "missing", "sources", "poses")
+ABOUT = ("format", "name", "title", "vendor", "aliases", "missing", "sources", "poses", "allowed_pairs")
 FORMS = {"joints": ("links", "joints", "loops"), "screws": ("screws",), "dh": ("dh",)}
 PLACE = ("origin", "xyz", "rpy")
 ENDS = ("name", "type", "parent", "child")
@@ -44,7 +44,8 @@ def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = 
     source: a path, or the text itself (a string with a line break). package_paths: folders where package://
     names of meshes are looked for first.
     The file holds name = …, and one of: [[links]] and [[joints]] (a tree), [screws] with [[screws.joints]]
-    (axis and point of each joint at zero, T_zero), or [dh] with [[dh.rows]]. Unknown keys are refused.
+    (axis and point of each joint at zero, T_zero), or [dh] with [[dh.rows]]. allowed_pairs = [[link, link,
+    reason], …] names the links that may touch; the reason may be left out. Unknown keys are refused.
     Raises DescriptionError with the file, the table and, for syntax, the line.
     """
     if isinstance(source, str) and "\n" in source:
@@ -86,12 +87,25 @@ class _Reader:
             raise top.fault(f"format is {top.values['format']!r}; this version reads format {FORMAT}")
         name = top.text("name")
         poses = {pose: self.pose(top.table("poses"), pose) for pose in top.table("poses").values}
-        about = self.provenance(top)
+        about, pairs = self.provenance(top), self.allowed_pairs(top)
         if forms[0] == "joints":
-            return self.at(top, lambda: self.tree(top, name, poses, about))
+            plain = self.at(top, lambda: self.tree(top, name, poses, about))
+            return self.at(top, lambda: replace(plain, allowed_pairs=pairs)) if pairs else plain
         read = self.screws if forms[0] == "screws" else self.dh
         plain = self.at(top, lambda: read(top, name))
-        return self.at(top, lambda: replace(plain, poses=poses, provenance=about))
+        return self.at(top, lambda: replace(plain, poses=poses, provenance=about, allowed_pairs=pairs))
+
+    def allowed_pairs(self, top: Table) -> tuple[tuple[str, str, str], ...]:
+        """The pairs of links that may touch, each with its reason."""
+        rows = top.values.get("allowed_pairs", [])
+        pairs = []
+        for row in rows if isinstance(rows, list) else [rows]:
+            texts = row if isinstance(row, list) else []
+            if len(texts) not in (2, 3) or not all(isinstance(text, str) for text in texts):
+                rule = "a row is [link, link] or [link, link, reason]"
+                raise top.fault(f"allowed_pairs contains {row!r}; {rule}")
+            pairs.append((texts[0], texts[1], texts[2] if len(texts) == 3 else ""))
+        return tuple(pairs)
 
     def pose(self, poses: Table, pose: str) -> dict[str, float]:
         values = poses.table(pose)

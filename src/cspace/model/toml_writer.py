@@ -36,6 +36,8 @@ def to_toml(description: Description, path: str | os.PathLike[str] | None = None
     head |= {"aliases": about.aliases} if about.aliases else {}
     head |= {"missing": about.missing} if about.missing else {}
     lines = list(_pairs(head))
+    if description.allowed_pairs:
+        lines += ["allowed_pairs = [", *(f"  {toml_value(p)}," for p in description.allowed_pairs), "]"]
     for group, source in about.sources.items():
         lines += _section(f"[sources.{_key(group)}]", {"source": source.source, "licence": source.licence})
     for link in description.links:

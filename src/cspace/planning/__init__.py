@@ -1,9 +1,26 @@
-"""Planning: free ways of arms among obstacles."""
+"""Planning: free ways of arms among obstacles, and the exact configuration space of arms with two joints."""
 
+from cspace.planning.aorrtc import AORRTC
 from cspace.planning.arm_planner import ArmPlanner
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
 from cspace.planning.rrt_connect import RRTConnect
 from cspace.planning.space import ArmSpace
+from cspace.planning.two_joints.answers import BoundaryCurve, Connection, FreeComponent
+from cspace.planning.two_joints.configuration_space import ConfigurationSpace, configuration_space
 
-__all__ = ["PLANNERS", "STATUSES", "ArmPlanner", "ArmSpace", "Plan", "RRTConnect", "find_planner"]
+__all__ = [
+    "AORRTC",
+    "PLANNERS",
+    "STATUSES",
+    "ArmPlanner",
+    "ArmSpace",
+    "BoundaryCurve",
+    "ConfigurationSpace",
+    "Connection",
+    "FreeComponent",
+    "Plan",
+    "RRTConnect",
+    "configuration_space",
+    "find_planner",
+]

@@ -35,7 +35,7 @@ class RRTConnect(ArmPlanner):
     summary = "two trees from start and goal; the default"
 
     search: str = option(
-        "sampled", "how the trees check motions", choices=("sampled", "proved"), subject="kind of check"
+        "proved", "how the trees check motions", choices=("proved", "sampled"), subject="kind of check"
     )
     resolution: float = option(1.0 / 32.0, "distance of samples", unit="rad or m", above=0.0, maximum=1e3)
     range: float = option(1.0, "longest motion of a tree", unit="rad or m", above=0.0, maximum=1e3)
@@ -70,6 +70,10 @@ class RRTConnect(ArmPlanner):
 
     def core_options(self, rng: Seed) -> ArmOptions:
         """The options as the core takes them."""
+        return self.make_options(rng)
+
+    def make_options(self, rng: Seed, improve: int = 0) -> ArmOptions:
+        """The options as the core takes them. improve: motions that may be checked for shorter paths."""
         proved = self.search == "proved"
         return ArmOptions(
             proved,
@@ -77,6 +81,7 @@ class RRTConnect(ArmPlanner):
             self.simplify,
             draw_seed(rng),
             self.edges,
+            improve,
             self.time_limit,
             self.range,
             self.resolution,

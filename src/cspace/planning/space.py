@@ -33,7 +33,7 @@ class ArmSpace:
     """
 
     def __init__(self, robot: HasGeometry, scene: Scene | None = None, margin: float = 0.0) -> None:
-        self.geometry, self.scene, self.margin = robot.collision, scene, margin
+        self.robot, self.geometry, self.scene, self.margin = robot, robot.collision, scene, margin
         self.checker: Checker = checker_of(self.geometry, scene, margin)
         self.dof = self.geometry.dof
         lower, upper = self.geometry.lower.copy(), self.geometry.upper.copy()

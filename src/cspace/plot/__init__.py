@@ -7,10 +7,13 @@ Needs the extra `[plot]` (matplotlib), which is imported when a function is firs
 from __future__ import annotations
 
 from cspace.plot.arms import robot, solutions
+from cspace.plot.configuration_space import configuration_space
 from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
+from cspace.plot.plans import plan
+from cspace.plot.scenes import scene, spheres
 from cspace.plot.vehicles import coverage, drive
 from cspace.plot.worlds import animation, route, routes, world
 
@@ -26,4 +29,4 @@ __all__ = [
     "workspace",
 ]
 __all__ += ["coverage", "drive", "world"]
-__all__ += ["surface"]
+__all__ += ["configuration_space", "plan", "scene", "spheres", "surface"]

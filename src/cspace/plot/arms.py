@@ -10,13 +10,13 @@ import numpy as np
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.plot import colors, planar
+from cspace.plot.arm_bodies import solids_of
+from cspace.plot.arm_stage import set_stage
 from cspace.plot.axes import space_axes
 from cspace.plot.legends import list_entries, mark_bold, tints_of
 from cspace.plot.raytrace import stage
-from cspace.plot.raytrace.scene import Group, artist_type, scene_of
-from cspace.plot.raytrace.solids import Solid, make_cylinder
-from cspace.plot.skeleton import WIDTH, Skeleton, make_skeleton, planar_basis, size_of
-from cspace.tolerances import DRAWN_LENGTH
+from cspace.plot.raytrace.scene import Group, draw_groups
+from cspace.plot.skeleton import make_skeleton, planar_basis
 
 GHOST: Final = 0.40
 FAINT: Final = 0.16
@@ -41,10 +41,11 @@ def robot(arm: Any, q: Any, *, ax: Any | None = None, color: Any = None, title: 
         )
     axes = space_axes(ax)
     drawn = make_skeleton(arm, q)
-    set_stage(axes, arm, [drawn], drawn.T_tip)
-    size = 0.14 * size_of(arm.chain.points, arm.chain.T_zero)
+    set_stage(axes, [drawn], [drawn.T_tip])
     link = np.array(colors.LINK if color is None else color, dtype=np.float64)[:3]
-    frames = Group(stage.make_triads(np.stack([np.eye(4), drawn.T_tip]), size), shadow=False)
+    frames = Group(
+        stage.make_triads(np.stack([drawn.T_base, drawn.T_tip]), 0.14 * drawn.length), shadow=False
+    )
     artists = draw_groups(axes, [Group(solids_of(drawn, link, np.array(colors.JOINT))), frames])
     return artists + stage.write_title(axes, title)
 
@@ -87,7 +88,7 @@ def solutions(
     axes = space_axes(ax, aside=0.7 + 0.063 * max(len(text) for _, text in list_entries(names, solid)))
     drawn = [make_skeleton(arm, each) for each in q]
     T_goal = drawn[solid].T_tip if goal is None else stage.goal_pose(goal, drawn[solid].T_tip)
-    set_stage(axes, arm, drawn, T_goal)
+    set_stage(axes, drawn, [T_goal])
     white = (1.0, 1.0, 1.0)
     groups = [
         Group(
@@ -98,8 +99,8 @@ def solutions(
         if k != solid
     ]
     groups.append(Group(solids_of(drawn[solid], np.array(colors.LINK), tints[solid])))
-    size = size_of(arm.chain.points, arm.chain.T_zero)
-    groups.append(Group(stage.make_triads(T_goal[None], 0.20 * size, thickness=0.045), shadow=False))
+    size = 0.20 * drawn[solid].length
+    groups.append(Group(stage.make_triads(T_goal[None], size, thickness=0.045), shadow=False))
     artists = draw_groups(axes, groups)
     artists += write_legend(axes, names, tints, solid)
     return artists + stage.write_title(axes, title)
@@ -126,59 +127,6 @@ def nearest_row(q: Array, near: Array, arm: Any) -> int:
     from cspace.ik.wrapping import short_way
 
     return int(np.argmin((short_way(q - near, arm.chain.joint_types) ** 2).sum(axis=1)))
-
-
-def set_stage(ax: Any, arm: Any, drawn: list[Skeleton], T_goal: Array) -> None:
-    """The empty stage for these skeletons: view, limits, floor; axes that have a stage keep it."""
-    if any(type(artist) is artist_type() for artist in ax.get_children()):
-        return
-    points = np.concatenate([each.points for each in drawn])
-    thick = drawn[0].radii[-1]
-    plain = np.array(colors.LINK)
-    low = min(0.0, *(solid.lowest() for each in drawn for solid in solids_of(each, plain, plain)))
-    arrows = T_goal[:3, 3] + 0.2 * size_of(arm.chain.points, arm.chain.T_zero) * T_goal[:3, :3].T
-    around = np.concatenate([points + thick, points - thick, arrows])
-    ground = np.concatenate([around[:, :2], np.zeros((1, 2))])
-    center = 0.5 * (ground.min(axis=0) + ground.max(axis=0))
-    foot = float(np.linalg.norm(center)) + 3.0 * drawn[0].radii[0]
-    widest = 1.04 * float(np.linalg.norm(ground - center, axis=1).max())
-    floor = stage.floor_under(center, max(widest, foot, 0.4 * float(np.ptp(around[:, 2]))), low)
-    elevation, azimuth = stage.choose_view(points, T_goal[None, :3, 3])
-    artist = stage.set_up(ax, around, floor, elevation=elevation, azimuth=azimuth)
-    if low < -DRAWN_LENGTH:
-        up, half, width = np.array([0.0, 0.0, 1.0]), -0.5 * low, 0.8 * drawn[0].radii[0]
-        stand = make_cylinder(-half * up, up, width, half, np.array(colors.STAND))
-        artist.scene.groups.append(Group([stand]))
-
-
-def draw_groups(ax: Any, groups: list[Group]) -> list[Any]:
-    """Add groups of solids to the picture of the axes."""
-    artist = scene_of(ax)
-    artist.scene.groups += groups
-    return [artist]
-
-
-def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
-    """The bodies of the links and joints of one configuration."""
-    radii = drawn.radii
-    up = np.array([0.0, 0.0, 1.0])
-    solids = [make_cylinder(0.3 * radii[0] * up, up, 1.7 * radii[0], 0.3 * radii[0], joint)]
-    for i, path in enumerate(drawn.paths):
-        ends = np.linspace(radii[i], radii[i + 1], len(path))
-        for k in range(len(path) - 1):
-            if np.linalg.norm(path[k + 1] - path[k]) < DRAWN_LENGTH:
-                continue
-            if i == 0 and k == 0 and path[1][2] > path[0][2]:  # the pillar stands on the floor, flat
-                solids.append(Solid(path[0], path[1], ends[0], ends[1], link, round=False))
-                solids.append(Solid(path[1], path[1], ends[1], ends[1], link))
-            else:
-                solids.append(Solid(path[k], path[k + 1], ends[k], ends[k + 1], link))
-    for rail in drawn.rails:
-        if np.linalg.norm(rail[1] - rail[0]) > DRAWN_LENGTH:
-            solids.append(Solid(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
-    for i, (place, axis) in enumerate(zip(drawn.joints, drawn.axes, strict=True)):
-        solids.append(make_cylinder(place, axis, WIDTH * radii[i + 1], drawn.body_half(i), joint))
-    return solids
 
 
 def write_legend(ax: Any, names: list[str], tints: Sequence[Any], solid: int) -> list[Any]:

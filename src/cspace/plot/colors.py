@@ -22,6 +22,10 @@ AXES: Final = ((0.84, 0.18, 0.20), (0.18, 0.62, 0.28), (0.16, 0.38, 0.88))
 """The x, y and z axes of a frame."""
 WALL: Final = (0.36, 0.39, 0.44)
 """Obstacles."""
+OBSTACLE: Final = (0.93, 0.84, 0.70)
+"""Obstacles around an arm."""
+CARRIED: Final = (0.55, 0.75, 0.45)
+"""Objects that an arm carries."""
 PATH: Final = AXES[0]
 """The path that a planner found, and a vehicle's forwards."""
 FIRST_HUE: Final = 252.0

@@ -12,6 +12,8 @@ from cspace.ik.joint_axes import place_axes
 from cspace.ik.wrapping import turning_joints
 from cspace.tolerances import DRAWN_LENGTH, DRAWN_PLANE
 
+CENTER: Final = np.zeros(3)
+"""Where the base is, unless it is mounted elsewhere [m]."""
 PARALLEL: Final = 0.08
 """Sine of the angle below which two axes are routed as parallel: their common normal would lie far away."""
 DETOUR: Final = 1.9
@@ -32,7 +34,8 @@ class Skeleton:
     paths: one polyline (m, 3) [m] per link, base link first, each from its joint to the next (or to the tip).
     radii: (n + 2,) [m], the thickness at the base, at each joint and at the tip.
     joints: (n, 3) [m], where the joint bodies are drawn, on their axes. axes: (n, 3), unit.
-    types: "R" and "P". T_tip: (4, 4). rails: for prismatic joints the piece (2, 3) they have travelled.
+    types: "R" and "P". T_tip, T_base: (4, 4). length [m]: of the arm, see size_of. rails: for prismatic
+    joints the piece (2, 3) they have travelled.
     """
 
     paths: list[Array]
@@ -41,6 +44,8 @@ class Skeleton:
     axes: Array
     types: str
     T_tip: Array
+    T_base: Array
+    length: float
     rails: list[Array]
 
     @property
@@ -60,9 +65,11 @@ def make_skeleton(robot: Any, q: Array) -> Skeleton:
     at = place_axes(chain, q)
     before, axes, T_tip = at.points, at.axes, np.asarray(robot.fk(q))
     after = before + np.where(turning_joints(types), 0.0, q)[:, None] * axes  # behind their own motion
-    length = size_of(chain.points, chain.T_zero)
+    T_base = np.asarray(robot.fk(q, robot.base))
+    foot, up = T_base[:3, 3], T_base[:3, 2]
+    length = size_of(chain.points, chain.T_zero, foot)
     n = len(types)
-    paths = [route_link(np.zeros(3), np.array([0.0, 0.0, 1.0]), before[0], axes[0], length)]
+    paths = [route_link(foot, up, before[0], axes[0], length)]
     for i in range(n - 1):
         paths.append(route_link(after[i], axes[i], before[i + 1], axes[i + 1], length))
     paths.append(route_link(after[-1], axes[-1], T_tip[:3, 3], axes[-1], length))
@@ -70,15 +77,17 @@ def make_skeleton(robot: Any, q: Array) -> Skeleton:
     joints = np.array([body_place(i, before, axes, paths, radii) for i in range(n)])
     leaving = paths[1][1] - paths[1][0]
     half = TURNING * radii[1]
-    if types[0] == "R" and abs(axes[0][2]) > 0.98 and leaving[2] > 2.0 * half and abs(joints[0][2]) < half:
-        joints[0][2] = half  # the first joint stands on the ground and does not hang below it
+    if types[0] == "R" and abs(axes[0] @ up) > 0.98 and leaving @ up > 2.0 * half:
+        height = float((joints[0] - foot) @ up)
+        if abs(height) < half:  # the first joint stands on the ground and does not hang below it
+            joints[0] += (half - height) * up
     rails = [np.array([before[i], after[i]]) for i in range(n) if types[i] == "P"]
-    return Skeleton(paths, radii, joints, axes, types, T_tip, rails)
+    return Skeleton(paths, radii, joints, axes, types, T_tip, T_base, length, rails)
 
 
-def size_of(points: Array, T_zero: Array) -> float:
+def size_of(points: Array, T_zero: Array, foot: Array = CENTER) -> float:
     """The length [m] of the path from the base over the joints to the tip at zero: the drawing's scale."""
-    way = np.concatenate([np.zeros((1, 3)), points, T_zero[None, :3, 3]])
+    way = np.concatenate([foot[None], points, T_zero[None, :3, 3]])
     length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
     return length if length > DRAWN_LENGTH else 1.0
 

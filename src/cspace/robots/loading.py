@@ -8,8 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from cspace.errors import DescriptionError, InputTypeError, UnknownNameError
-from cspace.model import Description, calibrated, from_toml, from_xacro
-from cspace.model.files import read_bytes
+from cspace.model import (
+    Description,
+    calibrated,
+    from_toml,
+    from_xacro,
+    group_ends,
+    read_srdf,
+    with_srdf,
+)
+from cspace.model.files import path_of, read_bytes
 from cspace.model.urdf import urdf_description
 from cspace.model.xacro import is_xacro
 from cspace.model.xml import Element, parse_document
@@ -20,7 +28,7 @@ ADVICE = {
     ".sdf": "SDF (Gazebo) cannot be read; convert it to URDF",
     ".usd": "USD cannot be read; convert it to URDF",
     ".usda": "USD cannot be read; convert it to URDF",
-    ".srdf": "an SRDF file only adds groups to a robot; give the URDF file that it belongs to",
+    ".srdf": "an SRDF file only adds to a robot; give the URDF file of the robot, and this one as srdf=",
 }
 
 SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".toml")
@@ -39,6 +47,8 @@ def load_robot(
     package_paths: Sequence[Any] = (),
     xacro_args: Mapping[str, Any] | None = None,
     calibration: str | os.PathLike[str] | None = None,
+    srdf: str | os.PathLike[str] | None = None,
+    group: str | None = None,
 ) -> Robot:
     """Load a robot of the catalogue or of a file.
 
@@ -50,14 +60,22 @@ def load_robot(
     covered by spheres within `cover` [m]) or "skeleton" (capsules along the arm). package_paths: folders
     where packages (of package:// and $(find …)) are looked for first. xacro_args: values of the arguments of
     a xacro file, by name. calibration: the file of one UR arm's joint frames, see model.calibrated.
+    srdf: the path of an SRDF file of MoveIt, whose named poses and allowed pairs of links are added, see
+    model.with_srdf. group: one of its groups, whose ends are base and tip, see model.group_ends.
 
-    Raises UnknownNameError for a name that is not in the catalogue, DescriptionError for a file that cannot
-    be read, InputError where the tip is a choice that must be made, MissingExtraError for xacro without the
-    extra [xacro].
+    Raises UnknownNameError for a name that is not in the catalogue and for a group that does not exist,
+    DescriptionError for a file that cannot be read, InputError where the tip is a choice that must be made
+    and for a group that is not a chain, MissingExtraError for xacro without the extra [xacro].
     """
     description = load_description(
         name_or_path, package_paths=package_paths, xacro_args=xacro_args, calibration=calibration
     )
+    if group is not None and (srdf is None or base is not None or tip is not None):
+        raise InputTypeError("group= names a group of an SRDF file: give srdf=, and neither base= nor tip=")
+    if srdf is not None:
+        content = read_srdf(path_of(srdf))
+        description = with_srdf(description, content)
+        base, tip = (base, tip) if group is None else group_ends(description, content, group)
     return Robot(description, base, tip, floating=floating, locked=locked, geometry=geometry, cover=cover)
 
 

@@ -12,6 +12,7 @@ from cspace.arrays import Array, one_array, one_number
 from cspace.errors import InputError
 from cspace.shapes.mesh import Mesh, measure_mesh
 from cspace.shapes.shape import IDENTITY, ORIGIN, Shape, find_bounds
+from cspace.shapes.triangles import Faces
 from cspace.spatial.poses import transform_points
 from cspace.tables import shown
 from cspace.tolerances import LARGEST_NUMBER
@@ -87,6 +88,10 @@ class HeightField(Shape):
 
     def _measure(self, local: Array) -> tuple[Array, Array]:
         return measure_mesh(local, self.triangles, True)
+
+    def _surface(self) -> tuple[Array, Faces, bool]:
+        corners = self.triangles.reshape(-1, 3)
+        return corners, np.arange(len(corners)).reshape(-1, 3), True
 
     def _sizes(self) -> str:
         rows, columns = self.heights.shape

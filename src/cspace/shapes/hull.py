@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import InputError
+from cspace.shapes.mesh_cover import SphereCover, cover_mesh
 from cspace.shapes.quickhull import find_hull
 from cspace.shapes.shape import ORIGIN, Shape, check_points, find_bounds
 from cspace.shapes.solids import measure_points
@@ -57,6 +58,13 @@ class Hull(Shape):
         """The volume [m³]."""
         return signed_volume(self.vertices[self.facets])
 
+    def cover(self, within: float = 0.01, inside: bool = True) -> SphereCover:
+        """Few spheres that contain the hull and stick out of it by at most `within` [m]: see cover_mesh.
+
+        The result has centers (n, 3), radii (n,) and stick_out. inside: False covers the surface alone.
+        """
+        return cover_mesh(self, within, inside)
+
     def _measure(self, local: Array) -> tuple[Array, Array]:
         beyond = local @ self.planes[:, :3].T - self.planes[:, 3]
         deepest = beyond.argmax(axis=1)
@@ -69,6 +77,9 @@ class Hull(Shape):
         direction[~apart_from_side] = gradient[outside][~apart_from_side]
         distance[outside], gradient[outside] = apart, direction
         return distance, gradient
+
+    def _surface(self) -> tuple[Array, Faces, bool]:
+        return self.vertices, self.facets, True
 
     def _sizes(self) -> str:
         return f"{len(self.vertices)} vertices, {len(self.planes)} sides"

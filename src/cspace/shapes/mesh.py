@@ -11,12 +11,14 @@ import numpy as np
 from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.shapes.hull import Hull
+from cspace.shapes.mesh_cover import SphereCover, cover_mesh
 from cspace.shapes.mesh_files import read_mesh
 from cspace.shapes.shape import ORIGIN, Shape, check_points, find_bounds
 from cspace.shapes.solids import measure_points
 from cspace.shapes.triangles import (
     Faces,
     count_open_edges,
+    fill_holes,
     merge_vertices,
     nearest_on_triangles,
     signed_volume,
@@ -57,7 +59,8 @@ class Mesh(Shape):
         if self.solid and (gaps := count_open_edges(faces)):
             raise InputError(
                 f"the surface of the mesh is not closed: {gaps} edges of {len(faces)} triangles have no"
-                " opposite edge of another triangle; use solid=False for the surface alone, or Mesh.hull()"
+                " opposite edge of another triangle; use solid=False for the surface alone, then"
+                " fill_holes() or hull() for a solid"
             )
         if self.solid and signed_volume(vertices[faces]) < 0.0:
             faces = faces[:, ::-1].copy()
@@ -108,8 +111,27 @@ class Mesh(Shape):
         """The convex hull of the mesh, with its pose and name. InputError for a flat mesh."""
         return Hull(self.vertices, self.pose, self.name)
 
+    def fill_holes(self) -> Mesh:
+        """The solid whose surface is this one with every hole filled, with the same pose and name.
+
+        A hole is a connected rim of edges without an opposite edge; a fan of triangles joins it to its
+        middle. So a link without its end plate, or with cracks, becomes a solid. A rim that is far from flat
+        gets a fan that may cross the surface; the solid is then where the winding number is one or more.
+        """
+        return Mesh(*fill_holes(self.vertices, self.faces), self.pose, self.name)
+
+    def cover(self, within: float = 0.01, inside: bool = True) -> SphereCover:
+        """Few spheres that contain the mesh and stick out of it by at most `within` [m]: see cover_mesh.
+
+        The result has centers (n, 3), radii (n,) and stick_out. inside: False covers the surface alone.
+        """
+        return cover_mesh(self, within, inside)
+
     def _measure(self, local: Array) -> tuple[Array, Array]:
         return measure_mesh(local, self.vertices[self.faces], self.solid)
+
+    def _surface(self) -> tuple[Array, Faces, bool]:
+        return self.vertices, self.faces, self.solid
 
     def _sizes(self) -> str:
         what = "solid" if self.solid else "surface"

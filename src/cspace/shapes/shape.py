@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, one_array
@@ -98,6 +99,10 @@ class Shape:
     def _measure(self, local: Array) -> tuple[Array, Array]:
         """Signed distance (n,) and unit gradient (n, 3) at points (n, 3) of the shape frame."""
         raise NotImplementedError
+
+    def _surface(self) -> tuple[Array, npt.NDArray[np.intp], bool] | None:
+        """Vertices (k, 3) and triangles (m, 3) in the shape frame, and whether they enclose a solid."""
+        return None
 
     def _sizes(self) -> str:
         """The sizes as text."""

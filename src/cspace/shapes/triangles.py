@@ -85,15 +85,40 @@ def signed_volume(triangles: Array) -> float:
 
 def count_open_edges(faces: Faces) -> int:
     """How many sides of triangles (m, 3) of vertex numbers have no opposite side of another triangle."""
+    return len(find_open_edges(faces))
+
+
+def find_open_edges(faces: Faces) -> Faces:
+    """The sides (k, 2), from vertex to vertex, of triangles (m, 3) without an opposite one of another."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     size = int(faces.max(initial=0)) + 1
     forward, counts = np.unique(edges[:, 0] * size + edges[:, 1], return_counts=True)
     backward, others = np.unique(edges[:, 1] * size + edges[:, 0], return_counts=True)
-    keys = np.union1d(forward, backward)
-    tally = np.zeros(len(keys), dtype=np.intp)
-    tally[np.searchsorted(keys, forward)] += counts
-    tally[np.searchsorted(keys, backward)] -= others
-    return int(np.abs(tally).sum()) // 2
+    place = np.searchsorted(backward, forward)
+    opposite = np.append(backward, -1)[place] == forward
+    missing = counts - np.where(opposite, np.append(others, 0)[place], 0)
+    keys = np.repeat(forward, np.maximum(missing, 0))
+    return np.stack([keys // size, keys % size], axis=1)
+
+
+def fill_holes(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
+    """Vertices (k, 3) and triangles (m, 3) with a fan of triangles in each connected rim of open edges."""
+    edges = find_open_edges(faces)
+    label = np.arange(len(vertices))
+    while True:  # every vertex of a rim takes the least label of its neighbours
+        least = label.copy()
+        np.minimum.at(least, edges[:, 0], label[edges[:, 1]])
+        np.minimum.at(least, edges[:, 1], label[edges[:, 0]])
+        least = least[least]
+        if np.array_equal(least, label):
+            break
+        label = least
+    rims, rim = np.unique(label[edges[:, 0]], return_inverse=True)
+    middles = np.zeros((len(rims), 3))
+    np.add.at(middles, rim, vertices[edges].mean(axis=1))
+    middles /= np.bincount(rim, minlength=len(rims))[:, None]
+    fans = np.column_stack([edges[:, ::-1], len(vertices) + rim])
+    return np.concatenate([vertices, middles]), np.concatenate([faces, fans])
 
 
 def merge_vertices(vertices: Array, faces: Faces) -> tuple[Array, Faces]:

@@ -367,3 +367,33 @@ def test_an_include_that_cannot_be_read_says_why(content, says, tmp_path):
         (tmp_path / "a.xml").write_text(content)
     with pytest.raises(DescriptionError, match=says):
         load_description(tmp_path / "main.xml")
+
+
+GEOM = '<geom size="1" mass="1"/>'
+PAIR = f'<body name="a"><joint/>{GEOM}\n<body name="b"><joint name="j"/>{GEOM}</body></body>'
+
+
+def with_contact(contact):
+    return f"<mujoco><worldbody>{PAIR}</worldbody>\n<contact>{contact}</contact></mujoco>"
+
+
+def test_excluded_bodies_may_touch():
+    named, unnamed = '<exclude name="grip" body1="b" body2="a"/>', '<exclude body1="world" body2="b"/>'
+    robot = from_mjcf(with_contact(named + unnamed))
+    assert robot.allowed_pairs == (("b", "a", "grip"), ("world", "b", "excluded"))
+    assert from_mjcf(with_contact('<pair geom1="x" geom2="y"/>')).allowed_pairs == ()
+
+
+@pytest.mark.parametrize(
+    ("contact", "says"),
+    [
+        ('<exclude body1="a"/>', "<exclude>: no body ''"),
+        ('<exclude body1="a" body2="c"/>', "<exclude>: no body 'c'"),
+        ('<exclude body1="a" body2="a"/>', "names body 'a' twice"),
+        ('<exlude body1="a" body2="b"/>', "did you mean <exclude>"),
+    ],
+)
+def test_a_faulty_exclude_is_told_with_its_line(contact, says):
+    with pytest.raises(DescriptionError, match=says) as caught:
+        from_mjcf(with_contact(contact))
+    assert caught.value.line == 3

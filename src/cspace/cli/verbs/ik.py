@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,7 +10,7 @@ from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.freedom import FREEDOM_WORDS, add_freedom, locked_joints, options_of
-from cspace.cli.goals import GOAL_WORDS, Goal, add_goal, axis_of, goal_of
+from cspace.cli.goals import GOAL_WORDS, Goal, add_goal, axis_of, goal_of, name_options
 from cspace.cli.output import Output, check_format, check_writable
 from cspace.cli.robot import degrees_note, gripper_note, load_chosen, need_chain, read_configuration
 from cspace.cli.solutions import print_solutions, solution_rows, solutions_document
@@ -32,11 +31,6 @@ cspace ik ur5e --look-at 0.6 0.2 0 --near 0,-1.2,1.4,-0.8,0.7,0
 cspace ik ur5e --explain
 cspace ik so101 --explain --goal-parts position direction --tool-axis x --markdown
 """
-KEYWORDS: Final = re.compile(
-    r"\b(position|rotation|direction|look_at|ray|angle_to|angle|tool_axis|locked|swivel|samples|near"
-    r"|least_squares|goal_parts)=(?=[^=]|$)"
-)
-"""The keywords of robot.ik that are options here."""
 MOST_NUMBERED: Final = 24
 """Most solutions whose numbers a picture shows; of more, those of one branch share an entry and a colour."""
 NOT_EXPLAINED = (*GOAL_WORDS, *FREEDOM_WORDS, "plot")
@@ -68,9 +62,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
             print_explanation(args, robot, out) if wants_explanation(args) else answer_goal(args, robot, out)
         )
     except (InputError, InputTypeError) as error:
-        # the words of the library for the command line: near= is --near
-        message = KEYWORDS.sub(lambda match: "--" + match[1].replace("_", "-"), str(error))
-        raise UsageError(message) from error
+        raise UsageError(name_options(str(error))) from error
 
 
 def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:

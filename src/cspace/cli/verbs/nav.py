@@ -16,7 +16,7 @@ from cspace.cli.verbs.planners import options_given, typed_value
 from cspace.errors import InputError
 
 if TYPE_CHECKING:
-    from cspace.navigation import Route
+    from cspace.navigation import PlanePlanner, Route
 
 
 EXAMPLES: Final = """
@@ -103,14 +103,15 @@ def draw_pictures(args: argparse.Namespace, routes: list[Route]) -> list[str]:
     return [str(path) for path in (args.plot, args.animate) if path]
 
 
-def planners_of(text: str) -> list[str]:
-    """The selected planners."""
+def planners_of(text: str) -> dict[str, PlanePlanner]:
+    """The selected planners, by name."""
     from cspace.navigation import PLANNERS
     from cspace.navigation.planners import find_planner
 
     if text == "all":
-        return sorted(PLANNERS)
-    return [find_planner(name.strip()).name for name in text.split(",")]
+        return {name: PLANNERS[name] for name in sorted(PLANNERS)}
+    found = [find_planner(name.strip()) for name in text.split(",")]
+    return {each.name: each for each in found}
 
 
 def load_world(path: Path, resolution: float | None) -> Any:

@@ -1,4 +1,4 @@
-"""`cspace planners`: the planners of the plane, and the options of some of them."""
+"""`cspace planners`: the planners of the plane and of arms, and the options of some of them."""
 
 from __future__ import annotations
 
@@ -12,14 +12,18 @@ from cspace.cli.output import Cell, Output, Table
 from cspace.errors import suggest
 
 if TYPE_CHECKING:
-    from cspace.navigation import Option, PlanePlanner
+    from cspace.search import Option, Planner
 
 
 EXAMPLES: Final = """
 cspace planners
 cspace planners rrt_star potential_field
+cspace planners rrt_connect
 cspace planners --json
 """
+
+ARM_WORLD: Final = "arm"
+"""What stands for the world of the planners of arms."""
 
 TRUTHS: Final = {"true": True, "false": False}
 NUMBERS: Final[Mapping[str, tuple[Callable[[str], Any], str]]] = {
@@ -37,10 +41,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print one row per planner, or per option of those that are named."""
-    from cspace.navigation import PLANNERS
-    from cspace.navigation.planners import find_planner
-
-    rows = [find_planner(name) for name in args.names] or list(PLANNERS.values())
+    every = list_planners()
+    rows = [each for name in args.names for each in planners_named(name, every)] or every
     if out.as_json:
         out.document({"schema": "cspace.planners/1", "planners": [planner_document(row) for row in rows]})
     elif args.names:
@@ -49,13 +51,35 @@ def run(args: argparse.Namespace, out: Output) -> int:
     else:
         table = Table(["planner", "world", "sensing", "what it does"], left=frozenset(range(4)))
         for row in rows:
-            table.add(Cell(row.name, "bold"), row.world, row.sensing, row.summary)
+            facts = planner_facts(row)
+            table.add(Cell(facts["name"], "bold"), facts["world"], facts["sensing"], facts["summary"])
         out.table(table)
         out.hint(f"{len(rows)} planners; cspace planners NAME shows the options of one")
     return Exit.DONE
 
 
-def show_options(row: PlanePlanner, out: Output) -> None:
+def list_planners() -> list[Planner]:
+    """The planners of `cspace nav`, then those of `cspace plan`."""
+    from cspace import navigation, planning
+
+    return [*navigation.PLANNERS.values(), *planning.PLANNERS.values()]
+
+
+def planners_named(name: str, every: Sequence[Planner]) -> list[Planner]:
+    """The planners of a name: one of the plane, one of arms, or both."""
+    found = [each for each in every if each.name == name]
+    if not found:
+        raise suggest("planner", name, {each.name for each in every})
+    return found
+
+
+def planner_facts(row: Planner) -> dict[str, str]:
+    """What a planner is called and does, and for which worlds; one of arms knows its whole scene."""
+    world, sensing = getattr(row, "world", ARM_WORLD), getattr(row, "sensing", "map")
+    return {"name": row.name, "summary": row.summary, "world": world, "sensing": sensing}
+
+
+def show_options(row: Planner, out: Output) -> None:
     """A planner and a table of its options."""
     out.heading(f"{row.name}: {row.summary}")
     if not row.options:
@@ -75,17 +99,16 @@ def typed_value(value: Any) -> Any:
     return value
 
 
-def planner_document(row: PlanePlanner) -> dict[str, Any]:
+def planner_document(row: Planner) -> dict[str, Any]:
     """A planner for machines."""
     names = ("name", "type", "default", "unit", "meaning")
     options = [{name: typed_value(getattr(each, name)) for name in names} for each in row.options.values()]
-    facts = {name: getattr(row, name) for name in ("name", "summary", "world", "sensing")}
-    return facts | {"options": options}
+    return planner_facts(row) | {"options": options}
 
 
 # --- options as people type them: NAME=VALUE for all that have it, PLANNER.NAME=VALUE for one -------------
 def options_given(
-    typed: Iterable[tuple[str, str]], seed: int | None, planners: Sequence[str]
+    typed: Iterable[tuple[str, str]], seed: int | None, planners: Mapping[str, Planner]
 ) -> dict[str, dict[str, Any]]:
     """The options of each planner, by name, from pairs of name and value as typed, and a seed for those that
     draw samples. Raises UnknownNameError, or UsageError on a value of the wrong kind or given twice."""
@@ -101,21 +124,19 @@ def options_given(
     return given
 
 
-def options_meant(name: str, planners: Sequence[str]) -> list[tuple[str, Option]]:
+def options_meant(name: str, planners: Mapping[str, Planner]) -> list[tuple[str, Option]]:
     """The planners, and their options, that a typed name is about."""
-    from cspace.navigation import PLANNERS
-
     planner, dot, short = name.rpartition(".")
     if dot:
         if planner not in planners:
             raise suggest("planner", planner, planners, owner="what --planner names")
-        if short not in PLANNERS[planner].options:
-            raise suggest("option", short, PLANNERS[planner].options, owner=f"planner {planner!r}")
-        return [(planner, PLANNERS[planner].options[short])]
-    found = [(each, PLANNERS[each].options[name]) for each in planners if name in PLANNERS[each].options]
+        if short not in planners[planner].options:
+            raise suggest("option", short, planners[planner].options, owner=f"planner {planner!r}")
+        return [(planner, planners[planner].options[short])]
+    found = [(each, row.options[name]) for each, row in planners.items() if name in row.options]
     if not found:
-        known = {option for each in planners for option in PLANNERS[each].options}
-        who = f"planner {planners[0]!r}" if len(planners) == 1 else "these planners"
+        known = {option for row in planners.values() for option in row.options}
+        who = f"planner {next(iter(planners))!r}" if len(planners) == 1 else "these planners"
         raise suggest("option", name, known, owner=who)
     return found
 

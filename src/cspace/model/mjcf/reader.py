@@ -26,7 +26,7 @@ from cspace.model.mjcf.masses import (
     weight_of_geoms,
 )
 from cspace.model.mjcf.settings import settings_of
-from cspace.model.mjcf.skeleton import WORLD, Skeleton, read_loops
+from cspace.model.mjcf.skeleton import WORLD, Skeleton, read_loops, two_ends
 from cspace.model.mjcf.words import check_words
 from cspace.model.structure import ElementError
 from cspace.model.values import IDENTITY
@@ -86,10 +86,11 @@ class _Reader:
             joints.append(complain_at(draft.element, make))
         ties = read_loops(equalities, self.defaults, skeleton)
         poses = read_keyframes(self.sections("keyframe"), skeleton.drafts, followers)
+        pairs = read_excludes(self.sections("contact"), skeleton.bodies)
         unnamed = "robot" if self.root.path is None else Path(self.root.path).stem
         name = self.root.attributes.get("model", "").strip() or unnamed
         try:
-            return Description(name, links, tuple(joints), ties, poses)
+            return Description(name, links, tuple(joints), ties, poses, allowed_pairs=pairs)
         except ElementError as error:
             culprit = None if error.part is None else skeleton.drafts.get(error.part.name)
             raise fault_at(self.root if culprit is None else culprit.element, str(error)) from None
@@ -192,6 +193,18 @@ class _Reader:
         long = given.holder("fromto") is not None
         place = self.geoms.between(given, given.text("type"))[0] if long else self.settings.placement(given)
         self.skeleton.add_site(given.element, body, T_body_frame @ place)
+
+
+def read_excludes(contacts: Iterable[Element], bodies: Mapping[str, int]) -> tuple[tuple[str, str, str], ...]:
+    """The pairs of bodies that <exclude> keeps from touching, each with the name of the element as reason."""
+    pairs = []
+    for element in contacts:
+        if element.tag == "exclude":
+            first, second = two_ends(element, "body", bodies)
+            if first == second:
+                raise fault_at(element, f"<exclude> names body {first!r} twice; a pair is of two bodies")
+            pairs.append((first, second, element.attributes.get("name", "") or "excluded"))
+    return tuple(pairs)
 
 
 def read_keyframes(

@@ -26,6 +26,7 @@ CHILDREN: Final[dict[str, frozenset[str]]] = {
     "frame": INSIDE,
     "equality": list_words("connect weld joint tendon flex flexvert flexstrain distance"),
     "keyframe": list_words("key"),
+    "contact": list_words("pair exclude"),
 }
 """What may stand in the elements that are read."""
 

@@ -16,6 +16,8 @@ from cspace.tolerances import LEAST_DIVISOR, PARALLEL_RAYS
 GAP: Final = 0.03
 """Share of the picture's size by which a ghost must be before a solid to be drawn over it: links that two
 configurations share coincide, and neither should flicker through the other."""
+FAINTER: Final = 0.55
+"""Share of a ghost's opacity over a solid that it may coincide with."""
 SHADOW: Final = (0.33, 0.37, 0.45)
 """The colour of shadows on the floor."""
 PLATE: Final = (0.955, 0.962, 0.972)
@@ -83,19 +85,23 @@ class Canvas:
             lit = alpha.astype(np.float32)
             self.over(lit[:, None] * np.array(color, np.float32), lit, pixels)
 
-    def lay_ghost(self, layer: Layer, opacity: float, before: Layer | None) -> None:
-        """Lay a ghost: even inside, stronger along its outline; only where it is clearly before a layer."""
+    def lay_ghost(self, layer: Layer, opacity: float, before: Layer | None, alike: Any = None) -> None:
+        """Lay a ghost: even inside, stronger along its outline; only where it is before a layer.
+
+        alike (n,): which of the pixels of that layer show what the ghost may coincide with; there it must be
+        clearly before, and is fainter.
+        """
         alpha = np.where(layer.rim, np.float32(min(1.0, 1.8 * opacity)), np.float32(opacity))
         tone = np.where(layer.rim, np.float32(0.86), np.float32(1.0))
         pixels = layer.pixels
         shown: Any = slice(None)
         if before is not None:
             depth = np.full(len(self.alpha), -np.inf)
-            depth[before.pixels] = before.depth
-            shown = np.flatnonzero(layer.depth < depth[pixels] - self.gap)
-            coverage = np.zeros(len(self.alpha), np.float32)
-            coverage[before.pixels] = before.coverage
-            alpha = alpha * coverage[pixels]
+            depth[before.pixels] = before.depth - self.gap * alike
+            shown = np.flatnonzero(layer.depth < depth[pixels])
+            share = np.zeros(len(self.alpha), np.float32)
+            share[before.pixels] = before.coverage * np.where(alike, np.float32(FAINTER), np.float32(1.0))
+            alpha = alpha * share[pixels]
         tint = layer.color[shown] * (alpha * tone)[shown, None]
         self.over(tint, (alpha * layer.coverage)[shown], pixels[shown])
 

@@ -6,13 +6,14 @@ more are cast, so that every outline is smooth and the inside of a body costs on
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.plot.raytrace.solids import Piece, Solid, bounding_pieces
+from cspace.plot.raytrace.solids import Body, Piece, bounding_pieces
 from cspace.plot.raytrace.view import Block, View, pixel_centers
 
 SAMPLES: Final = (np.array([[1, 3, 5, 7, 9, 11, 13, 15], [5, 13, 1, 9, 15, 3, 11, 7]]) / 16.0)[:, :, None]
@@ -24,7 +25,8 @@ class Layer:
     """What is seen, pixel by pixel: m pixels that show something.
 
     pixels: (m,), the numbers of the pixels, row by row. color: (m, 3), times the coverage. coverage: (m,),
-    the share of the pixel. depth: (m,) [m]. rim: (m,), whether a pixel of the outline.
+    the share of the pixel. depth: (m,) [m]. rim: (m,), whether a pixel of the outline. owner: (m,), the
+    number of the body that is nearest.
     """
 
     pixels: Any
@@ -32,6 +34,7 @@ class Layer:
     coverage: Any
     depth: Array
     rim: Any
+    owner: Any
 
 
 class Hits(NamedTuple):
@@ -43,7 +46,7 @@ class Hits(NamedTuple):
     key: Any
 
 
-def see_solids(view: View, solids: list[Solid]) -> Layer | None:
+def see_solids(view: View, solids: Sequence[Body]) -> Layer | None:
     """Solids as seen and lit, or None if none is in the picture."""
     owned = [(i, solid, piece) for i, solid in enumerate(solids) for piece in bounding_pieces(solid)]
     surfaces, tints = [piece for _, _, piece in owned], [solid.color for _, solid, _ in owned]
@@ -55,7 +58,7 @@ def see_solids(view: View, solids: list[Solid]) -> Layer | None:
         return None
     (x0, _, y0, _), (_, x1, _, y1) = np.min(seen, axis=0).tolist(), np.max(seen, axis=0).tolist()
     depth, keys = look_through_middles(view, surfaces, spans, (x0, x1, y0, y1))
-    rim, at_edge = find_outlines(np.array([*smooth, -1], np.int16)[keys])
+    rim, at_edge = find_outlines(np.array([*smooth, -1], np.int32)[keys])
     rows, columns = np.nonzero(at_edge)
     samples = look_around(view, surfaces, spans, columns + x0, rows + y0)
     inside = np.nonzero((keys >= 0) & ~at_edge)
@@ -73,6 +76,9 @@ def see_solids(view: View, solids: list[Solid]) -> Layer | None:
         np.concatenate([np.ones(len(clear.t), np.float32), hit.mean(axis=0, dtype=np.float32)[some]]),
         np.concatenate([clear.t, samples.t.min(axis=0)[some]]),
         rim[rows, columns],
+        np.array([i for i, _, _ in owned], np.int32)[
+            np.concatenate([clear.key, nearest_keys(samples)[some]])
+        ],
     )
 
 
@@ -89,7 +95,7 @@ def look_through_middles(
     """What the rays through the middles of a block's pixels meet: depth and piece (h, w), inf and -1."""
     x0, x1, y0, y1 = block
     depth = np.full((y1 - y0, x1 - x0), np.inf)
-    keys = np.full(depth.shape, -1, np.int16)
+    keys = np.full(depth.shape, -1, np.int32)
     for key, (piece, each) in enumerate(zip(surfaces, spans, strict=True)):
         if each is None:
             continue
@@ -119,7 +125,7 @@ def look_around(
 ) -> Hits:
     """What eight rays through each of some pixels meet, (8, m); the pixels row by row."""
     x, y = columns + SAMPLES[0], rows + SAMPLES[1]
-    depth, keys = np.full(x.shape, np.inf), np.full(x.shape, -1, np.int16)
+    depth, keys = np.full(x.shape, np.inf), np.full(x.shape, -1, np.int32)
     for key, (piece, each) in enumerate(zip(surfaces, spans, strict=True)):
         if each is None:
             continue
@@ -133,6 +139,11 @@ def look_around(
         depth[:, near] = np.where(nearer, t, known)
         keys[:, near] = np.where(nearer, key, keys[:, near])
     return Hits(x, y, depth, keys)
+
+
+def nearest_keys(samples: Hits) -> Any:
+    """The piece that is nearest of what the rays through each pixel meet, (m,)."""
+    return np.take_along_axis(samples.key, samples.t.argmin(axis=0)[None], axis=0)[0]
 
 
 def shade_hits(view: View, surfaces: list[Piece], tints: Any, hits: Hits) -> Any:

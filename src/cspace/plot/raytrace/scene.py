@@ -7,24 +7,32 @@ made anew whenever the axes are drawn, so it follows the view and the resolution
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from cspace.plot.raytrace.canvas import Canvas, Floor
 from cspace.plot.raytrace.layer import see_solids
 from cspace.plot.raytrace.shadow import shadow_of
-from cspace.plot.raytrace.solids import Solid
+from cspace.plot.raytrace.solids import Body
 from cspace.plot.raytrace.view import View
 
 
 @dataclass
 class Group:
-    """Solids that belong together. opacity: below 1 for a ghost. shadow: whether they cast one."""
+    """Solids that belong together. opacity: below 1 for a ghost. shadow: whether they cast one.
 
-    solids: list[Solid]
+    backdrop: of opaque solids, whether no ghost coincides with them, so that ghosts before them are as strong
+    as over nothing.
+    """
+
+    solids: Sequence[Body]
     opacity: float = 1.0
     shadow: bool = True
+    backdrop: bool = False
 
 
 @dataclass
@@ -41,9 +49,8 @@ class Scene:
         if self.floor is not None:
             cast = [solid for group in self.groups if group.shadow for solid in group.solids]
             canvas.lay_floor(view, self.floor, shadow_of(cast, float(self.floor.center[2]), view.size))
-        front = see_solids(
-            view, [solid for group in self.groups if group.opacity >= 1.0 for solid in group.solids]
-        )
+        opaque = [group for group in self.groups if group.opacity >= 1.0]
+        front = see_solids(view, [solid for group in opaque for solid in group.solids])
         faint = [group for group in self.groups if group.opacity < 1.0]
         seen = [(see_solids(view, group.solids), group.opacity) for group in faint]
         ghosts = [(layer, opacity) for layer, opacity in seen if layer is not None]
@@ -52,8 +59,9 @@ class Scene:
             canvas.lay_ghost(layer, opacity, before=None)
         if front is not None:
             canvas.over(front.color, front.coverage, front.pixels)
+            alike = np.array([not group.backdrop for group in opaque for _ in group.solids])[front.owner]
             for layer, opacity in ghosts:
-                canvas.lay_ghost(layer, 0.55 * opacity, before=front)
+                canvas.lay_ghost(layer, opacity, front, alike)
         return canvas.finished()
 
 
@@ -89,3 +97,10 @@ def scene_of(axes: Any, floor: Floor | None = None) -> Any:
     artist = artist_type()(Scene(floor))
     axes.add_artist(artist)
     return artist
+
+
+def draw_groups(ax: Any, groups: list[Group]) -> list[Any]:
+    """Add groups of solids to the picture of the axes."""
+    artist = scene_of(ax)
+    artist.scene.groups += groups
+    return [artist]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.plot.raytrace.solids import Solid, bounding_pieces
+from cspace.plot.raytrace.solids import Body, bounding_pieces
 from cspace.plot.raytrace.view import Rays, block_about, pixel_centers
 
 LIGHT: Final = np.array([0.10, -0.07, 1.0]) / np.linalg.norm([0.10, -0.07, 1.0])
@@ -40,7 +41,7 @@ class Shadow:
         return np.where((first != kept).any(axis=-1), 0.0, low + v * (high - low))
 
 
-def shadow_of(solids: list[Solid], floor: float, size: float) -> Shadow | None:
+def shadow_of(solids: Sequence[Body], floor: float, size: float) -> Shadow | None:
     """The shadow of solids on the floor at a height [m] in a picture of a size [m]."""
     surfaces = [piece for solid in solids for piece in bounding_pieces(solid)]
     if not surfaces:

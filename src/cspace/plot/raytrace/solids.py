@@ -1,4 +1,4 @@
-"""Spheres, cones and discs met by a plane of rays, and the capsules and cylinders that they bound.
+"""Spheres, cones, discs and polygons met by a plane of rays, and the bodies that they bound.
 
 Matplotlib sorts faces by their centres, which leaves teeth where bodies meet and seams where they are
 transparent. There are few bodies and few kinds of them, so each pixel's ray is met with each exactly.
@@ -10,7 +10,7 @@ w, B is affine in the place (x, y) of a ray and B² − A C a polynomial of degr
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 
@@ -121,7 +121,46 @@ class Disc:
         return np.broadcast_to(self.normal, points.shape)
 
 
-Piece = Quadric | Disc
+@dataclass(frozen=True)
+class Facet:
+    """A flat convex polygon of corners (k, 3) [m], seen from the side where they go counter-clockwise."""
+
+    corners: Array
+
+    @cached_property
+    def normal(self) -> Array:
+        """The unit normal of the side that is seen: the area vector, scaled."""
+        spokes = self.corners[1:] - self.corners[0]
+        area = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
+        return np.asarray(area / max(float(np.linalg.norm(area)), LEAST_DIVISOR))
+
+    @cached_property
+    def inward(self) -> Array:
+        """Directions (k, 3) in the plane, each from an edge to the inside."""
+        return np.cross(self.normal, np.roll(self.corners, -1, axis=0) - self.corners)
+
+    @property
+    def balls(self) -> list[tuple[Array, float]]:
+        return [(corner, 0.0) for corner in self.corners]
+
+    def meet(self, rays: Rays, x: Array, y: Array) -> Array:
+        """The t where the rays of the places x, y (which broadcast) meet it from its seen side, else inf."""
+        falling = affine_at(rays.way @ self.normal, x, y)
+        if np.min(falling) >= -LEAST_DIVISOR:
+            return np.full(np.broadcast(x, y).shape, np.inf)
+        above = affine_at((rays.origin - np.outer(LAST, self.corners[0])) @ self.normal, x, y)
+        t = -above / np.where(falling < -LEAST_DIVISOR, falling, np.nan)
+        inside = np.isfinite(t) if rays.parallel else t > 0.0  # those of an eye begin there
+        for corner, inward in zip(self.corners, self.inward, strict=True):
+            start = affine_at((rays.origin - np.outer(LAST, corner)) @ inward, x, y)
+            inside &= start + t * affine_at(rays.way @ inward, x, y) >= 0.0
+        return np.asarray(np.where(inside, t, np.inf))
+
+    def normals(self, points: Array) -> Array:
+        return np.broadcast_to(self.normal, points.shape)
+
+
+Piece = Quadric | Disc | Facet
 """A surface that rays can meet."""
 
 
@@ -147,6 +186,23 @@ class Solid:
         return float(min(self.a[2] - down * self.radius_a, self.b[2] - down * self.radius_b))
 
 
+@dataclass(frozen=True)
+class Facets:
+    """A body bounded by flat convex polygons: corners (k, 3) [m] of each, counter-clockwise from outside."""
+
+    polygons: list[Array]
+    color: Array
+    round: bool = False
+
+    def lowest(self) -> float:
+        """The height of its lowest point [m]."""
+        return float(min(corners[:, 2].min() for corners in self.polygons))
+
+
+Body = Solid | Facets
+"""What a group of a scene consists of."""
+
+
 def make_cylinder(center: Array, axis: Array, radius: float, half: float, color: Array) -> Solid:
     """A cylinder about a unit axis."""
     return Solid(center - half * axis, center + half * axis, radius, radius, color, round=False)
@@ -163,8 +219,10 @@ def make_arrow(origin: Array, way: Array, thickness: float, color: Array) -> lis
     ]
 
 
-def bounding_pieces(solid: Solid) -> list[Piece]:
+def bounding_pieces(solid: Body) -> list[Piece]:
     """The surfaces that bound a solid."""
+    if isinstance(solid, Facets):
+        return [Facet(corners) for corners in solid.polygons]
     way = solid.b - solid.a
     length = float(np.linalg.norm(way))
     slope = (solid.radius_a - solid.radius_b) / max(length, LEAST_DIVISOR)

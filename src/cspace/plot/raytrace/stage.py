@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
@@ -21,15 +22,18 @@ GRID_STEPS: Final = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 """Distances between the lines of a floor [m]; the one that gives about eight lines is taken."""
 
 
-def choose_view(points: Array, focus: Array) -> tuple[float, float]:
+def choose_view(
+    points: Array, focus: Array, hidden: Callable[[Array, Array], float] | None = None
+) -> tuple[float, float]:
     """Elevation and azimuth [deg] from where the points (m, 3) spread widest.
 
-    `focus` (k, 3): what should not be hidden (the tip); it pulls the view to its side of the arm.
+    `focus` (k, 3): what should not be hidden (the tip); it pulls the view to its side of the arm. `hidden`:
+    the share of points that obstacles hide from an eye in a direction (3,); views from higher up count too.
     """
     spread = points - points.mean(axis=0)
     outward = focus.mean(axis=0) - points.mean(axis=0)
     best, best_score = (24.0, -60.0), -np.inf
-    for elevation in (18.0, 24.0, 30.0):
+    for elevation in (18.0, 24.0, 30.0) if hidden is None else (18.0, 24.0, 30.0, 38.0, 48.0):
         for azimuth in np.arange(-165.0, 181.0, 15.0):
             right, up, eye = look_along(elevation, azimuth)
             seen = spread @ np.stack([right, up], axis=1)
@@ -37,6 +41,7 @@ def choose_view(points: Array, focus: Array) -> tuple[float, float]:
             toward = outward @ eye / (np.linalg.norm(outward) + LEAST_DIVISOR)
             score = area * (1.0 + 0.35 * toward - 0.10 * abs(elevation - 24.0) / 6.0)
             score *= 1.0 + 0.08 * np.cos(np.radians(azimuth + 55.0))
+            score *= 1.0 if hidden is None else (1.0 - hidden(points, eye)) ** 2
             if score > best_score:
                 best, best_score = (elevation, float(azimuth)), score
     return best

@@ -1,0 +1,1 @@
+"""The exact configuration space of planar arms with two revolute joints."""

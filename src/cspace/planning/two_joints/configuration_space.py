@@ -1,0 +1,281 @@
+"""Configuration space of a planar arm with two revolute joints: exact pictures, boundary and components."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import Array, as_floats, bounded_number, guard_memory, one_array, whole_number
+from cspace.collision import Scene
+from cspace.errors import InputError, InputTypeError, Renamed
+from cspace.maps import PolygonWorld
+from cspace.planning.two_joints.answers import KINDS, BoundaryCurve, Connection, FreeComponent
+from cspace.planning.two_joints.planar_arm import PlanarArm, read_planar_arm
+from cspace.planning.two_joints.polygons import Piece, cut_polygons
+from cspace.planning.two_joints.sections import cut_scene
+from cspace.tables import html_table, one_line, shown
+from cspace.tolerances import FARTHEST, LARGEST_NUMBER
+
+RANKS: Final = ("connected", "undetermined", "separate", "blocked")
+"""The verdicts on goals, the best one first."""
+
+MOST_CELLS: Final = 30_000
+"""Cells of a bitmap along one joint: more than a gigabyte is no picture."""
+
+
+class ConfigurationSpace(Renamed):
+    """The configurations of a planar arm with two revolute joints, free or blocked by obstacles.
+
+    A configuration q = (q1, q2) is blocked where a link touches an obstacle, or beyond a joint limit. At
+    each q1 a convex obstacle blocks one arc of directions of link 2, known in closed form; everything here
+    comes from these arcs, nothing from samples. `configuration_space` makes it.
+
+    arm: the links and their plane. obstacles: the names. sections: name → convex pieces (corners, radius) in
+    the plane. link_radius [m]. lower, upper (2,): the range of both joints [rad], −π and π where a joint has
+    no limits; wraps (2,): there both ends are the same place.
+
+    Lozano-Pérez 1983.
+    """
+
+    def __init__(self, arm: PlanarArm, sections: dict[str, list[Piece]], link_radius: float) -> None:
+        self.arm, self.sections, self.link_radius = arm, sections, link_radius
+        self.obstacles = tuple(sections)
+        self.lower, self.upper, self.wraps = arm.lower, arm.upper, arm.wraps
+        self._core = make_core(arm, sections, link_radius)
+
+    def cells(self, n: int | Sequence[int] = 1000) -> tuple[Array, Array]:
+        """The coordinates q1 (n1,) and q2 (n2,) [rad] of the centres of the cells of `bitmap(n)`."""
+        return tuple(
+            low + (high - low) * (np.arange(count) + 0.5) / count
+            for low, high, count in zip(self.lower, self.upper, check_cells(n), strict=True)
+        )
+
+    def bitmap(self, n: int | Sequence[int] = 1000) -> Any:
+        """Where the arm collides: bool (n1, n2), of the configurations at the centres of equal cells.
+
+        n: the number of cells along each joint, or (n1, n2). Row i belongs to q1, column j to q2, in
+        ascending order: `cells(n)` are the coordinates. Raises InputError for an n that exceeds the memory.
+        """
+        rows, columns = check_cells(n)
+        with guard_memory("n", n, rows * columns / 8.0, "take fewer cells"):
+            return self._core.bitmap(rows, columns).view(np.bool_)
+
+    def obstacle_map(self, n: int | Sequence[int] = 1000) -> Any:
+        """The obstacle in each cell of `bitmap(n)`: int32 (n1, n2), its place in `obstacles`, −1 if free.
+
+        Where the arm touches several obstacles it is one of them.
+        """
+        rows, columns = check_cells(n)
+        with guard_memory("n", n, rows * columns / 2.0, "take fewer cells"):
+            return self._core.obstacle_map(rows, columns)
+
+    def free(self, q: ArrayLike) -> Any:
+        """Whether configurations q (..., 2) [rad] are free and within the limits: (...) of bool."""
+        given = as_floats(q, "q", last=(2,), largest=FARTHEST)
+        rows = np.ascontiguousarray(given.reshape(-1, 2))
+        free = (self._core.obstacles_at(rows) < 0) & self._is_within(rows)
+        return free.reshape(given.shape[:-1]) if given.ndim > 1 else bool(free[0])
+
+    def blocked_by(self, q: ArrayLike) -> str | None:
+        """What blocks one configuration q (2,): the name of an obstacle, "limit", or None if it is free."""
+        row = one_array(q, "q", (2,), "q1 and q2 [rad]", largest=FARTHEST)
+        found = int(self._core.obstacles_at(row[None])[0])
+        if found >= 0:
+            return self.obstacles[found]
+        return None if self._is_within(row[None])[0] else "limit"
+
+    @cached_property
+    def boundaries(self) -> tuple[BoundaryCurve, ...]:
+        """The boundary of free space as curves, each of one kind of contact with one obstacle.
+
+        The curves are exact at their points, which lie at most 0.1 rad apart in q2; consecutive curves meet
+        to within 1e-9 rad in q1.
+        """
+        points, ends, kinds, obstacles = self._core.boundaries()
+        curves = np.split(points, ends[:-1]) if len(ends) else []
+        return tuple(
+            BoundaryCurve(curve, KINDS[kind], self.obstacles[obstacle] if obstacle >= 0 else "")
+            for curve, kind, obstacle in zip(curves, kinds, obstacles, strict=True)
+        )
+
+    @cached_property
+    def components(self) -> tuple[FreeComponent, ...]:
+        """The connected components of free space, the largest first."""
+        areas, points, regions = self._core.components()
+        alone = np.bincount(regions, minlength=1)[regions] == 1
+        return tuple(
+            FreeComponent(
+                float(area.mean()), (float(area[0]), float(area[1])), point, int(region), bool(single)
+            )
+            for area, point, region, single in zip(areas, points, regions, alone, strict=True)
+        )
+
+    def component(self, q: ArrayLike) -> int | None:
+        """The component of a configuration q (2,), as its place in `components`; None if q is not free.
+
+        None also within 1e-7 rad of the tip of a component, where it is not resolved.
+        """
+        row = one_array(q, "q", (2,), "q1 and q2 [rad]", largest=FARTHEST)
+        found = self._core.component_at(row)
+        return found if found >= 0 else None
+
+    def connected(self, q_a: ArrayLike, q_b: ArrayLike) -> Connection:
+        """Whether two free configurations (2,) are connected within free space: a Connection.
+
+        Both answers are proved, "connected" by boxes of free configurations between the two, "separate" by
+        a wall of blocked ones. "undetermined": only a passage that is not resolved may connect them.
+        Raises InputError for a configuration that is not free, with what blocks it.
+        """
+        return self._connect(self._check_free(q_a, "q_a"), self._check_free(q_b, "q_b"))
+
+    def path(self, start: ArrayLike, goals: ArrayLike) -> Connection:
+        """A free path from start (2,) to the nearest of goals (2,) or (k, 2): a Connection with its path.
+
+        The path (m, 2) is a chain of straight lines in (q1, q2), proved free over their whole length. It is
+        taut: short, and without a margin to the obstacles. It begins at start and ends at the goal, or at a
+        copy of it 2π away where a joint wraps: q changes without jumps. Goals that are not free are left
+        out. Without a connection the path is empty and the reason that of the goals.
+        Raises InputError for a start that is not free.
+        """
+        begin = self._check_free(start, "start")
+        ends = np.atleast_2d(as_floats(goals, "goals", last=(2,), largest=FARTHEST)).reshape(-1, 2)
+        found = [self._reach(begin, end, k) for k, end in enumerate(ends)]
+        if not found:
+            raise InputError("goals is empty; give one goal (2,) or several (k, 2)")
+        best = min(found, key=lambda each: (RANKS.index(each.status), each.length))
+        if best or len(found) == 1:
+            return best
+        return Connection(best.status, "; ".join(each.reason for each in found))
+
+    def _reach(self, begin: Array, end: Array, number: int) -> Connection:
+        """The connection of a start to one goal, with its path."""
+        if (blocked := self.blocked_by(end)) is not None:
+            return Connection("blocked", f"goal {number} {write_q(end)} is blocked: {blocked}")
+        answer = self._connect(begin, np.ascontiguousarray(end))
+        if not answer:
+            return answer
+        return Connection(answer.status, answer.reason, self._core.find_path(begin, end))
+
+    def _connect(self, a: Array, b: Array) -> Connection:
+        one, other = self.component(a), self.component(b)
+        between = f"{write_q(a)} and {write_q(b)}"
+        if one is None or other is None:
+            return Connection(
+                "undetermined", f"{between}: one lies where free space is too narrow to resolve"
+            )
+        if one == other:
+            return Connection("connected", f"{between} lie in component {one}")
+        if self.components[one].region != self.components[other].region:
+            return Connection("separate", f"{between} lie in the components {one} and {other}")
+        return Connection(
+            "undetermined",
+            f"{between} lie in the components {one} and {other}, which a passage too narrow to resolve may "
+            "connect",
+        )
+
+    def _check_free(self, q: ArrayLike, subject: str) -> Array:
+        row = one_array(q, subject, (2,), "q1 and q2 [rad]", largest=FARTHEST)
+        if (blocked := self.blocked_by(row)) is None:
+            return row
+        what = "lies beyond a joint limit" if blocked == "limit" else f"touches {blocked!r}"
+        raise InputError(f"{subject} {write_q(row)} {what}; give a configuration that is free")
+
+    def _is_within(self, rows: Array) -> Any:
+        """Whether configurations (n, 2) lie within the limits: (n,) of bool."""
+        return ((rows >= self.lower) & (rows <= self.upper) | self.wraps).all(axis=1)
+
+    def __repr__(self) -> str:
+        count = len(self.obstacles)
+        return one_line(
+            "ConfigurationSpace", f"of {self.arm.name}, {count} obstacle{'' if count == 1 else 's'}"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (f"{k}", f"{c.area:.6g}", ", ".join(map(shown, c.point)), "yes" if c.proved else "no")
+            for k, c in enumerate(self.components)
+        ]
+        caption = f"Configuration space of {self.arm.name}: {len(rows)} free components"
+        return html_table(caption, ("component", "area [rad²]", "a configuration", "proved"), rows)
+
+
+def configuration_space(
+    robot: Any,
+    obstacles: Any,
+    *,
+    link_radius: float = 0.0,
+    limits: bool = True,
+    height: float | None = None,
+) -> ConfigurationSpace:
+    """The exact configuration space of a planar arm with two revolute joints among obstacles.
+
+    robot: any with two revolute joints about parallel axes; mounting, tool and limits count. Its links are
+    the segments from the first axis to the second and from there to the tip, and everything within
+    link_radius [m] of them.
+
+    obstacles: a Scene, cut with the plane of the arm; or polygons (n, 2) [m] in that plane, as a list or a
+    PolygonWorld, whose bounds do not count. In a horizontal plane x and y are those of the world; in another
+    one x is horizontal and y points up. A Scene may contain boxes, hulls, spheres, half spaces and point
+    clouds anywhere, cylinders and capsules that are upright or lie in the plane.
+
+    limits: whether the joint limits count; a joint without limits turns around and around. height [m]: of
+    the plane over the origin along its normal; by default that of the tip.
+
+    Raises InputError for other joints, axes that are not parallel, a negative radius, a tilted cylinder, an
+    attached object and links in different planes; InputTypeError for shapes without a known section, such as
+    meshes; GeometryError for a polygon that crosses itself.
+    """
+    if not isinstance(limits, (bool, np.bool_)):
+        raise InputTypeError(f"limits is a {type(limits).__name__}; it must be True or False")
+    arm = read_planar_arm(robot, bool(limits))
+    radius = bounded_number(
+        link_radius, "link_radius", 0.0, "it must be a length [m], 0 or more", LARGEST_NUMBER
+    )
+    if height is not None:
+        height = float(as_floats(height, "height", largest=LARGEST_NUMBER))
+    if isinstance(obstacles, Scene):
+        return ConfigurationSpace(arm, cut_scene(obstacles, arm, height, radius), radius)
+    if not isinstance(obstacles, (PolygonWorld, list, tuple)):
+        raise InputTypeError(
+            f"obstacles is a {type(obstacles).__name__}; it must be a Scene, a PolygonWorld or a list of"
+            " polygons (n, 2)"
+        )
+    return ConfigurationSpace(arm, cut_polygons(obstacles), radius)
+
+
+def make_core(arm: PlanarArm, sections: dict[str, list[Piece]], link_radius: float) -> _core.TwoJointSpace:
+    """The compiled space of an arm among pieces."""
+    pieces = [(piece, k) for k, found in enumerate(sections.values()) for piece in found]
+    joint_1, joint_2 = np.column_stack([arm.signs, arm.offsets, arm.lower, arm.upper])
+    return _core.TwoJointSpace(
+        arm.base,
+        arm.lengths,
+        link_radius,
+        joint_1,
+        joint_2,
+        bool(arm.wraps[0]),
+        bool(arm.wraps[1]),
+        np.vstack([np.empty((0, 2)), *(piece.corners for piece, _ in pieces)]),
+        np.cumsum([len(piece.corners) for piece, _ in pieces], dtype=np.int32),
+        np.array([piece.radius for piece, _ in pieces], dtype=np.float64),
+        np.array([k for _, k in pieces], dtype=np.int32),
+    )
+
+
+def check_cells(n: Any) -> tuple[int, int]:
+    """The numbers of cells along both joints."""
+    counts = (n, n) if np.ndim(n) == 0 else tuple(n)
+    if len(counts) != 2:
+        raise InputError(f"n has {len(counts)} entries; give one number of cells, or two")
+    rows, columns = (whole_number(count, "n", 1, MOST_CELLS) for count in counts)
+    return rows, columns
+
+
+def write_q(q: Array) -> str:
+    """A configuration as text."""
+    return f"({q[0]:.6g}, {q[1]:.6g})"
