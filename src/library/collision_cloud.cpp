@@ -10,7 +10,7 @@ namespace cspace::collision {
 
 namespace {
 
-constexpr int leaf_size = 8;  // points
+constexpr int leaf_size = 16;  // points: a point takes a third of the time of a box
 
 }  // namespace
 

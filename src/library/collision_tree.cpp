@@ -170,7 +170,8 @@ class PointBuilder {
             include_box(box, add_node(middle, end));
         }
         TreeNode& node = nodes_[index] = round_box(box, 0);
-        if (leaves <= 1) node.first = begin, node.count = end - begin;
+        node.first = begin;
+        if (leaves <= 1) node.count = end - begin;
         node.next = int(nodes_.size());
         return box;
     }

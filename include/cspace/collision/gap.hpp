@@ -60,8 +60,9 @@ CSPACE_INLINE bool is_convex(const Scene& scene, int i) {
     return i < scene.n_boxes + scene.n_capsules + scene.n_cylinders + scene.n_half_spaces;
 }
 
-// Of primitive i; `radius` receives what it is grown by. Exact in the lanes in which the ball may touch the
-// primitive, and beyond its reach in the others; if `any`, in one of these lanes.
+// Of primitive i; `radius` receives what it is grown by. In the lanes that are wanted it compares with the
+// squares of r + radius and of the reach as the exact one does; if `any`, in one lane in which the ball may
+// touch the primitive, where there is one.
 template <class Growth>
 CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball,
                                 float& radius, bool any = false) {

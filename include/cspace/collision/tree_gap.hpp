@@ -91,8 +91,8 @@ inline FloatMask find_inside(const Mesh& mesh, const Place& at) {
     return within & (exits > 0.5f);
 }
 
-// What is looked for in a tree: squares of distances below `limit` in the lanes `wanted`. The search ends
-// once all of these are below `enough`, or one of them if `any`.
+// What is looked for in a tree: squares of distances below `enough`, and else below `limit`, in the lanes
+// `wanted`. The search ends once all of these are below `enough`, or one of them if `any`.
 struct Sought {
     Floats limit, enough;
     unsigned wanted;
@@ -101,11 +101,17 @@ struct Sought {
         const unsigned found = bits_of(squares < enough) & wanted;
         return found == wanted || (any && found);
     }
+    // A lane that is below `enough` needs no more items, one below the limit only those below `enough`.
+    CSPACE_INLINE Floats settle(Floats squares) const {
+        const Floats rest = select(squares < limit, enough, limit);
+        return select(squares < enough, fill_floats(0.0f), rest);
+    }
 };
 
-// The least squares of distances from the items of a tree, as far as they are below the limit; `measure`
-// finds those of an item.
-template <class Measure>
+// Of squares of distances from the items of a tree: 0 where the least is below `enough`, `enough` where it is
+// below the limit, and the limit elsewhere, also in a lane that the search has left open. `measure` finds the
+// squares of an item. inner: nodes that are no leaves have an item too, one of those below them.
+template <bool inner, class Measure>
 CSPACE_INLINE Floats find_least(const TreeNode* nodes, int n_nodes, const Place& at, const Sought& sought,
                                 const Measure& measure) {
     Floats least = sought.limit;
@@ -116,22 +122,24 @@ CSPACE_INLINE Floats find_least(const TreeNode* nodes, int n_nodes, const Place&
             continue;
         }
         ++i;
-        if (node.count == 0) continue;
-        for (int k = node.first; k < node.first + node.count; ++k) least = min(least, measure(k));
+        const int count = inner && node.count == 0 ? 1 : node.count;
+        if (count == 0) continue;
+        for (int k = node.first; k < node.first + count; ++k) least = min(least, measure(k));
+        least = sought.settle(least);
         if (sought.is_met(least)) break;
     }
     return least;
 }
 
-// Squared distances where they are below the limit and wanted, else something at least as large.
+// Less than the limit, or than `enough`, where the square of the distance is, in the lanes wanted.
 inline Floats square_gap(const Mesh& mesh, const Place& at, const Sought& sought) {
-    const Floats least = find_least(mesh.nodes, mesh.n_nodes, at, sought,
-                                    [&](int k) { return square_gap(mesh.triangles[k], at); });
+    const Floats least = find_least<false>(mesh.nodes, mesh.n_nodes, at, sought,
+                                           [&](int k) { return square_gap(mesh.triangles[k], at); });
     if (!mesh.facets || sought.is_met(least)) return least;
     return select(find_inside(mesh, at), fill_floats(0.0f), least);
 }
 inline Floats square_gap(const Cloud& cloud, const Place& at, const Sought& sought) {
-    return find_least(cloud.nodes, cloud.n_nodes, at, sought, [&](int k) {
+    return find_least<true>(cloud.nodes, cloud.n_nodes, at, sought, [&](int k) {
         return square(at.x - cloud.x[k]) + (square(at.y - cloud.y[k]) + square(at.z - cloud.z[k]));
     });
 }
