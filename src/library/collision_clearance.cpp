@@ -3,6 +3,7 @@
 
 #include "collision_checker.hpp"
 #include "cspace/kinematics/jacobian.hpp"
+#include "cspace/shapes/distance.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::collision {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cspace/math/interrupts.hpp"
+#include "cspace/shapes/distance.hpp"
 
 namespace cspace::collision {
 

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "collision_tree.hpp"
-#include "cspace/shapes/distance.hpp"
+
+namespace cspace::shapes {
+struct Distance;
+}
 
 namespace cspace::collision {
 

@@ -6,6 +6,7 @@
 
 #include "cspace/collision/tree_gap.hpp"
 #include "cspace/math/interrupts.hpp"
+#include "cspace/shapes/triangle.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::collision {
@@ -109,15 +110,19 @@ MeshData::MeshData(std::span<const double> triangles, bool is_solid) {
     visit_range(0, n, [&](std::size_t i) {
         const double* t = &triangles[9 * std::size_t(tree.order[i])];
         corners_.push_back({read_vector(t), read_vector(t + 3), read_vector(t + 6)});
-        triangles_.push_back(round_triangle(corners_.back()));
-        if (!is_solid) return;
-        facets_.push_back(make_facet<float>(corners_.back()));
+        triangles_.push_back(round_triangle(triangle(int(i))));
+        if (is_solid) facets_.push_back(make_facet<float>(triangle(int(i))));
     });
 }
 
 Mesh MeshData::view() const {
     return {nodes_.data(), triangles_.data(), facets_.empty() ? nullptr : facets_.data(), int(nodes_.size()),
             float(grown_)};
+}
+
+Corners MeshData::triangle(int k) const {
+    const auto& [a, b, c] = corners_[std::size_t(k)];
+    return {a, b, c};
 }
 
 bool MeshData::contains(const Vec3d& point) const {
@@ -136,7 +141,7 @@ bool MeshData::contains(const Vec3d& point) const {
             continue;
         }
         for (int k = node.first; k < node.first + node.count; ++k)
-            exits += count_exits(make_facet<double>(corners_[std::size_t(k)]), point.x, point.y, point.z);
+            exits += count_exits(make_facet<double>(triangle(k)), point.x, point.y, point.z);
         ++i;
     }
     return exits > 0.5;
@@ -147,18 +152,18 @@ shapes::Distance MeshData::distance(const Vec3d& point, double limit) const {
     const bool is_inside = contains(point);
     double square = is_inside || limit == infinity ? infinity : std::max(limit, 0.0) * std::max(limit, 0.0);
     const int found = find_nearest(nodes_, point, square, [&](int k) {
-        const Vec3d foot = shapes::nearest_on_triangle(point, corners_[std::size_t(k)]);
+        const Vec3d foot = shapes::nearest_on_triangle(point, triangle(k));
         return dot(point - foot, point - foot);
     });
     if (found < 0) return {infinity, {0, 0, 1}};
-    const Vec3d nearest = shapes::nearest_on_triangle(point, corners_[std::size_t(found)]);
+    const Vec3d nearest = shapes::nearest_on_triangle(point, triangle(found));
     const Vec3d apart = point - nearest;
     const double length = norm(apart);
     if (length > 0) {
         const double sign = is_inside ? -1 : 1;
         return {sign * length, (sign / length) * apart};
     }
-    const Corners& t = corners_[std::size_t(found)];
+    const Corners t = triangle(found);
     const Vec3d normal = cross(t.b - t.a, t.c - t.a);
     const double size = norm(normal);
     return {0, size > 0 ? (1 / size) * normal : Vec3d{0, 0, 1}};

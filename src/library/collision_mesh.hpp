@@ -5,7 +5,11 @@
 #include <vector>
 
 #include "collision_tree.hpp"
-#include "cspace/shapes/triangle.hpp"
+
+namespace cspace::shapes {
+struct Corners;
+struct Distance;
+}  // namespace cspace::shapes
 
 namespace cspace::collision {
 
@@ -22,13 +26,14 @@ class MeshData {
     shapes::Distance distance(const Vec3d& point, double limit) const;
 
   private:
-    std::vector<shapes::Corners> corners_;
+    std::vector<std::array<Vec3d, 3>> corners_;
     std::vector<TreeNode> nodes_;
     std::vector<Triangle> triangles_;
     std::vector<Facet<float>> facets_;  // none where the surface alone counts
     Bounds bounds_;
     double grown_;
 
+    shapes::Corners triangle(int k) const;
     bool contains(const Vec3d& point) const;
 };
 

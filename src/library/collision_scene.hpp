@@ -7,7 +7,10 @@
 #include "collision_cloud.hpp"
 #include "collision_mesh.hpp"
 #include "cspace/collision/boxes.hpp"
-#include "cspace/shapes/distance.hpp"
+
+namespace cspace::shapes {
+struct Distance;
+}
 
 namespace cspace::collision {
 
