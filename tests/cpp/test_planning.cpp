@@ -115,13 +115,14 @@ struct Turntable {
                                           distance * std::sin(blocked),
                                           0.2,
                                           0.03};
+        const std::vector<int> owners = {0};
+        collision::Primitives given = {};
+        given.capsules = rods, given.owners = owners;
         checker = std::make_unique<collision::Checker>(
             std::make_shared<collision::RobotData>(joints, 1, limits, limits, std::vector<int>{1},
                                                    std::vector<collision::Sphere>{{{0.5, 0, 0}, 0.05, 0}},
                                                    std::vector<std::pair<int, int>>{}),
-            std::make_shared<collision::SceneData>(
-                collision::Primitives{{}, rods, {}, {}, std::vector<int>{0}}),
-            0.0, std::vector<std::pair<int, int>>{});
+            std::make_shared<collision::SceneData>(given), 0.0, std::vector<std::pair<int, int>>{});
     }
     ArmPlan plan(double from, double to, bool wraps) const {
         const Row low = {-4}, high = {4}, start = {from}, goal = {to};

@@ -43,23 +43,24 @@ class InformedSamples {
 
     bool draw_from_box(const float* a, const float* b, float bound, float* q) {
         Row unit;
-        for (int k = 0; k < box_.width; ++k) unit[k] = float(draws_.uniform());
+        for (int k = 0; k < box_.width; ++k) unit[std::size_t(k)] = float(draws_.uniform());
         box_.scale(unit.data(), q);
         return box_.distance(a, q) + box_.distance(q, b) < bound;
     }
     bool draw_from_spheroid(const float* a, const float* b, float bound, float* q) {
         const int n = box_.width;
-        Row axis, x;
+        Row axis_row, x_row;
+        float *const axis = axis_row.data(), *const x = x_row.data();
         float square = 0;
         for (int k = 0; k < n; ++k) {
             axis[k] = box_.difference(k, a[k], b[k]);
             square += axis[k] * axis[k];
         }
         const float between = std::sqrt(square);
-        draw_in_ball(x.data());
+        draw_in_ball(x);
         const float along = 0.5f * bound, across = 0.5f * std::sqrt(std::max(bound * bound - square, 0.0f));
         for (int k = 0; k < n; ++k) x[k] *= k == 0 ? along : across;
-        if (between > 0) reflect(axis.data(), between, x.data());
+        if (between > 0) reflect(axis, between, x);
         for (int k = 0; k < n; ++k) {
             q[k] = a[k] + (0.5f * axis[k] + x[k]);
             if (!put_inside(k, q[k])) return false;
@@ -82,7 +83,8 @@ class InformedSamples {
     }
     // The Householder reflection that takes the first unit vector to axis / length.
     void reflect(const float* axis, float length, float* x) const {
-        Row v;
+        Row row;
+        float* const v = row.data();
         float square = 0, product = 0;
         for (int k = 0; k < box_.width; ++k) {
             v[k] = (k == 0 ? 1.0f : 0.0f) - axis[k] / length;
