@@ -137,7 +137,7 @@ def test_no_path_ends_in_one_and_writes_nothing(tmp_path):
     assert "wall" in result.out
     found = cspace(f"{line} --json")
     schema.check(found.json)
-    assert (found.code, found.json["status"]) == (Exit.NEGATIVE, "unreachable")
+    assert (found.code, found.json["status"]) == (Exit.NEGATIVE, "undetermined")
     assert found.json["path"] == found.json["written"] == []
     assert not file.exists()
     budget = cspace(f"{LINE} {ENDS} --option edges=1 --json")
@@ -145,7 +145,7 @@ def test_no_path_ends_in_one_and_writes_nothing(tmp_path):
 
 
 FAULTS = [
-    ("plan ur5e --to up", ["no collision geometry", "--spheres FILE", "--geometry skeleton"]),
+    ("plan ur10 --to up", ["no collision geometry", "--spheres FILE", "--geometry skeleton"]),
     ("plan ur5e --geometry skeleton", ["no goal", "--to"]),
     ("plan kr6_r900 --geometry skeleton --to 0 0 0 0 0 0", ["no start", "'home'", "--from"]),
     ("plan ur5e --geometry skeleton --to upp", ["upp", "'up'"]),

@@ -21,6 +21,7 @@ MODULES = [
     importlib.import_module(f"cspace{room}")
     for room in (
         "",
+        ".collision",
         ".errors",
         ".export",
         ".ik",
@@ -28,6 +29,7 @@ MODULES = [
         ".maps",
         ".model",
         ".navigation",
+        ".planning",
         ".plot",
         ".robots",
     )

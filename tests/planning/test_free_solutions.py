@@ -45,4 +45,4 @@ def test_a_solver_without_a_robot_needs_one():
         solutions.free(cs.Scene())
     assert len(solutions.free(cs.Scene(), robot=robot)) <= len(solutions)
     with pytest.raises(InputError, match="no collision geometry"):
-        cs.load_robot("ur5e").ik(robot.fk(np.full(6, 0.5))).free(cs.Scene())
+        cs.load_robot("ur10").ik(robot.fk(np.full(6, 0.5))).free(cs.Scene())

@@ -245,7 +245,7 @@ def test_a_planar_arm_is_drawn_in_space():
         (lambda robot, plan: plot.scene(table(), robot), InputError, "q is missing"),
         (lambda robot, plan: plot.scene(table(), robot, UP[:5]), InputError, "shape"),
         (lambda robot, plan: plot.scene(table(), robot, [UP, UP]), InputError, "one configuration"),
-        (lambda robot, plan: plot.spheres(cs.load_robot("ur5e"), UP), InputError, "with_spheres"),
+        (lambda robot, plan: plot.spheres(cs.load_robot("ur10"), UP), InputError, "with_spheres"),
         (lambda robot, plan: plot.spheres(robot, UP, "table"), InputTypeError, r"cspace\.Scene"),
         (lambda robot, plan: plot.plan(robot), InputTypeError, r"cs\.plan"),
         (lambda robot, plan: plot.plan(plan, poses=1), InputError, "poses is 1"),

@@ -1,6 +1,8 @@
 // The nearest point of a triangle, in double.
 #pragma once
 
+#include <iterator>
+
 #include "cspace/shapes/distance.hpp"
 
 namespace cspace::shapes {
