@@ -57,7 +57,7 @@ def plan(
     UnknownNameError for an unknown planner, InputTypeError for an unknown option.
     """
     chosen = find_planner(planner, options)
-    space = ArmSpace(robot, scene, margin)
+    space = _make_space(robot, scene, margin)
     starts = space.as_rows(start, "start")
     goals = _find_goals(robot, space, starts, goal)
     if not len(goals.rows):
@@ -94,7 +94,11 @@ def plan_many(
     """
     chosen = find_planner(planner, options)
     count = whole_number(threads, "threads", 0, MOST_THREADS, "0 for every processor")
-    space = ArmSpace(robot, scene, margin)
+    space = _make_space(robot, scene, margin)
+    if isinstance(goals, (Mapping, str)) or not np.iterable(goals):
+        raise InputTypeError(
+            f"goals is a {type(goals).__name__}; it must be a list of goals, one per problem"
+        )
     wanted = list(goals)
     rows = space.as_rows(starts, "starts")
     if len(rows) not in (1, len(wanted)):
@@ -145,7 +149,7 @@ class Plans(Sequence[Plan]):
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{n} {status}" for status, n in Counter(self.status).items())
-        return one_line("Plans", f"of {len(self)} problems: {counts}")
+        return one_line("Plans", f"of {len(self)} problems{': ' if counts else ''}{counts}")
 
     def _repr_html_(self) -> str:
         rows = [(str(k), p.status, str(len(p)), shown(p.cost)) for k, p in enumerate(self._plans)]
@@ -167,7 +171,7 @@ def _find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> _Goa
     """The configurations of a goal as `plan` takes it, IK solutions at the turns nearest to the start."""
     if isinstance(goal, Mapping):
         solutions = robot.ik(**goal)
-    elif np.shape(goal) == (4, 4) and _is_pose(goal):
+    elif np.shape(goal) == (4, 4) and (space.dof != 4 or _is_pose(goal)):
         solutions = robot.ik(goal)
     else:
         if isinstance(goal, str) or np.ndim(goal) not in (1, 2):
@@ -188,6 +192,14 @@ def _find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> _Goa
     rows = [nearest_winding(q, starts[0], robot.joint_types, lower, upper) for q in found]
     is_whole = bool(solutions.complete) and not solutions.freedom and not solutions.self_motions
     return _Goals(np.ascontiguousarray(rows), "", False, is_whole)
+
+
+def _make_space(robot: Robot, scene: Scene | None, margin: float) -> ArmSpace:
+    """The space of a robot; InputTypeError for what is not one."""
+    if not isinstance(robot, Robot):
+        kind = type(robot).__name__
+        raise InputTypeError(f"robot is a {kind}; it must be a cspace.Robot, such as cs.load_robot('panda')")
+    return ArmSpace(robot, scene, margin)
 
 
 def _is_pose(goal: Any) -> bool:

@@ -183,6 +183,9 @@ BAD = {
     "value": (lambda r, s: cs.plan(r, [2, 0], [2, 1], s, range=0.0), InputError, "range is 0"),
     "seed": (lambda r, s: cs.plan(r, [2, 0], [2, 1], s, rng=-1), InputError, "seed"),
     "margin": (lambda r, s: cs.plan(r, [2, 0], [2, 1], s, margin=-1), InputError, "margin"),
+    "robot": (lambda r, s: cs.plan("ur5e", [2, 0], [2, 1], s), InputTypeError, "it must be a cspace.Robot"),
+    "pose": (lambda r, s: cs.plan(r, [2, 0], np.full((4, 4), np.nan), s), InputError, "nan"),
+    "goals": (lambda r, s: cs.plan_many(r, [2, 0], 5, s), InputTypeError, "a list of goals"),
     "many": (lambda r, s: cs.plan_many(r, [[2, 0]] * 2, [[2, 1]] * 3, s), InputError, "2 starts and 3 goals"),
 }
 
