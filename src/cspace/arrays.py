@@ -44,10 +44,10 @@ def as_floats(
     if finite and not _all_finite(array):
         bad = tuple(map(int, np.argwhere(~np.isfinite(array))[0]))
         raise InputError(f"{subject} {_entry(array, bad)}; all must be finite")
-    if largest is not None and len(beyond := np.argwhere(np.abs(array) > largest)):
+    if largest is not None and (np.abs(array) > largest).any():
+        beyond = np.argwhere(np.abs(array) > largest)[0]
         raise InputError(
-            f"{subject} {_entry(array, tuple(map(int, beyond[0])))}; the largest allowed value is "
-            f"±{largest:g}"
+            f"{subject} {_entry(array, tuple(map(int, beyond)))}; the largest allowed value is ±{largest:g}"
         )
     return array
 
@@ -114,6 +114,8 @@ def positive_number(
 
 def bounded_number(value: Any, subject: str, least: float, rule: str, largest: float | None = None) -> float:
     """A number not below `least`, alone; rule and errors as of positive_number."""
+    if type(value) is float and least <= value <= (math.inf if largest is None else largest) < math.inf:
+        return value
     number = as_floats(value, subject, largest=largest)
     if number.ndim or number < least:
         raise InputError(f"{subject} is {value!r}; {rule}")

@@ -68,8 +68,9 @@ def checker_of(geometry: RobotGeometry, scene: Scene | None, margin: float) -> C
     checker: Checker | None = kept.get(key)
     if checker is None:
         checker = make_checker(geometry, scene, gap)
-        while len(kept) >= KEPT_CHECKERS:
-            kept.pop(next(iter(kept)), None)
+        checkers = [name for name in kept if isinstance(name, tuple)]
+        for name in checkers[: max(0, len(checkers) - KEPT_CHECKERS + 1)]:
+            kept.pop(name, None)
         kept[key] = checker
     return checker
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
-from cspace.collision import Clearance, Edge, Scene, clearance, edge
+from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
 from cspace.collision.checks import HasGeometry
 from cspace.errors import InputError
@@ -33,26 +31,11 @@ class ArmSpace:
         self.robot, self.geometry, self.scene, self.margin = robot, robot.collision, scene, margin
         self.checker: Checker = checker_of(self.geometry, scene, margin)
         self.dof = self.geometry.dof
-        lower, upper = self.geometry.lower.copy(), self.geometry.upper.copy()
-        open_below, open_above = np.isinf(lower), np.isinf(upper)
-        self.wraps: npt.NDArray[np.uint8] = (open_below & open_above & self._has_period()).astype(np.uint8)
-        lower[open_below & open_above], upper[open_below & open_above] = -np.pi, np.pi
-        lower[open_below & ~open_above] = upper[open_below & ~open_above] - TURN
-        upper[open_above & ~open_below] = lower[open_above & ~open_below] + TURN
-        self.lower, self.upper = lower, upper
-
-    def _has_period(self) -> npt.NDArray[np.bool_]:
-        """Which coordinates move revolute joints alone, by whole multiples."""
-        found = np.ones(self.geometry.dof, dtype=bool)
-        for row in self.geometry.joints:
-            if row[20] or row[18] != round(row[18]):
-                found[int(row[17])] = False
-        return found
-
-    @cached_property
-    def bounds(self) -> Array:
-        """The bounds (2, dof)."""
-        return np.array([self.lower, self.upper])
+        kept = self.geometry._kept
+        if "bounds" not in kept:
+            kept["bounds"] = find_bounds(self.geometry)
+        self.bounds, self.wraps = kept["bounds"]
+        self.lower, self.upper = self.bounds
 
     def edge(self, a: ArrayLike, b: ArrayLike, *, resolution: float | None = None) -> Edge:
         """The motion from a to b (dof,), joints that wrap the short way; see collision.edge."""
@@ -114,3 +97,20 @@ class ArmSpace:
     def __repr__(self) -> str:
         objects = 0 if self.scene is None else len(self.scene)
         return one_line("ArmSpace", f"of {self.geometry.robot} with {objects} objects, {self.dof} dof")
+
+
+def find_bounds(geometry: RobotGeometry) -> tuple[Array, npt.NDArray[np.uint8]]:
+    """The bounds (2, dof) of the joints, and which of them wrap (dof,)."""
+    lower, upper = geometry.lower.copy(), geometry.upper.copy()
+    open_below, open_above = np.isinf(lower), np.isinf(upper)
+    has_period = np.ones(geometry.dof, dtype=bool)  # moves revolute joints alone, by whole multiples
+    for row in geometry.joints:
+        if row[20] or row[18] != round(row[18]):
+            has_period[int(row[17])] = False
+    wraps = open_below & open_above & has_period
+    lower[open_below & open_above], upper[open_below & open_above] = -np.pi, np.pi
+    lower[open_below & ~open_above] = upper[open_below & ~open_above] - TURN
+    upper[open_above & ~open_below] = lower[open_above & ~open_below] + TURN
+    bounds = np.array([lower, upper])
+    bounds.setflags(write=False)
+    return bounds, wraps.astype(np.uint8)
