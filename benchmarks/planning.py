@@ -7,7 +7,7 @@ Thomason et al. 2024, compiled for each robot): valid, solved, rrt_median_us, to
 cost_simplified are read. They run between our rounds.
 
 Times are those of the thread's processor clock, the median of the rounds per problem; "wall" is what a caller
-of cs.plan waits for, the scene being known.
+of cs.plan waits for in a scene that was not checked before.
 """
 
 from __future__ import annotations
