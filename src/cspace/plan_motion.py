@@ -52,7 +52,8 @@ def plan(
     rng: seed or generator; the same seed gives the same plan on every machine. options: those of the planner.
 
     The Plan is truthy if a way was found, and says why where not: "unreachable" if no IK solution exists or
-    all of them touch something, "undetermined" if the planner's budget was used up.
+    all of them touch something, "undetermined" if the planner's budget was used up, or if only samples of
+    infinitely many IK solutions were tried.
     Raises InputError for a start or a given goal that touches something or is outside the limits,
     UnknownNameError for an unknown planner, InputTypeError for an unknown option.
     """
@@ -61,7 +62,7 @@ def plan(
     starts = space.as_rows(start, "start")
     goals = _find_goals(robot, space, starts, goal)
     if not len(goals.rows):
-        return _make_negative(space, chosen, "unreachable", goals.reason)
+        return _make_negative(space, chosen, goals.status, goals.reason)
     found = chosen.plan(space, starts, goals.rows, rng=rng)
     if found.status == "invalid_start":
         raise InputError(
@@ -108,7 +109,7 @@ def plan_many(
     open_rows = [k for k, each in enumerate(sets) if len(each.rows)]
     problems = [(rows[k], sets[k].rows) for k in open_rows]
     found = chosen.plan_each(space, problems, rng=rng, threads=count)
-    plans = [_make_negative(space, chosen, "unreachable", each.reason) for each in sets]
+    plans = [_make_negative(space, chosen, each.status, each.reason) for each in sets]
     for k, each in zip(open_rows, found, strict=True):
         if each.status == "invalid_goal" and not sets[k].is_given:
             status, reason = _explain_goals(space, sets[k])
@@ -166,6 +167,11 @@ class _Goals:
     is_given: bool
     is_whole: bool = True
 
+    @property
+    def status(self) -> str:
+        """Of a plan to it if none of its rows can be reached."""
+        return "unreachable" if self.is_whole else "undetermined"
+
 
 def _find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> _Goals:
     """The configurations of a goal as `plan` takes it, IK solutions at the turns nearest to the start."""
@@ -180,17 +186,19 @@ def _find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> _Goa
                 " (4, 4), or a dict of keywords of robot.ik"
             )
         return _Goals(space.as_rows(goal, "goal"), "", True)
+    none = np.empty((0, space.dof))
     if not solutions:
-        return _Goals(np.empty((0, space.dof)), f"no IK solution: {solutions.reason}", False)
+        return _Goals(none, f"no IK solution: {solutions.reason}", False, bool(solutions.complete))
+    is_whole = bool(solutions.complete) and not solutions.freedom and not solutions.self_motions
     inside = solutions.within(robot.limits)
-    if not inside:
-        return _Goals(np.empty((0, space.dof)), f"no IK solution within limits: {inside.reason}", False)
     found = list(inside.q)
     if solutions.freedom and isinstance(goal, Mapping) and "near" not in goal:
         found += _sample_goal(robot, goal)
+    if not found:
+        sampled = "" if is_whole else " among those sampled"
+        return _Goals(none, f"no IK solution within limits{sampled}: {inside.reason}", False, is_whole)
     lower, upper = robot.limits.lower, robot.limits.upper
     rows = [nearest_winding(q, starts[0], robot.joint_types, lower, upper) for q in found]
-    is_whole = bool(solutions.complete) and not solutions.freedom and not solutions.self_motions
     return _Goals(np.ascontiguousarray(rows), "", False, is_whole)
 
 

@@ -33,7 +33,7 @@ def choose_planner(
     """The planner of a name, or a planner itself, with options.
 
     Raises UnknownNameError with the nearest names, InputTypeError for an option that it does not have and for
-    what is no planner of the base class.
+    an object of another class.
     """
     found = known.get(planner) if isinstance(planner, str) else planner
     if isinstance(found, base):

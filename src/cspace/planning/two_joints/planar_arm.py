@@ -127,7 +127,7 @@ def read_limits(robot: KinematicModel, use_limits: bool) -> tuple[Array, Array, 
         if not wrap and high - low > MOST_TURNS * TURN:
             raise InputError(
                 f"joint {name} of {robot.name} has limits {low:g} and {high:g} rad, more than {MOST_TURNS}"
-                " turns apart; use limits=False for a joint that turns without end"
+                " turns apart; use limits=False for a continuous joint"
             )
     lower[wraps], upper[wraps] = WHOLE
     return lower, upper, wraps
