@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from cspace._core import CollisionChecker, CollisionRobot, CollisionScene
 from cspace.arrays import Array, bounded_number
-from cspace.collision.pack_scene import PackedScene, pack_scene
+from cspace.collision.pack_scene import PackedScene, pack_obstacles
 from cspace.collision.robot_geometry import RobotGeometry, split_rows
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError
@@ -23,6 +23,9 @@ KEPT_CHECKERS: Final = 8
 
 ATTACHED_COVER: Final = 0.005
 """Excess [m] of the spheres that cover an attached object."""
+
+NO_PAIRS: Final = np.empty((0, 2), dtype=np.int64)
+"""What may touch if nothing is allowed to."""
 
 NOTHING: Final = Scene()
 """The scene without obstacles."""
@@ -79,20 +82,29 @@ def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checke
     """As checker_of, made anew."""
     if not geometry:
         raise InputError(f"{geometry.robot} cannot be checked for collisions: {geometry.reason}")
-    scene.check_links({*geometry.links, *geometry.frames}, geometry.frames, geometry.robot)
+    scene.check_links((*geometry.links, *geometry.frames), geometry.frames, geometry.robot)
     robot = add_attached(geometry, scene)
-    packed = pack_scene(scene, geometry.T_world_base)
+    packed = pack_obstacles(scene, geometry.T_base_world)
     core = compile_scene(packed)
-    number = {name: k for k, name in enumerate(packed.names)}
-    links = {name: k for k, name in enumerate(robot.links)}
-    allowed = [
-        (links[a], number[b])
-        for pair in touching_pairs(scene)
+    allowed = number_pairs(touching_pairs(scene), robot.links, packed.names)
+    return Checker(CollisionChecker(robot.core, core, margin, allowed), robot, packed.names, margin)
+
+
+def number_pairs(
+    pairs: set[frozenset[str]], links: tuple[str, ...], obstacles: tuple[str, ...]
+) -> npt.NDArray[np.int64]:
+    """The pairs (k, 2) of a link and an obstacle among pairs of names, by number."""
+    if not pairs:
+        return NO_PAIRS
+    link_of = {name: k for k, name in enumerate(links)}
+    obstacle_of = {name: k for k, name in enumerate(obstacles)}
+    found = [
+        (link_of[a], obstacle_of[b])
+        for pair in pairs
         for a, b in permutations(pair)
-        if a in links and b in number
+        if a in link_of and b in obstacle_of
     ]
-    pairs = np.array(allowed, dtype=np.int64).reshape(-1, 2)
-    return Checker(CollisionChecker(robot.core, core, margin, pairs), robot, packed.names, margin)
+    return np.array(found, dtype=np.int64).reshape(-1, 2)
 
 
 def compile_scene(packed: PackedScene) -> CollisionScene:
@@ -118,7 +130,7 @@ def compile_scene(packed: PackedScene) -> CollisionScene:
         points,
         cloud_sizes,
         np.array([radius for _, radius in packed.clouds], dtype=np.float64),
-        np.concatenate(owners).astype(np.int64),
+        np.concatenate(owners),
     )
 
 
@@ -126,7 +138,7 @@ def join_parts(parts: list[Array], width: int) -> tuple[Array, npt.NDArray[np.in
     """The rows (n, width) of all parts below each other, contiguous, and how many each part has."""
     rows = [np.ascontiguousarray(part).reshape(-1, width) for part in parts]
     sizes = np.array([len(part) for part in rows], dtype=np.int64)
-    return np.concatenate([np.empty((0, width)), *rows]), sizes
+    return np.concatenate(rows) if rows else np.empty((0, width)), sizes
 
 
 def touching_pairs(scene: Scene) -> set[frozenset[str]]:

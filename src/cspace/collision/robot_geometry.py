@@ -88,6 +88,11 @@ class RobotGeometry:
         return tuple(sorted({int(row[17]) for row in self.joints if row[20]}))
 
     @cached_property
+    def T_base_world(self) -> Array:
+        """The inverse (4, 4) of T_world_base."""
+        return invert_pose(self.T_world_base)
+
+    @cached_property
     def compiled(self) -> CollisionRobot:
         """The compiled robot without attached objects."""
         return self.compile(self.link_bodies, self.spheres, self.sphere_links, self.pairs)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 from types import MappingProxyType
@@ -85,6 +85,8 @@ class Scene(Renamed):
     @property
     def obstacles(self) -> tuple[Shape, ...]:
         """The objects that are not attached, in order."""
+        if not self._attached:
+            return tuple(self._objects.values())
         return tuple(shape for name, shape in self._objects.items() if name not in self._attached)
 
     @property
@@ -188,19 +190,21 @@ class Scene(Renamed):
         new._allowed = self._allowed - {pair}
         return new
 
-    def check_links(self, links: Iterable[str], frames: Iterable[str], robot: str) -> None:
+    def check_links(self, links: Iterable[str], frames: Collection[str], robot: str) -> None:
         """Check the names that belong to a robot: those of frames that carry objects, and of links.
 
         Raises UnknownNameError for a frame or link that the robot lacks, InputError for an object that has
         the name of a link.
         """
-        carriers, known = set(frames), {*links, *self._objects}
         for name in self._objects:
-            if name in carriers:
+            if name in frames:
                 raise InputError(f"object {name!r} has the name of a link of {robot}; give it another one")
+        if not self._attached and not self._allowed:
+            return
+        known = {*links, *self._objects}
         for name, attachment in self._attached.items():
-            if attachment.frame not in carriers:
-                raise suggest("frame", attachment.frame, carriers, owner=f"{robot} (it carries {name!r})")
+            if attachment.frame not in frames:
+                raise suggest("frame", attachment.frame, frames, owner=f"{robot} (it carries {name!r})")
             for touched in attachment.touch:
                 if touched not in known:
                     raise suggest("link or object", touched, known, owner=f"{robot} and its scene")
