@@ -2,6 +2,7 @@
 #include "library/collision_solids.hpp"
 
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
@@ -65,15 +66,15 @@ double number_in(nb::handle shape, const nb::object& field) {
 using Rows = std::pair<Doubles, Plain<std::int64_t>>;
 Rows arrays_of(const SolidRows& rows, npy_intp width) {
     const npy_intp n = npy_intp(rows.owners.size());
-    return {Doubles({n, width}, rows.numbers.data()), Plain<std::int64_t>({n}, rows.owners.data())};
+    Plain<std::int64_t> owners({n});
+    std::copy(rows.owners.begin(), rows.owners.end(), owners.data);
+    return {Doubles({n, width}, rows.numbers.data()), owners};
 }
 
-std::tuple<Rows, Rows, Rows, Rows, std::vector<int>> pack_solids(nb::tuple shapes, nb::tuple classes,
-                                                                 const ConstDoubles& T_base_world) {
-    require(T_base_world.ndim() == 2 && T_base_world.size == 16, "T_base_world must be an array (4, 4)");
+// Packs the shapes that are solids; the numbers of the others.
+std::vector<int> add_solids(SolidPacker& packer, const nb::tuple& shapes, const nb::tuple& classes) {
     const KindTable kinds(classes);
     const FieldNames names;
-    SolidPacker packer(kinematics::read_matrix(T_base_world.data));
     std::vector<int> others;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const nb::handle shape = PyTuple_GET_ITEM(shapes.ptr(), Py_ssize_t(i));
@@ -83,7 +84,7 @@ std::tuple<Rows, Rows, Rows, Rows, std::vector<int>> pack_solids(nb::tuple shape
             continue;
         }
         const Posed T = kinematics::read_matrix(numbers_in<16>(shape, names.pose).data());
-        const auto owner = std::int64_t(i);
+        const int owner = int(i);
         const auto radius = [&] { return number_in(shape, names.radius); };
         const auto length = [&] { return number_in(shape, names.length); };
         switch (kind) {
@@ -96,8 +97,29 @@ std::tuple<Rows, Rows, Rows, Rows, std::vector<int>> pack_solids(nb::tuple shape
                                       number_in(shape, names.offset));
         }
     }
+    return others;
+}
+
+SolidPacker packer_in(const ConstDoubles& T_base_world) {
+    require(T_base_world.ndim() == 2 && T_base_world.size == 16, "T_base_world must be an array (4, 4)");
+    return SolidPacker(kinematics::read_matrix(T_base_world.data));
+}
+
+std::tuple<Rows, Rows, Rows, Rows, std::vector<int>> pack_solids(const nb::tuple& shapes,
+                                                                 const nb::tuple& classes,
+                                                                 const ConstDoubles& T_base_world) {
+    SolidPacker packer = packer_in(T_base_world);
+    std::vector<int> others = add_solids(packer, shapes, classes);
     return {arrays_of(packer.boxes, 15), arrays_of(packer.capsules, 7), arrays_of(packer.cylinders, 8),
             arrays_of(packer.half_spaces, 4), std::move(others)};
+}
+
+// Null if one of the shapes is no solid.
+std::shared_ptr<SceneData> compile_solids(const nb::tuple& shapes, const nb::tuple& classes,
+                                          const ConstDoubles& T_base_world) {
+    SolidPacker packer = packer_in(T_base_world);
+    return add_solids(packer, shapes, classes).empty() ? std::make_shared<SceneData>(packer.primitives())
+                                                       : nullptr;
 }
 
 }  // namespace
@@ -107,4 +129,6 @@ void bind_collision_solids(nb::module_& m) {
           "Rows of boxes, of capsules, of cylinders and of half spaces, each with the numbers of their\n"
           "shapes, and the numbers of the shapes that are none of these. classes: box, sphere, capsule,\n"
           "cylinder and half space. T_base_world (4, 4).");
+    m.def("compile_solids", &compile_solids, "shapes"_a, "classes"_a, "T_base_world"_a,
+          "The scene of shapes that all are solids, as by pack_solids; None for others.");
 }

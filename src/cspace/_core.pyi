@@ -365,6 +365,11 @@ def pack_solids(shapes: tuple, classes: tuple, T_base_world: numpy.typing.NDArra
     cylinder and half space. T_base_world (4, 4).
     """
 
+def compile_solids(shapes: tuple, classes: tuple, T_base_world: numpy.typing.NDArray[numpy.float64]) -> CollisionScene:
+    """
+    The scene of shapes that all are solids, as by pack_solids; None for others.
+    """
+
 class ArmOptions:
     """Options of plans of arms."""
 

@@ -1,10 +1,9 @@
 // The rows that a scene holds of its solids of a few numbers, from their poses and sizes.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
+#include "collision_scene.hpp"
 #include "cspace/math/vec.hpp"
 
 namespace cspace::collision {
@@ -12,7 +11,7 @@ namespace cspace::collision {
 // Rows of one kind as Primitives have them, one below the other, and the object of each.
 struct SolidRows {
     std::vector<double> numbers;
-    std::vector<std::int64_t> owners;
+    std::vector<int> owners;
 };
 
 // Places solids in the frame of a robot's base. Every pose is that of the shape in the world; lengths in [m].
@@ -22,16 +21,20 @@ class SolidPacker {
 
     SolidRows boxes, capsules, cylinders, half_spaces;
 
-    void add_box(std::int64_t owner, const Posed& T_world_box, const double* size);
-    void add_sphere(std::int64_t owner, const Posed& T_world_sphere, double radius);
+    void add_box(int owner, const Posed& T_world_box, const double* size);
+    void add_sphere(int owner, const Posed& T_world_sphere, double radius);
     // length: of the segment along z.
-    void add_capsule(std::int64_t owner, const Posed& T_world_capsule, double radius, double length);
-    void add_cylinder(std::int64_t owner, const Posed& T_world_cylinder, double radius, double length);
+    void add_capsule(int owner, const Posed& T_world_capsule, double radius, double length);
+    void add_cylinder(int owner, const Posed& T_world_cylinder, double radius, double length);
     // Solid where normal · x ≤ offset in the frame of the shape.
-    void add_half_space(std::int64_t owner, const Posed& T_world_shape, const double* normal, double offset);
+    void add_half_space(int owner, const Posed& T_world_shape, const double* normal, double offset);
+
+    // Of a scene of these solids alone; a view that more solids void.
+    Primitives primitives();
 
   private:
     const Posed T_base_world_;
+    std::vector<int> owners_;
 };
 
 }  // namespace cspace::collision

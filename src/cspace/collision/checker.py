@@ -9,9 +9,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from cspace._core import CollisionChecker, CollisionRobot, CollisionScene
+from cspace._core import CollisionChecker, CollisionRobot, CollisionScene, compile_solids
 from cspace.arrays import Array, bounded_number
-from cspace.collision.pack_scene import PackedScene, pack_obstacles
+from cspace.collision.pack_scene import SOLIDS, PackedScene, pack_obstacles
 from cspace.collision.robot_geometry import RobotGeometry, split_rows
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError
@@ -84,10 +84,10 @@ def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checke
         raise InputError(f"{geometry.robot} cannot be checked for collisions: {geometry.reason}")
     scene.check_links((*geometry.links, *geometry.frames), geometry.frames, geometry.robot)
     robot = add_attached(geometry, scene)
-    packed = pack_obstacles(scene, geometry.T_base_world)
-    core = compile_scene(packed)
-    allowed = number_pairs(touching_pairs(scene), robot.links, packed.names)
-    return Checker(CollisionChecker(robot.core, core, margin, allowed), robot, packed.names, margin)
+    obstacles = tuple([shape.name for shape in scene.obstacles])
+    core = compile_scene(scene, geometry.T_base_world)
+    allowed = number_pairs(touching_pairs(scene), robot.links, obstacles)
+    return Checker(CollisionChecker(robot.core, core, margin, allowed), robot, obstacles, margin)
 
 
 def number_pairs(
@@ -107,8 +107,14 @@ def number_pairs(
     return np.array(found, dtype=np.int64).reshape(-1, 2)
 
 
-def compile_scene(packed: PackedScene) -> CollisionScene:
-    """The compiled obstacles."""
+def compile_scene(scene: Scene, T_base_world: Array) -> CollisionScene:
+    """The compiled obstacles; solids of a few numbers need no arrays between."""
+    of_solids = compile_solids(scene.obstacles, SOLIDS, T_base_world)
+    return compile_packed(pack_obstacles(scene, T_base_world)) if of_solids is None else of_solids
+
+
+def compile_packed(packed: PackedScene) -> CollisionScene:
+    """The compiled obstacles, from their arrays."""
     owners = [
         packed.box_object,
         packed.capsule_object,
