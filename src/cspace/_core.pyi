@@ -417,6 +417,11 @@ class ArmPlan:
     def blocker(self) -> tuple[tuple[bool, int, int] | None, int]:
         """What blocked most edges, and how many."""
 
+def as_rows(value: object, dof: int, largest: float) -> numpy.typing.NDArray[numpy.float64] | None:
+    """
+    Configurations (dof,) or (n, dof) of numbers up to ±largest as rows; None for anything else.
+    """
+
 def plan_arm(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions) -> ArmPlan:
     """From any of the starts (s, dof) to any of the goals (g, dof)."""
 

@@ -49,11 +49,14 @@ class Scene(Renamed):
     """
 
     def __init__(self, objects: Iterable[Shape] = (), *, allowed: Iterable[Sequence[str]] = ()) -> None:
-        self._objects: dict[str, Shape] = {}
         self._attached: dict[str, Attachment] = {}
         self.version = next(VERSIONS)
-        for shape in check_shapes(objects):
-            self._insert(shape)
+        shapes = check_shapes(objects)
+        self._objects: dict[str, Shape] = {shape.name: shape for shape in shapes}
+        if "" in self._objects or len(self._objects) < len(shapes):
+            self._objects = {}
+            for shape in shapes:
+                self._insert(shape)
         self._allowed = frozenset(check_pair(pair) for pair in allowed)
 
     @classmethod
