@@ -77,8 +77,9 @@ void WorkspaceMemory::Free::operator()(std::byte* p) const {
 WorkspaceMemory::WorkspaceMemory(const Robot& robot, int n_primitives) {
     const std::size_t size = lay_out(robot, n_primitives, nullptr, w);
     memory_.reset(static_cast<std::byte*>(::operator new(size, std::align_val_t(alignment))));
-    std::fill_n(memory_.get(), size, std::byte(0));
     lay_out(robot, n_primitives, memory_.get(), w);
+    // The stack is last, and read where it was written.
+    std::fill(memory_.get(), reinterpret_cast<std::byte*>(w.stack), std::byte(0));
     kernels::prepare_workspace(robot, w);
 }
 
