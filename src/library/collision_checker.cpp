@@ -46,6 +46,12 @@ std::size_t lay_out(const Robot& robot, int n_primitives, std::byte* memory, Wor
     bytes(w.body_places, bodies, place);
     bytes(w.link_places, links, place);
     bytes(w.sphere_places, spheres, place);
+    const std::size_t stride = std::size_t(robot.body_stride);  // more than there are joints
+    bytes(w.one_frames, bodies, 12 * sizeof(float));
+    arena.take(w.joint_columns, 3 * stride, sizeof(float));
+    arena.take(w.frame_columns, 12 * stride, sizeof(float));
+    arena.take(w.ball_columns, 3 * stride, sizeof(float));
+    arena.take(w.sphere_columns, 3 * std::size_t(robot.n_chunks), lane_bytes);
     arena.take(w.body_stamps, bodies, sizeof(unsigned));
     arena.take(w.link_stamps, links, sizeof(unsigned));
     arena.take(w.group_stamps, groups, sizeof(unsigned));
@@ -158,7 +164,7 @@ bool Checker::is_free(const double* q, WorkspaceMemory& memory) const {
     }
     float a[most_coordinates], b[most_coordinates];
     round_edge(q, q, a, b);
-    return kernels::sample_edge(robot(), scene_, memory.w, a, b, 1) == 0;
+    return !kernels::touches_something(robot(), scene_, memory.w, a);
 }
 
 void Checker::check_rows(const double* q, std::size_t n, std::uint8_t* collides, int threads) const {

@@ -113,6 +113,7 @@ RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, st
     add_pairs(pairs);
     view_.pair_stride = padded(int(pairs_.size()));
     bound_levers(joints, lower, upper);
+    add_columns();
     view_.joints = joints_.data(), view_.bodies = bodies_.data(), view_.links = links_.data();
     view_.groups = groups_.data(), view_.spheres = spheres_.data();
     view_.pairs = pairs_.data(), view_.link_pairs = link_pairs_.data();
@@ -205,6 +206,44 @@ void RobotData::add_pairs(std::span<const std::pair<int, int>> pairs) {
         pairs_.push_back({bodies.first, bodies.second, int(link_pairs_.size()), int(links.size())});
         link_pairs_.insert(link_pairs_.end(), links.begin(), links.end());
     }
+}
+
+void RobotData::Columns::assign(std::span<const Ball> balls, int padded_size) {
+    for (std::vector<float>* column : {&x, &y, &z, &r}) column->assign(std::size_t(padded_size), 0.0f);
+    for (std::size_t i = 0; i < balls.size(); ++i)
+        x[i] = balls[i].x, y[i] = balls[i].y, z[i] = balls[i].z, r[i] = balls[i].r;
+}
+
+void RobotData::add_columns() {
+    constexpr float no_radius = -3e38f;
+    const std::size_t stride = std::size_t(view_.body_stride);
+    std::vector<Ball> balls(stride, {0, 0, 0, no_radius});
+    for (const Link& link : links_)
+        for (int g = link.first; g < link.first + link.count; ++g)
+            sphere_links_.insert(sphere_links_.end(), std::size_t(groups_[std::size_t(g)].count),
+                                 int(&link - links_.data()));
+    std::size_t next = 0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const std::size_t first = next;
+        while (next < spheres_.size() && links_[std::size_t(sphere_links_[next])].body == int(b)) ++next;
+        if (next > first) balls[b] = bodies_[b].ball;
+        body_chunks_.push_back({int(chunks_.size()), padded(int(next - first)) / lanes});
+        for (std::size_t s = first; s < next; s += lanes)
+            chunks_.push_back({int(s), int(std::min<std::size_t>(lanes, next - s))});
+    }
+    body_columns_.assign(balls, int(stride));
+    sphere_columns_.assign(spheres_, int(spheres_.size()) + lanes);
+    pair_numbers_.assign(bodies_.size() * stride, -1);
+    pair_lanes_.assign(bodies_.size() * stride / lanes, 0);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const std::size_t at = std::size_t(pairs_[p].a) * stride + std::size_t(pairs_[p].b);
+        pair_numbers_[at] = int(p);
+        pair_lanes_[at / lanes] |= static_cast<unsigned char>(1u << at % lanes);
+    }
+    view_.body_balls = body_columns_.view(), view_.sphere_columns = sphere_columns_.view();
+    view_.chunks = chunks_.data(), view_.body_chunks = body_chunks_.data();
+    view_.sphere_links = sphere_links_.data(), view_.n_chunks = int(chunks_.size());
+    view_.pair_numbers = pair_numbers_.data(), view_.pair_lanes = pair_lanes_.data();
 }
 
 void RobotData::bound_levers(std::span<const model::Joint> joints, std::span<const double> lower,

@@ -55,11 +55,22 @@ class RobotData {
     std::vector<BodyPair> pairs_;
     std::vector<LinkPair> link_pairs_;
     std::vector<float> levers_, pair_levers_;
+    struct Columns {
+        std::vector<float> x, y, z, r;
+        void assign(std::span<const Ball> balls, int padded_size);
+        BallColumns view() const { return {x.data(), y.data(), z.data(), r.data()}; }
+    };
+    Columns body_columns_, sphere_columns_;
+    std::vector<Chunk> chunks_;
+    std::vector<BodyChunks> body_chunks_;
+    std::vector<int> sphere_links_, pair_numbers_;
+    std::vector<unsigned char> pair_lanes_;
 
     void check_order(std::span<const model::Joint> joints, std::span<const int> link_bodies,
                      std::span<const Sphere> spheres, std::span<const std::pair<int, int>> pairs) const;
     void add_links(std::span<const int> link_bodies, std::span<const Sphere> spheres);
     void add_pairs(std::span<const std::pair<int, int>> pairs);
+    void add_columns();
     void bound_levers(std::span<const model::Joint> joints, std::span<const double> lower,
                       std::span<const double> upper);
 };

@@ -11,9 +11,12 @@ inline constexpr unsigned all_lanes = (1u << float_lanes) - 1;
 struct Place {
     Floats x, y, z;
 };
-struct Frame {
-    Floats R[9], p[3];
+// V: Floats, or float of one configuration alone.
+template <class V>
+struct FrameOf {
+    V R[9], p[3];
 };
+using Frame = FrameOf<Floats>;
 // Of a body, per unit of the parameter along an edge: ω and the velocity of the origin of its frame.
 struct Rate {
     Floats w[3], u[3];
@@ -30,10 +33,19 @@ CSPACE_INLINE Place place_ball(const Frame& f, const Ball& ball) {
             f.R[6] * ball.x + (f.R[7] * ball.y + (f.R[8] * ball.z + f.p[2]))};
 }
 
+CSPACE_INLINE void fill_with(Floats& to, float x) { to = fill_floats(x); }
+CSPACE_INLINE void fill_with(float& to, float x) { to = x; }
+
 // The frame of a joint at zero: parent · T_parent_joint.
-CSPACE_INLINE void place_joint(const Joint& joint, const Frame& parent, Frame& frame) {
+template <class V>
+CSPACE_INLINE void place_joint(const Joint& joint, const FrameOf<V>& parent, FrameOf<V>& frame) {
+    if (joint.parent == 0) {  // the base
+        for (int k = 0; k < 9; ++k) fill_with(frame.R[k], joint.R[k]);
+        for (int k = 0; k < 3; ++k) fill_with(frame.p[k], joint.p[k]);
+        return;
+    }
     for (int r = 0; r < 3; ++r) {
-        Floats t = parent.p[r];
+        V t = parent.p[r];
         for (int k = 0; k < 3; ++k)
             if (joint.p[k] != 0) t = parent.R[3 * r + k] * joint.p[k] + t;
         frame.p[r] = t;
@@ -41,7 +53,7 @@ CSPACE_INLINE void place_joint(const Joint& joint, const Frame& parent, Frame& f
     if (joint.is_permuted) {
         for (int c = 0; c < 3; ++c)
             for (int r = 0; r < 3; ++r) {
-                const Floats t = parent.R[3 * r + joint.row[c]];
+                const V t = parent.R[3 * r + joint.row[c]];
                 frame.R[3 * r + c] = joint.sign[c] < 0 ? -t : t;
             }
         return;
@@ -52,31 +64,35 @@ CSPACE_INLINE void place_joint(const Joint& joint, const Frame& parent, Frame& f
                                  parent.R[3 * r + 2] * joint.R[6 + c];
 }
 
+template <class V>
+CSPACE_INLINE void slide_along_z(FrameOf<V>& frame, V way) {
+    for (int r = 0; r < 3; ++r) frame.p[r] = way * frame.R[3 * r + 2] + frame.p[r];
+}
+template <class V>
+CSPACE_INLINE void turn_about_z(FrameOf<V>& frame, V s, V c) {
+    for (int r = 0; r < 3; ++r) {
+        const V x = frame.R[3 * r], y = frame.R[3 * r + 1];
+        frame.R[3 * r] = s * y + c * x;
+        frame.R[3 * r + 1] = c * y - s * x;
+    }
+}
+
 // Frames of the bodies that joints first … end − 1 carry, those before them being placed; q: one entry per
 // coordinate. Frame 0 is the identity and stays.
 CSPACE_INLINE void place_frames(const Robot& robot, const Floats* q, int first, int end, Frame* frames) {
     for (int j = first; j < end; ++j) {
         const Joint& joint = robot.joints[j];
         Frame& frame = frames[j + 1];
-        if (joint.parent == 0) {
-            for (int k = 0; k < 9; ++k) frame.R[k] = fill_floats(joint.R[k]);
-            for (int k = 0; k < 3; ++k) frame.p[k] = fill_floats(joint.p[k]);
-        } else {
-            place_joint(joint, frames[joint.parent], frame);
-        }
+        place_joint(joint, frames[joint.parent], frame);
         Floats value = q[joint.coordinate];
         if (!joint.is_plain) value = value * joint.ratio + joint.offset;
         if (joint.is_prismatic) {
-            for (int r = 0; r < 3; ++r) frame.p[r] = value * frame.R[3 * r + 2] + frame.p[r];
+            slide_along_z(frame, value);
             continue;
         }
         Floats s, c;
         sin_cos(value, s, c);
-        for (int r = 0; r < 3; ++r) {
-            const Floats x = frame.R[3 * r], y = frame.R[3 * r + 1];
-            frame.R[3 * r] = s * y + c * x;
-            frame.R[3 * r + 1] = c * y - s * x;
-        }
+        turn_about_z(frame, s, c);
     }
 }
 
