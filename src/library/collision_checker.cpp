@@ -52,6 +52,8 @@ std::size_t lay_out(const Robot& robot, int n_primitives, std::byte* memory, Wor
     arena.take(w.frame_columns, 12 * stride, sizeof(float));
     arena.take(w.ball_columns, 3 * stride, sizeof(float));
     arena.take(w.sphere_columns, 3 * std::size_t(robot.n_chunks), lane_bytes);
+    arena.take(w.near_chunks, std::size_t(robot.n_chunks) + 1, sizeof(int));
+    arena.take(w.near_lanes, std::size_t(robot.n_chunks) + 1, sizeof(unsigned));
     arena.take(w.body_stamps, bodies, sizeof(unsigned));
     arena.take(w.link_stamps, links, sizeof(unsigned));
     arena.take(w.group_stamps, groups, sizeof(unsigned));

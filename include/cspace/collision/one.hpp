@@ -184,7 +184,7 @@ class OneCheck {
             const Point a = link_center(links.a), b = link_center(links.b);
             const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
             const float r = robot_.links[links.a].ball.r + robot_.links[links.b].ball.r + scene_.pair_margin;
-            if (x * x + y * y + z * z < r * r && link_pair_touches(links, a)) return true;
+            if (x * x + y * y + z * z < r * r && link_pair_touches(links, a, b)) return true;
         }
         return false;
     }
@@ -197,32 +197,44 @@ class OneCheck {
                 f.R[3] * ball.x + (f.R[4] * ball.y + (f.R[5] * ball.z + f.p[1])),
                 f.R[6] * ball.x + (f.R[7] * ball.y + (f.R[8] * ball.z + f.p[2]))};
     }
-    // The spheres of b that the ball of a may meet, each against those of a.
-    bool link_pair_touches(const LinkPair& links, const Point& center_a) {
+    // The spheres of b that the ball of a may meet, each against those of a that the ball of b may meet.
+    bool link_pair_touches(const LinkPair& links, const Point& center_a, const Point& center_b) {
         const Link &a = robot_.links[links.a], &b = robot_.links[links.b];
         place_spheres(a.body);
         place_spheres(b.body);
+        int n = 0;
+        any_chunk(a, [&](int c, unsigned wanted) {
+            wanted &= lanes_near(c, center_b, b.ball.r);
+            w_.near_chunks[n] = c, w_.near_lanes[n] = wanted;
+            n += wanted != 0;
+            return false;
+        });
+        if (n == 0) return false;
         return any_chunk(b, [&](int c, unsigned wanted) {
-            const Place at = chunk_place(c);
-            const Floats radii = chunk_radii(c) + scene_.pair_margin;
-            const FloatMask near = square_distance(at, fill_place(center_a)) < square(radii + a.ball.r);
-            for (unsigned bits = bits_of(near) & wanted; bits; bits &= bits - 1)
-                if (sphere_touches(c, lowest_lane(bits), a)) {
+            for (unsigned bits = lanes_near(c, center_a, a.ball.r) & wanted; bits; bits &= bits - 1)
+                if (sphere_touches(c, lowest_lane(bits), n)) {
                     w_.contact = {links.a, links.b, true, 0};
                     return true;
                 }
             return false;
         });
     }
-    // Whether sphere i of a chunk touches one of a link.
-    CSPACE_INLINE bool sphere_touches(int chunk, int i, const Link& link) const {
+    // The spheres of a chunk that a ball may meet.
+    CSPACE_INLINE unsigned lanes_near(int c, const Point& center, float r) const {
+        const Floats reach = chunk_radii(c) + scene_.pair_margin + r;
+        return bits_of(square_distance(chunk_place(c), fill_place(center)) < square(reach));
+    }
+    // Whether sphere i of a chunk touches one of those listed.
+    CSPACE_INLINE bool sphere_touches(int chunk, int i, int listed) const {
         const float* columns = w_.sphere_columns + 3 * float_lanes * chunk + i;
         const Place at = fill_place({columns[0], columns[float_lanes], columns[2 * float_lanes]});
         const float r = robot_.sphere_columns.r[robot_.chunks[chunk].first + i] + scene_.pair_margin;
-        return any_chunk(link, [&](int c, unsigned wanted) {
+        for (int k = 0; k < listed; ++k) {
+            const int c = w_.near_chunks[k];
             const Floats gap = square_distance(at, chunk_place(c));
-            return (bits_of(gap < square(r + chunk_radii(c))) & wanted) != 0;
-        });
+            if (bits_of(gap < square(r + chunk_radii(c))) & w_.near_lanes[k]) return true;
+        }
+        return false;
     }
     // Whether test(chunk, lanes) holds for one of the chunks with spheres of a link, in the lanes that have
     // them.
