@@ -16,6 +16,12 @@ struct Candidates {
     int count;
 };
 
+// How a body of a pair moves against the other if neither moves.
+struct AtRest {
+    NoMotion most_growth;
+    CSPACE_INLINE NoMotion growth(const Place&) const { return {}; }
+};
+
 class Block {
   public:
     Block(const Robot& robot, const Scene& scene, Workspace& w)
@@ -144,31 +150,33 @@ class Block {
     }
 
     // Tests two links of a pair of bodies against each other: the spheres of each that the other's ball may
-    // meet. Growth counts the motion of body b against body a.
-    template <class Motion>
-    CSPACE_INLINE bool test_link_pair(int p, const LinkPair& links, const Motion& motion) {
-        const BodyPair& pair = robot.pairs[p];
+    // meet. `relative` is how the body of b moves against that of a, `growth` by how much the ball of b does.
+    template <class Motion, class Relative, class Growth>
+    CSPACE_INLINE bool test_link_pair(const LinkPair& links, const Motion& motion, const Relative& relative,
+                                      Growth growth) {
         const Link &a = robot.links[links.a], &b = robot.links[links.b];
         const Place at_a = link_place(links.a), at_b = link_place(links.b);
-        const int count = list_spheres(a, at_b, b.ball.r, motion.pair_growth(p, at_b));
+        const int count = list_spheres(a, at_b, b.ball.r, growth);
         if (count == 0) return false;
         for (int g = b.first; g < b.first + b.count; ++g) {
             const Group& group = robot.groups[g];
             if (b.count > 1) {
-                const Place at = place_ball(frames[pair.b], group.ball);
-                if (!may_meet(at, at_a, group.ball.r + a.ball.r, motion.pair_growth(p, at))) continue;
+                const Place at = place_ball(frames[b.body], group.ball);
+                if (!may_meet(at, at_a, group.ball.r + a.ball.r, relative.growth(at))) continue;
             }
-            const Place* places = sphere_places(g, pair.b);
+            const Place* places = sphere_places(g, b.body);
             for (int s = 0; s < group.count; ++s) {
                 const Place& at = places[s];
                 const float r = robot.spheres[group.first + s].r + scene.pair_margin;
-                Marks<Motion> marks(motion.pair_growth(p, at));
-                if (!(bits_of(square_distance(at, at_a) < square_of(marks.growth, r + a.ball.r)) & wanted))
+                const Floats from_a = square_distance(at, at_a);
+                if (!(bits_of(from_a < square_of(relative.most_growth, r + a.ball.r)) & wanted)) continue;
+                Marks<Motion> marks(relative.growth(at));
+                if (Motion::is_moving && !(bits_of(from_a < square_of(marks.growth, r + a.ball.r)) & wanted))
                     continue;
                 const Place* all = static_cast<Place*>(w.sphere_places);
                 for (int k = 0; k < count; ++k) {
                     const int other = w.near_spheres[k];
-                    compare_balls(p, at, all[other], r + robot.spheres[other].r, motion, marks);
+                    compare_balls(relative, at, all[other], r + robot.spheres[other].r, marks);
                 }
                 if (settle(marks) && motion.is_done(*this))
                     return record_pair(links, group.first + s, at, r, count);
@@ -256,15 +264,15 @@ class Block {
         }
     }
     // The same for a sphere of body b of a pair against one of body a.
-    template <class Motion>
-    CSPACE_INLINE void compare_balls(int p, const Place& at, const Place& other, float r,
-                                     const Motion& motion, Marks<Motion>& marks) {
+    template <class Motion, class Relative>
+    CSPACE_INLINE void compare_balls(const Relative& relative, const Place& at, const Place& other, float r,
+                                     Marks<Motion>& marks) {
         const Floats gap = square_distance(at, other);
         marks.touching = marks.touching | (gap < fill_floats(r * r));
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
             if (bits_of(near) & wanted)
-                marks.near = marks.near | (near & motion.may_meet(p, at, other, gap, r));
+                marks.near = marks.near | (near & relative.may_meet(at, other, gap, r));
         }
     }
     template <class Motion>

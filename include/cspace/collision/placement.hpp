@@ -133,11 +133,22 @@ CSPACE_INLINE Velocity velocity_at(const Frame& frame, const Rate& rate, const P
             rate.u[1] + (rate.w[2] * d[0] - rate.w[0] * d[2]),
             rate.u[2] + (rate.w[0] * d[1] - rate.w[1] * d[0])};
 }
-// The velocity of a place on one body as seen from another.
-CSPACE_INLINE Velocity relative_velocity(const Frame& seen_from, const Rate& its_rate, const Frame& frame,
-                                         const Rate& rate, const Place& at) {
-    const Velocity v = velocity_at(frame, rate, at), w = velocity_at(seen_from, its_rate, at);
-    return {v.x - w.x, v.y - w.y, v.z - w.z};
+// The velocity of places on one body as seen from another: that of the origin of its frame, and a turn.
+struct RelativeRate {
+    Floats p[3], u[3], w[3];
+};
+CSPACE_INLINE RelativeRate relative_rate(const Frame& seen_from, const Rate& its_rate, const Frame& frame,
+                                         const Rate& rate) {
+    const Velocity v = velocity_at(seen_from, its_rate, {frame.p[0], frame.p[1], frame.p[2]});
+    return {{frame.p[0], frame.p[1], frame.p[2]},
+            {rate.u[0] - v.x, rate.u[1] - v.y, rate.u[2] - v.z},
+            {rate.w[0] - its_rate.w[0], rate.w[1] - its_rate.w[1], rate.w[2] - its_rate.w[2]}};
+}
+CSPACE_INLINE Velocity velocity_at(const RelativeRate& rate, const Place& at) {
+    const Floats d[3] = {at.x - rate.p[0], at.y - rate.p[1], at.z - rate.p[2]};
+    return {rate.u[0] + (rate.w[1] * d[2] - rate.w[2] * d[1]),
+            rate.u[1] + (rate.w[2] * d[0] - rate.w[0] * d[2]),
+            rate.u[2] + (rate.w[0] * d[1] - rate.w[1] * d[0])};
 }
 CSPACE_INLINE Floats norm(const Velocity& v) { return sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 CSPACE_INLINE Floats speed_at(const Frame& frame, const Rate& rate, const Place& at) {
