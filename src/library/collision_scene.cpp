@@ -99,6 +99,8 @@ SceneData::SceneData(const Primitives& given)
     add_meshes(given);
     add_clouds(given);
     build_boxes();
+    const int n = int(low_[0].size());
+    pad_bounds();
     view_ = {boxes_.data(),
              capsules_.data(),
              cylinders_.data(),
@@ -111,7 +113,7 @@ SceneData::SceneData(const Primitives& given)
              int(half_spaces_.size()),
              int(meshes_.size()),
              int(clouds_.size()),
-             int(low_[0].size()),
+             n,
              {low_[0].data(), low_[1].data(), low_[2].data()},
              {high_[0].data(), high_[1].data(), high_[2].data()},
              tree_.nodes.data(),
@@ -185,6 +187,12 @@ void SceneData::build_boxes() {
     tree_ = build_tree(boxes, leaf_size, 0);
 }
 
+void SceneData::pad_bounds() {
+    constexpr std::size_t lanes = 8;
+    constexpr float beyond = 3e38f;
+    const std::size_t padded = (low_[0].size() + lanes - 1) / lanes * lanes;
+    for (int k = 0; k < 3; ++k) low_[k].resize(padded, beyond), high_[k].resize(padded, -beyond);
+}
 void SceneData::add_bounds(const Bounds& box, double grown) {
     add_bounds({box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}, grown);
 }

@@ -63,6 +63,7 @@ class SceneData {
     void add_meshes(const Primitives& given);
     void add_clouds(const Primitives& given);
     void build_boxes();
+    void pad_bounds();
     void add_bounds(const Bounds& box, double grown);
     void add_bounds(const double (&low)[3], const double (&high)[3], double grown);
 };

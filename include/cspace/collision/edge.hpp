@@ -271,15 +271,26 @@ class EdgeCheck {
 
     // The test that found a contact last, before candidates are chosen: it settles most blocked edges.
     bool test_likely(int test) {
-        constexpr int most_primitives = 64;
         const Still motion{*this, 0.0f};
         if (test >= robot_.n_bodies) return test_likely_pair(test - robot_.n_bodies, motion);
-        if (scene_.n > most_primitives) return false;
-        for (int i = 0; i < scene_.n; ++i) w_.near_body[i] = i;
-        const Candidates near =
-            block_.narrow({w_.near_body, scene_.n}, block_.body_place(test),
-                          robot_.bodies[test].ball.r + scene_.margin, NoMotion{}, w_.near_body);
+        if (scene_.n_nodes) return false;
+        const Place& at = block_.body_place(test);
+        const float r = robot_.bodies[test].ball.r + scene_.margin;
+        float low[3], high[3];
+        bound_places(at, r, low, high);
+        const int count = list_boxes(scene_, low, high, w_.near_body);
+        const Candidates near = block_.narrow({w_.near_body, count}, at, r, NoMotion{}, w_.near_body);
         return near.count && block_.test_links(test, near, motion);
+    }
+    // The box around the places of a ball in all lanes.
+    static void bound_places(const Place& at, float r, float (&low)[3], float (&high)[3]) {
+        const Floats rows[float_lanes] = {at.x, at.y, at.z, at.x, at.x, at.x, at.x, at.x};
+        Floats least, greatest;
+        bound_rows(rows, least, greatest);
+        alignas(32) float all_low[float_lanes], all_high[float_lanes];
+        store_floats(all_low, least - r);
+        store_floats(all_high, greatest + r);
+        for (int k = 0; k < 3; ++k) low[k] = all_low[k], high[k] = all_high[k];
     }
 
     bool test_likely_pair(int p, const Still& motion) {

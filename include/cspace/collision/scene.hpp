@@ -66,7 +66,8 @@ struct Scene {
     const Cloud* clouds;
     int n_boxes, n_capsules, n_cylinders, n_half_spaces, n_meshes, n_clouds;
     int n;  // of all primitives, in this order
-    // The boxes around the primitives: low and high of each, per coordinate.
+    // The boxes around the primitives: low and high of each, per coordinate, filled up to a multiple of eight
+    // with boxes that nothing meets.
     const float *low[3], *high[3];
     // A tree of these boxes, and the primitives in the order of its leaves. No nodes where they are few.
     const TreeNode* nodes;
