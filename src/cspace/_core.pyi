@@ -332,9 +332,9 @@ def measure_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.ty
     """
 
 class CollisionRobot:
-    """A robot made of spheres."""
+    """A robot made of spheres and solids."""
 
-    def __init__(self, joints: numpy.typing.NDArray[numpy.float64], bounds: numpy.typing.NDArray[numpy.float64], link_bodies: numpy.typing.NDArray[numpy.int64], spheres: numpy.typing.NDArray[numpy.float64], sphere_links: numpy.typing.NDArray[numpy.int64], pairs: numpy.typing.NDArray[numpy.int64]) -> None: ...
+    def __init__(self, joints: numpy.typing.NDArray[numpy.float64], bounds: numpy.typing.NDArray[numpy.float64], link_bodies: numpy.typing.NDArray[numpy.int64], spheres: numpy.typing.NDArray[numpy.float64], sphere_links: numpy.typing.NDArray[numpy.int64], pairs: numpy.typing.NDArray[numpy.int64], solids: numpy.typing.NDArray[numpy.float64], sphere_solids: numpy.typing.NDArray[numpy.int64]) -> None: ...
 
 class CollisionScene:
     """Obstacles in the frame of a robot's base."""

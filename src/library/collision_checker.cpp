@@ -76,6 +76,11 @@ std::size_t lay_out(const Robot& robot, int n_primitives, std::byte* memory, Wor
     return arena.used();
 }
 
+// R by rows, then p.
+Posed read_frame(const float* f) {
+    return {{{{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}}}, {f[9], f[10], f[11]}};
+}
+
 }  // namespace
 
 void WorkspaceMemory::Free::operator()(std::byte* p) const {
@@ -95,6 +100,7 @@ Checker::Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const S
                  double margin, std::span<const std::pair<int, int>> allowed)
     : robot_(std::move(robot)), data_(std::move(scene)), scene_(data_->view()) {
     scene_.margin = scene_.pair_margin = float(margin) + robot_->slack();
+    scene_.exact = {this, &reaches_primitive, &reaches_sphere};
     if (!allowed.empty()) {
         allowed_.assign(std::size_t(this->robot().n_links) * std::size_t(scene_.n), 0);
         for (const auto& [link, object] : allowed)
@@ -112,8 +118,21 @@ Checker::Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const S
     check_base();
 }
 
+bool Checker::reaches_primitive(const void* owner, int sphere, const float* frame, int primitive, float gap) {
+    const Checker& checker = *static_cast<const Checker*>(owner);
+    const shapes::Convex solid = checker.robot_->solid_of(sphere);
+    return checker.data_->is_within(primitive, move_solid(read_frame(frame), solid), double(gap));
+}
+bool Checker::reaches_sphere(const void* owner, int sphere, const float* frame, int other,
+                             const float* other_frame, float gap) {
+    const RobotData& robot = *static_cast<const Checker*>(owner)->robot_;
+    return shapes::is_within(move_solid(read_frame(frame), robot.solid_of(sphere)),
+                             move_solid(read_frame(other_frame), robot.solid_of(other)), double(gap));
+}
+
 // The base does not move: it is checked once, here.
 void Checker::check_base() {
+    constexpr float base_frame[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
     const Robot& all = robot();
     const Body& base = all.bodies[0];
     base_contact_ = {};
@@ -122,7 +141,8 @@ void Checker::check_base() {
             for (int s = all.groups[g].first; s < all.groups[g].first + all.groups[g].count; ++s)
                 for (int i = 0; i < scene_.n; ++i) {
                     if (scene_.allowed && scene_.allowed[l * scene_.n + i]) continue;
-                    if (kernels::ball_touches(scene_, i, all.spheres[s])) {
+                    if (kernels::ball_touches(scene_, i, all.spheres[s]) &&
+                        (!all.sphere_solids || reaches_primitive(this, s, base_frame, i, scene_.margin))) {
                         base_contact_ = {l, i, false, 0};
                         return;
                     }

@@ -91,6 +91,11 @@ class Checker {
     mutable std::vector<std::unique_ptr<WorkspaceMemory>> spare_;
 
     void check_base();
+    // The exact tests of kernels; owner: a checker.
+    static bool reaches_primitive(const void* owner, int sphere, const float* frame, int primitive,
+                                  float gap);
+    static bool reaches_sphere(const void* owner, int sphere, const float* frame, int other,
+                               const float* other_frame, float gap);
 };
 
 }  // namespace cspace::collision

@@ -48,4 +48,22 @@ shapes::Distance CloudData::distance(const Vec3d& point, double limit) const {
     return shapes::from_place(point, place(found), radius_);
 }
 
+bool CloudData::is_within(const shapes::Convex& solid, double gap) const {
+    return visit_balls(
+        solid, [&] { return gap; },
+        [&](const shapes::Convex& ball) { return shapes::is_within(solid, ball, gap); });
+}
+
+shapes::ConvexDistance CloudData::distance(const shapes::Convex& solid, double limit) const {
+    shapes::ConvexDistance best = shapes::nothing_near(shapes::find_center(solid));
+    visit_balls(
+        solid, [&] { return std::min(limit, best.value); },
+        [&](const shapes::Convex& ball) {
+            const shapes::ConvexDistance d = shapes::measure_distance(solid, ball);
+            if (d.value < best.value) best = d;
+            return false;
+        });
+    return best;
+}
+
 }  // namespace cspace::collision

@@ -40,6 +40,30 @@ Bounds bound_all(const std::vector<Bounds>& items);
 float round_low(double x);
 float round_high(double x);
 
+// Calls visit(item) for the items of leaves whose boxes are within limit() of a point, which may shrink
+// meanwhile, until it returns true; whether it did.
+template <class Limit, class Visit>
+bool visit_near(std::span<const TreeNode> nodes, const Vec3d& point, const Limit& limit, const Visit& visit) {
+    const double at[] = {point.x, point.y, point.z};
+    for (std::size_t i = 0; i < nodes.size();) {
+        const TreeNode& node = nodes[i];
+        const double reach = limit();
+        double square = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double beyond = std::max({double(node.low[k]) - at[k], at[k] - double(node.high[k]), 0.0});
+            square += beyond * beyond;
+        }
+        if (!(reach >= 0 && square <= reach * reach)) {
+            i = std::size_t(node.next);
+            continue;
+        }
+        for (int k = node.first; k < node.first + node.count; ++k)
+            if (visit(k)) return true;
+        ++i;
+    }
+    return false;
+}
+
 // The item that is nearest to a point; −1 if none is nearer than the root of `least`, which receives the
 // square of its distance. measure(item) is the square of the distance of an item.
 template <class Measure>

@@ -2,7 +2,8 @@
 //
 // A test descends from the ball of a body over those of its links and groups to its spheres. `Motion` says by
 // how much a ball may move within what a lane stands for (edge.hpp, rows.hpp): nothing for a configuration,
-// v w + κ w² for an interval of half width w.
+// v w + κ w² for an interval of half width w. A sphere that covers a solid stands for it: where it touches
+// something, the solid is tested exactly.
 #pragma once
 
 #include "cspace/collision/gap.hpp"
@@ -141,10 +142,9 @@ class Block {
             const float r = robot.spheres[group.first + s].r + scene.margin;
             Marks<Motion> marks(motion.growth(x, at));
             for (int k = 0; k < near.count; ++k) {
-                compare_primitive(x, at, near.begin[k], r, motion, marks);
+                compare_primitive(x, group.first + s, at, near.begin[k], r, motion, marks);
             }
-            if (settle(marks) && motion.is_done(*this))
-                return record_primitive(l, group.first + s, at, r, near);
+            if (settle(marks) && motion.is_done(*this)) return record_primitive(l, group.first + s, at, near);
         }
         return false;
     }
@@ -176,10 +176,10 @@ class Block {
                 const Place* all = static_cast<Place*>(w.sphere_places);
                 for (int k = 0; k < count; ++k) {
                     const int other = w.near_spheres[k];
-                    compare_balls(relative, at, all[other], r + robot.spheres[other].r, marks);
+                    compare_balls(links, group.first + s, at, other, all[other], relative, marks);
                 }
                 if (settle(marks) && motion.is_done(*this))
-                    return record_pair(links, group.first + s, at, r, count);
+                    return record_pair(links, group.first + s, at, count);
             }
         }
         return false;
@@ -199,18 +199,11 @@ class Block {
     CSPACE_INLINE bool test_touch(const Touch& touch) {
         const Ball& ball = robot.spheres[touch.sphere];
         const Place at = place_ball(frames[touch.body], ball);
-        float radius;
-        Floats gap;
-        if (touch.other_body < 0) {
-            gap =
-                square_gap(scene, touch.other, at, Mover{ball.r + scene.margin, NoMotion{}, wanted}, radius);
-            radius += ball.r + scene.margin;
-        } else {
-            const Ball& other = robot.spheres[touch.other];
-            gap = square_distance(at, place_ball(frames[touch.other_body], other));
-            radius = ball.r + other.r + scene.pair_margin;
-        }
-        hit = bits_of(gap < fill_floats(radius * radius)) & wanted;
+        if (touch.other_body < 0)
+            hit = lanes_touching(touch.body, touch.sphere, at, touch.other);
+        else
+            hit = lanes_meeting(touch.body, touch.sphere, at, touch.other_body, touch.other,
+                                place_ball(frames[touch.other_body], robot.spheres[touch.other]));
         return hit != 0;
     }
 
@@ -237,25 +230,46 @@ class Block {
     }
 
   private:
+    // Solids and what they were tested against exactly, a primitive or, from `first_pair` on, another one.
+    struct Refined {
+        unsigned stamp = 0;
+        int one = -1, other = -1;
+        bool is_moving = false;
+        unsigned tested = 0, touching = 0, near = 0;
+    };
+    static constexpr int first_pair = 1 << 30;
+
     int placed_ = 0;  // bodies 0 … placed_ have their frames
+    Refined refined_;
 
     // Of several tests: the lanes in which something touches, or may within its motion.
     template <class Motion>
     struct Marks {
         decltype(Motion::no_growth()) growth;
         FloatMask touching = fill_floats(0.0f) < fill_floats(0.0f), near = touching;
+        unsigned exact_touching = 0, exact_near = 0;  // of solids
 
         CSPACE_INLINE explicit Marks(decltype(Motion::no_growth()) growth) : growth(growth) {}
     };
     // A sphere against a primitive. The growth bounds the motion first; where it does not suffice, the part
     // of the motion that brings them nearer.
     template <class Motion>
-    CSPACE_INLINE void compare_primitive(int x, const Place& at, int i, float r, const Motion& motion,
+    CSPACE_INLINE void compare_primitive(int x, int s, const Place& at, int i, float r, const Motion& motion,
                                          Marks<Motion>& marks) {
         float radius;
         const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
-        marks.touching = marks.touching | (gap < fill_floats(sum * sum));
+        const FloatMask touching = gap < fill_floats(sum * sum);
+        if (is_cover(s)) {
+            if (const unsigned suspects = bits_of(touching) & wanted) {
+                refine_primitive(x, s, i, suspects, motion, marks);
+                if constexpr (Motion::is_moving)
+                    marks.exact_near |= bits_of(gap < square_of(marks.growth, sum)) & wanted & ~suspects;
+                return;
+            }
+        } else {
+            marks.touching = marks.touching | touching;
+        }
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
             if (bits_of(near) & wanted)
@@ -265,42 +279,140 @@ class Block {
     }
     // The same for a sphere of body b of a pair against one of body a.
     template <class Motion, class Relative>
-    CSPACE_INLINE void compare_balls(const Relative& relative, const Place& at, const Place& other, float r,
-                                     Marks<Motion>& marks) {
-        const Floats gap = square_distance(at, other);
-        marks.touching = marks.touching | (gap < fill_floats(r * r));
+    CSPACE_INLINE void compare_balls(const LinkPair& links, int s, const Place& at, int other,
+                                     const Place& other_at, const Relative& relative, Marks<Motion>& marks) {
+        const float r = robot.spheres[s].r + scene.pair_margin + robot.spheres[other].r;
+        const Floats gap = square_distance(at, other_at);
+        const FloatMask touching = gap < fill_floats(r * r);
+        if (is_cover(s) || is_cover(other)) {
+            if (const unsigned suspects = bits_of(touching) & wanted) {
+                refine_pair(links, s, other, suspects, relative, marks);
+                if constexpr (Motion::is_moving)
+                    marks.exact_near |= bits_of(gap < square_of(marks.growth, r)) & wanted & ~suspects;
+                return;
+            }
+        } else {
+            marks.touching = marks.touching | touching;
+        }
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
             if (bits_of(near) & wanted)
-                marks.near = marks.near | (near & relative.may_meet(at, other, gap, r));
+                marks.near = marks.near | (near & relative.may_meet(at, other_at, gap, r));
         }
+    }
+
+    // Whether a sphere only covers a solid.
+    CSPACE_INLINE bool is_cover(int s) const { return robot.sphere_solids && robot.sphere_solids[s] >= 0; }
+    CSPACE_INLINE bool is_cover_near(int s, int x, int i, int lane, float gap) const {
+        float frame[12];
+        copy_lane(frames[x], lane, frame);
+        return scene.exact.reaches_primitive(scene.exact.owner, s, frame, i, gap);
+    }
+    CSPACE_INLINE bool is_pair_near(int s, int x, int other, int other_x, int lane, float gap) const {
+        float frame[12], other_frame[12];
+        copy_lane(frames[x], lane, frame), copy_lane(frames[other_x], lane, other_frame);
+        return scene.exact.reaches_sphere(scene.exact.owner, s, frame, other, other_frame, gap);
+    }
+    // Of lanes in which a cover touches: those in which the solid does, or may within its motion. The spheres
+    // of a solid come one after the other, so the last answer is kept.
+    template <class Near>
+    void refine(int one, int other, unsigned suspects, const Near& is_near, const float* growth,
+                unsigned& touching, unsigned& near) {
+        const bool is_moving = growth != nullptr;
+        if (refined_.stamp != w.stamp || refined_.one != one || refined_.other != other ||
+            refined_.is_moving != is_moving)
+            refined_ = {w.stamp, one, other, is_moving, 0, 0, 0};
+        for (unsigned bits = suspects & ~refined_.tested; bits; bits &= bits - 1) {
+            const int lane = lowest_lane(bits);
+            refined_.tested |= 1u << lane;
+            if (is_near(lane, 0.0f))
+                refined_.touching |= 1u << lane;
+            else if (growth && is_near(lane, growth[lane]))
+                refined_.near |= 1u << lane;
+        }
+        touching |= refined_.touching & suspects, near |= refined_.near & suspects;
+    }
+    template <class Motion>
+    CSPACE_COLD void refine_primitive(int x, int s, int i, unsigned suspects, const Motion& motion,
+                                      Marks<Motion>& marks) {
+        alignas(32) float growth[float_lanes];
+        const int solid = robot.sphere_solids[s];
+        if constexpr (Motion::is_moving) {
+            const Ball& ball = robot.solid_balls[solid];
+            store_floats(growth, motion.growth_within(x, place_ball(frames[x], ball), ball.r));
+        }
+        refine(
+            solid, i, suspects,
+            [&](int lane, float gap) { return is_cover_near(s, x, i, lane, scene.margin + gap); },
+            Motion::is_moving ? growth : nullptr, marks.exact_touching, marks.exact_near);
+    }
+    // Sphere s is of link b of the pair, the other one of link a. Numbers below zero stand for spheres.
+    template <class Motion, class Relative>
+    CSPACE_COLD void refine_pair(const LinkPair& links, int s, int other, unsigned suspects,
+                                 const Relative& relative, Marks<Motion>& marks) {
+        alignas(32) float growth[float_lanes];
+        const int x = robot.links[links.b].body, other_x = robot.links[links.a].body;
+        const auto number = [&](int sphere) {
+            return is_cover(sphere) ? robot.sphere_solids[sphere] : -1 - sphere;
+        };
+        if constexpr (Motion::is_moving) {
+            const Ball& ball = is_cover(s) ? robot.solid_balls[robot.sphere_solids[s]] : robot.spheres[s];
+            store_floats(growth, relative.growth_within(place_ball(frames[x], ball), ball.r));
+        }
+        refine(
+            number(s), first_pair + number(other) + robot.n_spheres, suspects,
+            [&](int lane, float gap) {
+                return is_pair_near(s, x, other, other_x, lane, scene.pair_margin + gap);
+            },
+            Motion::is_moving ? growth : nullptr, marks.exact_touching, marks.exact_near);
+    }
+    // The lanes in which a sphere, or the solid that it covers, touches a primitive.
+    CSPACE_INLINE unsigned lanes_touching(int x, int s, const Place& at, int i) const {
+        const float r = robot.spheres[s].r + scene.margin;
+        float radius;
+        const Floats gap = square_gap(scene, i, at, Mover{r, NoMotion{}, wanted}, radius);
+        unsigned lanes = touching_lanes(gap, r + radius);
+        if (is_cover(s))
+            for (unsigned bits = lanes; bits; bits &= bits - 1)
+                if (!is_cover_near(s, x, i, lowest_lane(bits), scene.margin))
+                    lanes &= ~(1u << lowest_lane(bits));
+        return lanes;
+    }
+    CSPACE_INLINE unsigned lanes_meeting(int x, int s, const Place& at, int other_x, int other,
+                                         const Place& other_at) const {
+        const float r = robot.spheres[s].r + robot.spheres[other].r + scene.pair_margin;
+        unsigned lanes = touching_lanes(square_distance(at, other_at), r);
+        if (is_cover(s) || is_cover(other))
+            for (unsigned bits = lanes; bits; bits &= bits - 1)
+                if (!is_pair_near(s, x, other, other_x, lowest_lane(bits), scene.pair_margin))
+                    lanes &= ~(1u << lowest_lane(bits));
+        return lanes;
     }
     template <class Motion>
     CSPACE_INLINE bool settle(const Marks<Motion>& marks) {
-        if constexpr (Motion::is_moving) unsure |= bits_of(marks.near) & wanted;
-        const unsigned touching = bits_of(marks.touching) & wanted;
+        if constexpr (Motion::is_moving) unsure |= (bits_of(marks.near) & wanted) | marks.exact_near;
+        const unsigned touching = (bits_of(marks.touching) & wanted) | marks.exact_touching;
         hit |= touching;
         return touching != 0;
     }
     // Which of the primitives a sphere touches.
-    CSPACE_COLD bool record_primitive(int l, int s, const Place& at, float r, Candidates near) {
+    CSPACE_COLD bool record_primitive(int l, int s, const Place& at, Candidates near) {
         for (int k = 0; k < near.count; ++k) {
-            float radius;
-            const Floats gap = square_gap(scene, near.begin[k], at, Mover{r, NoMotion{}, wanted}, radius);
-            if (!touches(gap, r + radius)) continue;
+            if (!lanes_touching(robot.links[l].body, s, at, near.begin[k])) continue;
             const Contact contact = {l, near.begin[k], false, 0};
             return record_touch({robot.links[l].body, s, -1, near.begin[k], contact});
         }
         return true;
     }
     // Which of the listed spheres another sphere touches.
-    CSPACE_COLD bool record_pair(const LinkPair& links, int s, const Place& at, float r, int count) {
+    CSPACE_COLD bool record_pair(const LinkPair& links, int s, const Place& at, int count) {
         const Place* all = static_cast<Place*>(w.sphere_places);
         const Contact contact = {links.a, links.b, true, 0};
         for (int k = 0; k < count; ++k) {
             const int other = w.near_spheres[k];
-            if (!touches(square_distance(at, all[other]), r + robot.spheres[other].r)) continue;
-            return record_touch({robot.links[links.b].body, s, robot.links[links.a].body, other, contact});
+            const int x = robot.links[links.b].body, other_x = robot.links[links.a].body;
+            if (!lanes_meeting(x, s, at, other_x, other, all[other])) continue;
+            return record_touch({x, s, other_x, other, contact});
         }
         w.contact = contact;
         return true;
@@ -311,7 +423,7 @@ class Block {
         w.contact = touch.contact;
         return true;
     }
-    CSPACE_INLINE bool touches(Floats gap, float r) const {
+    CSPACE_INLINE unsigned touching_lanes(Floats gap, float r) const {
         return bits_of(gap < fill_floats(r * r)) & wanted;
     }
 };

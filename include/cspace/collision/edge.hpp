@@ -116,6 +116,13 @@ class EdgeCheck {
             const Floats distance = sqrt(gap), left = distance - r - edge.width_2_ * kappa;
             return distance * left < abs(rate) * edge.width_;
         }
+        // At all places of body x within a ball.
+        CSPACE_INLINE Floats growth_within(int x, const Place& at, float radius) const {
+            return growth(x, at) + turn_of(block.rates[x].w) * radius;
+        }
+        CSPACE_INLINE Floats turn_of(const Floats* w) const {
+            return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) * edge.width_;
+        }
         // How body b of a pair moves against body a.
         struct Relative {
             const Moving& motion;
@@ -136,8 +143,11 @@ class EdgeCheck {
             }
             // Sets most_growth from the growth of the ball of body b.
             CSPACE_INLINE void bound_growth(Floats growth, float radius) {
-                const Floats *w = rate.w, turn = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) * radius;
-                most_growth = growth + turn * motion.edge.width_;
+                most_growth = growth + motion.turn_of(rate.w) * radius;
+            }
+            // At all places on body b within a ball.
+            CSPACE_INLINE Floats growth_within(const Place& at, float radius) const {
+                return growth(at) + motion.turn_of(rate.w) * radius;
             }
         };
         CSPACE_INLINE Relative relative(int p) const {

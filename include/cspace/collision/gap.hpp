@@ -94,11 +94,12 @@ CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, cons
     radius = scene.clouds[i].radius;
     return square_gap(scene.clouds[i], at, ball.seek(radius, any));
 }
-// The lanes in which a ball may touch primitive i; at least one of them.
+// The lanes in which a ball may touch primitive i; at least one of them, or all.
 template <class Growth>
-CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball) {
+CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball,
+                                     bool all = false) {
     float radius;
-    const Floats gap = square_gap(scene, i, at, ball, radius, true);
+    const Floats gap = square_gap(scene, i, at, ball, radius, !all);
     return bits_of(gap < ball.reach(radius)) & ball.wanted;
 }
 

@@ -79,8 +79,9 @@ class OneCheck {
             const Floats x = load_floats(robot_.body_balls.x + b), y = load_floats(robot_.body_balls.y + b),
                          z = load_floats(robot_.body_balls.z + b);
             for (int r = 0; r < 3; ++r)
-                store_floats(w_.ball_columns + r * stride_ + b,
-                             column(3 * r) * x + (column(3 * r + 1) * y + (column(3 * r + 2) * z + column(9 + r))));
+                store_floats(
+                    w_.ball_columns + r * stride_ + b,
+                    column(3 * r) * x + (column(3 * r + 1) * y + (column(3 * r + 2) * z + column(9 + r))));
         }
     }
     CSPACE_INLINE Place balls_from(int b) const {
@@ -129,7 +130,8 @@ class OneCheck {
                 return found ? 0u : bits_of(all) & moving;
             };
             visit_boxes(scene_, meets, [&](int p, unsigned bits) {
-                for (bits = find_touching(scene_, p, at, Mover{0.0f, r, bits}); bits && !found; bits &= bits - 1)
+                for (bits = find_touching(scene_, p, at, Mover{0.0f, r, bits}, true); bits && !found;
+                     bits &= bits - 1)
                     found = body_touches(first + lowest_lane(bits), p);
             });
         }
@@ -142,13 +144,32 @@ class OneCheck {
             const unsigned wanted = lanes_that_count(c, primitive);
             const Mover balls{0.0f, chunk_radii(c) + scene_.margin, wanted};
             if (!wanted) continue;
-            const unsigned touching = find_touching(scene_, primitive, chunk_place(c), balls);
-            if (!touching) continue;
-            const int sphere = robot_.chunks[c].first + lowest_lane(touching);
-            w_.contact = {robot_.sphere_links[sphere], primitive, false, 0};
-            return true;
+            const bool has_covers = robot_.sphere_solids != nullptr;
+            unsigned touching = find_touching(scene_, primitive, chunk_place(c), balls, has_covers);
+            for (; touching; touching &= touching - 1) {
+                const int sphere = robot_.chunks[c].first + lowest_lane(touching);
+                if (is_cover(sphere) && !reaches(body, sphere, primitive)) continue;
+                w_.contact = {robot_.sphere_links[sphere], primitive, false, 0};
+                return true;
+            }
         }
         return false;
+    }
+    // Whether a sphere only covers a solid; whether the solid touches a primitive, and two of them each
+    // other.
+    CSPACE_INLINE bool is_cover(int s) const { return robot_.sphere_solids && robot_.sphere_solids[s] >= 0; }
+    bool reaches(int body, int s, int primitive) const {
+        float frame[12];
+        copy_lane(frames_[body], frame);
+        return scene_.exact.reaches_primitive(scene_.exact.owner, s, frame, primitive, scene_.margin);
+    }
+    bool meets(int s, int other) const {
+        if (!is_cover(s) && !is_cover(other)) return true;
+        float frame[12], other_frame[12];
+        copy_lane(frames_[robot_.links[robot_.sphere_links[s]].body], frame);
+        copy_lane(frames_[robot_.links[robot_.sphere_links[other]].body], other_frame);
+        return scene_.exact.reaches_sphere(scene_.exact.owner, s, frame, other, other_frame,
+                                           scene_.pair_margin);
     }
     // Those of the spheres of a chunk that may not touch a primitive.
     CSPACE_INLINE unsigned lanes_that_count(int c, int primitive) const {
@@ -170,7 +191,8 @@ class OneCheck {
                 const Floats reach = load_floats(robot_.body_balls.r + first) + r;
                 const Floats gap = square_distance(balls_from(first), fill_place(ball_center(a)));
                 for (unsigned bits = bits_of(gap < square(reach)) & wanted; bits; bits &= bits - 1)
-                    if (pair_touches(robot_.pair_numbers[a * stride_ + first + lowest_lane(bits)])) return true;
+                    if (pair_touches(robot_.pair_numbers[a * stride_ + first + lowest_lane(bits)]))
+                        return true;
             }
         return false;
     }
@@ -228,11 +250,14 @@ class OneCheck {
     CSPACE_INLINE bool sphere_touches(int chunk, int i, int listed) const {
         const float* columns = w_.sphere_columns + 3 * float_lanes * chunk + i;
         const Place at = fill_place({columns[0], columns[float_lanes], columns[2 * float_lanes]});
-        const float r = robot_.sphere_columns.r[robot_.chunks[chunk].first + i] + scene_.pair_margin;
+        const int s = robot_.chunks[chunk].first + i;
+        const float r = robot_.sphere_columns.r[s] + scene_.pair_margin;
         for (int k = 0; k < listed; ++k) {
             const int c = w_.near_chunks[k];
             const Floats gap = square_distance(at, chunk_place(c));
-            if (bits_of(gap < square(r + chunk_radii(c))) & w_.near_lanes[k]) return true;
+            unsigned bits = bits_of(gap < square(r + chunk_radii(c))) & w_.near_lanes[k];
+            for (; bits; bits &= bits - 1)
+                if (meets(s, robot_.chunks[c].first + lowest_lane(bits))) return true;
         }
         return false;
     }

@@ -17,6 +17,17 @@ struct FrameOf {
     V R[9], p[3];
 };
 using Frame = FrameOf<Floats>;
+// The frame in one lane: R by rows, then p.
+CSPACE_INLINE void copy_lane(const Frame& frame, int lane, float* to) {
+    alignas(32) float lanes[float_lanes];
+    for (int k = 0; k < 12; ++k) {
+        store_floats(lanes, k < 9 ? frame.R[k] : frame.p[k - 9]);
+        to[k] = lanes[lane];
+    }
+}
+CSPACE_INLINE void copy_lane(const FrameOf<float>& frame, float* to) {
+    for (int k = 0; k < 12; ++k) to[k] = k < 9 ? frame.R[k] : frame.p[k - 9];
+}
 // Of a body, per unit of the parameter along an edge: ω and the velocity of the origin of its frame.
 struct Rate {
     Floats w[3], u[3];

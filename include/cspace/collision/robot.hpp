@@ -72,6 +72,10 @@ struct Robot {
     const Chunk* chunks;
     const BodyChunks* body_chunks;
     const int* sphere_links;
+    // Of each sphere the convex solid that it helps to cover, −1 if it counts itself; null if all do. Balls
+    // around the solids, in the frames of their bodies.
+    const int* sphere_solids;
+    const Ball* solid_balls;
     const int* pair_numbers;
     const unsigned char* pair_lanes;
     // Bounds [m] on the distance of the sphere centres of a body from the axis of a joint, 0 if it does not

@@ -57,6 +57,17 @@ struct Cloud {
     float radius;
 };
 
+// The exact test of a robot's convex solids: their covers only tell where it is needed. frame: of the body
+// that carries a sphere, R by rows, then p.
+struct ExactTest {
+    const void* owner;
+    // Whether the solid that a sphere covers comes within a gap of a primitive.
+    bool (*reaches_primitive)(const void* owner, int sphere, const float* frame, int primitive, float gap);
+    // Whether two spheres, or the solids that they cover, come within a gap of each other.
+    bool (*reaches_sphere)(const void* owner, int sphere, const float* frame, int other,
+                           const float* other_frame, float gap);
+};
+
 struct Scene {
     const Box* boxes;
     const Capsule* capsules;
@@ -76,6 +87,7 @@ struct Scene {
     // allowed[link · n + primitive]: they may touch. Null if no such pair is allowed.
     const unsigned char* allowed;
     float margin, pair_margin;  // added to the radii of spheres against primitives, and to pairs of spheres
+    ExactTest exact;
 };
 
 }  // namespace cspace::collision

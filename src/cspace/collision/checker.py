@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from cspace._core import CollisionChecker, CollisionRobot, CollisionScene, compile_solids
 from cspace.arrays import Array, bounded_number
+from cspace.collision.exact_solids import join_shapes, place_shape, split_shapes
 from cspace.collision.pack_scene import SOLIDS, PackedScene, pack_obstacles
-from cspace.collision.robot_geometry import RobotGeometry, split_rows
+from cspace.collision.robot_geometry import RobotGeometry
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError
-from cspace.shapes import cover_shape
 from cspace.tolerances import LARGEST_NUMBER
 
 KEPT_CHECKERS: Final = 8
@@ -156,7 +156,7 @@ def touching_pairs(scene: Scene) -> set[frozenset[str]]:
 
 
 def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
-    """The robot with the objects that it carries: their covers are spheres of the bodies that carry them.
+    """The robot with the objects that it carries: shapes of the bodies that carry them.
 
     An attached object is checked against all links of other bodies, and against other attached objects.
     """
@@ -164,16 +164,15 @@ def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
         return CheckedRobot(geometry.compiled, geometry.links)
     links = list(geometry.links)
     bodies = geometry.link_bodies.tolist()
-    parts = split_rows(geometry.spheres, geometry.sphere_links)
+    parts = split_shapes(geometry.shapes, geometry.sphere_links)
     checked = {frozenset((links[a], links[b])) for a, b in geometry.pairs.tolist()}
     for name, attachment in scene.attached.items():
         joint, T_joint_frame = geometry.frames[attachment.frame]
-        solid = scene[name].placed(T_joint_frame @ attachment.T_frame_object)
-        cover = cover_shape(solid, ATTACHED_COVER)
+        solid = scene[name].placed(attachment.T_frame_object)
         checked |= {frozenset((name, links[k])) for k in range(len(links)) if bodies[k] != joint + 1}
         links.append(name)
         bodies.append(joint + 1)
-        parts.append(cover.spheres)
+        parts.append(place_shape(solid, ATTACHED_COVER, T_joint_frame))
     checked -= touching_pairs(scene)
     order = sorted(range(len(links)), key=lambda k: bodies[k])
     names = tuple(links[k] for k in order)
@@ -181,8 +180,8 @@ def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
     pairs = sorted(tuple(sorted(number[name] for name in pair)) for pair in checked)
     core = geometry.compile(
         np.array([bodies[k] for k in order], dtype=np.int64),
-        np.concatenate([parts[k] for k in order]),
-        np.repeat(np.arange(len(order)), [len(parts[k]) for k in order]).astype(np.int64),
+        join_shapes([parts[k] for k in order]),
+        np.repeat(np.arange(len(order)), [len(parts[k].spheres) for k in order]).astype(np.int64),
         np.array(pairs, dtype=np.int64).reshape(-1, 2),
     )
     return CheckedRobot(core, names)

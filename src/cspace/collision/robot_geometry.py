@@ -12,12 +12,12 @@ import numpy.typing as npt
 
 from cspace._core import CollisionRobot
 from cspace.arrays import Array, positive_number
+from cspace.collision.exact_solids import PlacedShapes, join_shapes, place_shape
 from cspace.collision.link_pairs import SAMPLES, Allowed, adjacent_pairs, always_touching
 from cspace.collision.link_shapes import Solids, described_solids, skeleton_solids
 from cspace.errors import InputError, suggest
 from cspace.kinematics import Assembly, KinematicModel, random_configurations
 from cspace.model import Description
-from cspace.shapes import cover_shape
 from cspace.spatial.poses import invert_pose, transform_points
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
@@ -33,12 +33,15 @@ Integers = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class RobotGeometry:
-    """Spheres that stand for the links of a robot in collision checks; falsy, with a reason, without any.
+    """Spheres and solids that stand for the links of a robot in collision checks; falsy, with a reason,
+    without any.
 
     robot: the name. source: what the spheres are made from. reason: why there are none. links: names of the
     links with spheres; link_bodies (n,): what carries each, 0 the base and k + 1 joint k. spheres (m, 4):
-    centres and radii [m] in the frame of the body; sphere_links (m,): the link of each. excess [m]: no sphere
-    sticks out of the shapes of its link by more. pairs (k, 2): links that are checked against each other.
+    centres and radii [m] in the frame of the body; sphere_links (m,): the link of each. solids (s, 16): boxes,
+    cylinders and capsules, which are taken exactly; sphere_solids (m,): the solid that a sphere only helps to
+    cover, −1 where the sphere itself counts. excess [m]: no sphere that counts sticks out of the shapes of its
+    link by more. pairs (k, 2): links that are checked against each other.
     allowed: pairs of links that are not, with the reason.
 
     joints (j, 21): T_parent_joint by rows, parent, coordinate, ratio, offset, prismatic, the base at the
@@ -53,6 +56,8 @@ class RobotGeometry:
     link_bodies: Integers
     spheres: Array
     sphere_links: Integers
+    solids: Array
+    sphere_solids: Integers
     excess: float
     pairs: Integers
     allowed: tuple[Allowed, ...]
@@ -95,12 +100,17 @@ class RobotGeometry:
     @cached_property
     def compiled(self) -> CollisionRobot:
         """The compiled robot without attached objects."""
-        return self.compile(self.link_bodies, self.spheres, self.sphere_links, self.pairs)
+        return self.compile(self.link_bodies, self.shapes, self.sphere_links, self.pairs)
+
+    @property
+    def shapes(self) -> PlacedShapes:
+        """The spheres and solids of all links."""
+        return PlacedShapes(self.spheres, self.solids, self.sphere_solids, self.excess)
 
     def compile(
-        self, link_bodies: Integers, spheres: Array, sphere_links: Integers, pairs: Integers
+        self, link_bodies: Integers, shapes: PlacedShapes, sphere_links: Integers, pairs: Integers
     ) -> CollisionRobot:
-        """The compiled robot with these links, which follow their bodies.
+        """The compiled robot with these links, which follow their bodies. sphere_links: of the shapes.
 
         Raises InputError for a prismatic joint without limits.
         """
@@ -111,7 +121,16 @@ class RobotGeometry:
                     f"prismatic joint {self.joint_names[k]!r} of {self.robot} has no limits; collision checks"
                     " need them, since rounding grows with its travel"
                 )
-        return CollisionRobot(self.joints, bounds, link_bodies, spheres, sphere_links, pairs)
+        return CollisionRobot(
+            self.joints,
+            bounds,
+            link_bodies,
+            shapes.spheres,
+            sphere_links,
+            pairs,
+            shapes.solids,
+            shapes.sphere_solids,
+        )
 
     def __repr__(self) -> str:
         if not self:
@@ -150,9 +169,8 @@ def robot_geometry(
     frames = frames_on_base(assembly, mount)
     skeleton = geometry == "skeleton"
     solids = skeleton_solids(assembly) if skeleton else described_solids(description, frames)
-    links, link_bodies, spheres, sphere_links, most = place_spheres(
-        {} if robot.floating else solids, frames, excess
-    )
+    links, link_bodies, placed, sphere_links = place_links({} if robot.floating else solids, frames, excess)
+    spheres = placed.spheres
     samples = random_configurations(robot.limits, robot.joint_types, SAMPLES, rng=0, reach=FREE_TRAVEL)
     centers = [
         transform_points((robot.fk(samples, name) @ invert_pose(frames[name][1]))[:, None], own)
@@ -169,7 +187,9 @@ def robot_geometry(
         link_bodies=link_bodies,
         spheres=spheres,
         sphere_links=sphere_links,
-        excess=most,
+        solids=placed.solids,
+        sphere_solids=placed.sphere_solids,
+        excess=placed.excess,
         pairs=np.array(pairs, dtype=np.int64).reshape(-1, 2),
         allowed=tuple(allowed),
         joints=joint_rows(assembly, mount),
@@ -211,23 +231,19 @@ def missing_reason(robot: KinematicModel, description: Description) -> str:
     )
 
 
-def place_spheres(
+def place_links(
     solids: Solids, frames: Mapping[str, tuple[int, Array]], cover: float
-) -> tuple[tuple[str, ...], Integers, Array, Integers, float]:
-    """Links in the order of their bodies, the bodies, spheres in the frames of bodies, their links, the
-    excess."""
+) -> tuple[tuple[str, ...], Integers, PlacedShapes, Integers]:
+    """Links in the order of their bodies, the bodies, shapes in the frames of bodies, links of the spheres."""
     order = sorted(solids, key=lambda name: frames[name][0])
-    rows, owners, most = [np.zeros((0, 4))], [], 0.0
+    parts: list[PlacedShapes] = []
+    owners: list[int] = []
     for number, name in enumerate(order):
         for solid in solids[name]:
-            found = cover_shape(solid, cover)
-            most = max(most, found.excess)
-            placed = found.spheres.copy()
-            placed[:, :3] = transform_points(frames[name][1], placed[:, :3])
-            rows.append(placed)
-            owners += [number] * len(placed)
+            parts.append(place_shape(solid, cover, frames[name][1]))
+            owners += [number] * len(parts[-1].spheres)
     bodies = np.array([frames[name][0] + 1 for name in order], dtype=np.int64)
-    return tuple(order), bodies, np.concatenate(rows), np.array(owners, dtype=np.int64), most
+    return tuple(order), bodies, join_shapes(parts), np.array(owners, dtype=np.int64)
 
 
 def split_rows(rows: Array, owners: Integers) -> list[Array]:
