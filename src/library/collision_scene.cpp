@@ -121,7 +121,8 @@ SceneData::SceneData(const Primitives& given)
              int(tree_.nodes.size()),
              nullptr,
              0,
-             0};
+             0,
+             {}};
 }
 
 shapes::Distance SceneData::distance(int primitive, const Vec3d& point, double limit) const {

@@ -160,14 +160,14 @@ class OneCheck {
     CSPACE_INLINE bool is_cover(int s) const { return robot_.sphere_solids && robot_.sphere_solids[s] >= 0; }
     bool reaches(int body, int s, int primitive) const {
         float frame[12];
-        copy_lane(frames_[body], frame);
+        copy_frame(frames_[body], frame);
         return scene_.exact.reaches_primitive(scene_.exact.owner, s, frame, primitive, scene_.margin);
     }
     bool meets(int s, int other) const {
         if (!is_cover(s) && !is_cover(other)) return true;
         float frame[12], other_frame[12];
-        copy_lane(frames_[robot_.links[robot_.sphere_links[s]].body], frame);
-        copy_lane(frames_[robot_.links[robot_.sphere_links[other]].body], other_frame);
+        copy_frame(frames_[robot_.links[robot_.sphere_links[s]].body], frame);
+        copy_frame(frames_[robot_.links[robot_.sphere_links[other]].body], other_frame);
         return scene_.exact.reaches_sphere(scene_.exact.owner, s, frame, other, other_frame,
                                            scene_.pair_margin);
     }

@@ -20,13 +20,17 @@ using Frame = FrameOf<Floats>;
 // The frame in one lane: R by rows, then p.
 CSPACE_INLINE void copy_lane(const Frame& frame, int lane, float* to) {
     alignas(32) float lanes[float_lanes];
-    for (int k = 0; k < 12; ++k) {
-        store_floats(lanes, k < 9 ? frame.R[k] : frame.p[k - 9]);
-        to[k] = lanes[lane];
-    }
+    const auto copy = [&](const Floats* from, int count) {
+        for (int k = 0; k < count; ++k) {
+            store_floats(lanes, from[k]);
+            *to++ = lanes[lane];
+        }
+    };
+    copy(frame.R, 9), copy(frame.p, 3);
 }
-CSPACE_INLINE void copy_lane(const FrameOf<float>& frame, float* to) {
-    for (int k = 0; k < 12; ++k) to[k] = k < 9 ? frame.R[k] : frame.p[k - 9];
+CSPACE_INLINE void copy_frame(const FrameOf<float>& frame, float* to) {
+    for (int k = 0; k < 9; ++k) to[k] = frame.R[k];
+    for (int k = 0; k < 3; ++k) to[9 + k] = frame.p[k];
 }
 // Of a body, per unit of the parameter along an edge: ω and the velocity of the origin of its frame.
 struct Rate {
