@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include "cspace/math/threads.hpp"
@@ -81,6 +82,10 @@ Posed read_frame(const float* f) {
     return {{{{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}}}, {f[9], f[10], f[11]}};
 }
 
+void write_normal(const Vec3d& n, float* normal) {
+    normal[0] = float(n.x), normal[1] = float(n.y), normal[2] = float(n.z);
+}
+
 }  // namespace
 
 void WorkspaceMemory::Free::operator()(std::byte* p) const {
@@ -100,7 +105,7 @@ Checker::Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const S
                  double margin, std::span<const std::pair<int, int>> allowed)
     : robot_(std::move(robot)), data_(std::move(scene)), scene_(data_->view()) {
     scene_.margin = scene_.pair_margin = float(margin) + robot_->slack();
-    scene_.exact = {this, &reaches_primitive, &reaches_sphere};
+    scene_.exact = {this, &reaches_primitive, &measure_primitive, &reaches_sphere, &measure_sphere};
     if (!allowed.empty()) {
         allowed_.assign(std::size_t(this->robot().n_links) * std::size_t(scene_.n), 0);
         for (const auto& [link, object] : allowed)
@@ -128,6 +133,26 @@ bool Checker::reaches_sphere(const void* owner, int sphere, const float* frame, 
     const RobotData& robot = *static_cast<const Checker*>(owner)->robot_;
     return shapes::is_within(move_solid(read_frame(frame), robot.solid_of(sphere)),
                              move_solid(read_frame(other_frame), robot.solid_of(other)), double(gap));
+}
+
+float Checker::measure_primitive(const void* owner, int sphere, const float* frame, int primitive,
+                                 float* normal) {
+    const Checker& checker = *static_cast<const Checker*>(owner);
+    const shapes::Convex solid = move_solid(read_frame(frame), checker.robot_->solid_of(sphere));
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto found = checker.data_->distance(primitive, solid, infinity);
+    const bool has_normal = found && checker.data_->is_convex(primitive);
+    write_normal(has_normal ? found->normal : Vec3d{0, 0, 0}, normal);
+    return found ? round_low(found->value) : 0.0f;
+}
+float Checker::measure_sphere(const void* owner, int sphere, const float* frame, int other,
+                              const float* other_frame, float* normal) {
+    const RobotData& robot = *static_cast<const Checker*>(owner)->robot_;
+    const shapes::ConvexDistance found =
+        shapes::measure_distance(move_solid(read_frame(frame), robot.solid_of(sphere)),
+                                 move_solid(read_frame(other_frame), robot.solid_of(other)));
+    write_normal(found.normal, normal);
+    return round_low(found.value);
 }
 
 // The base does not move: it is checked once, here.

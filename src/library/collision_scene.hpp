@@ -28,6 +28,7 @@ class SceneData {
     explicit SceneData(const Primitives& given);
     const Scene& view() const { return view_; }  // without margins, and nothing allowed
     int owner(int primitive) const { return owners_[std::size_t(primitive)]; }
+    bool is_convex(int primitive) const { return primitive < view_.n - view_.n_meshes - view_.n_clouds; }
     // The distance of a point from a primitive, in double; some distance beyond `limit` where it is larger.
     shapes::Distance distance(int primitive, const Vec3d& point, double limit) const;
     // Whether a convex solid comes within a gap of a primitive.

@@ -259,17 +259,12 @@ class Block {
         float radius;
         const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
-        const FloatMask touching = gap < fill_floats(sum * sum);
         if (is_cover(s)) {
-            if (const unsigned suspects = bits_of(touching) & wanted) {
-                refine_primitive(x, s, i, suspects, motion, marks);
-                if constexpr (Motion::is_moving)
-                    marks.exact_near |= bits_of(gap < square_of(marks.growth, sum)) & wanted & ~suspects;
-                return;
-            }
-        } else {
-            marks.touching = marks.touching | touching;
+            const unsigned suspects = bits_of(gap < square_of(marks.growth, sum)) & wanted;
+            if (suspects) refine_primitive(x, s, i, suspects, motion, marks);
+            return;
         }
+        marks.touching = marks.touching | (gap < fill_floats(sum * sum));
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
             if (bits_of(near) & wanted)
@@ -283,17 +278,12 @@ class Block {
                                      const Place& other_at, const Relative& relative, Marks<Motion>& marks) {
         const float r = robot.spheres[s].r + scene.pair_margin + robot.spheres[other].r;
         const Floats gap = square_distance(at, other_at);
-        const FloatMask touching = gap < fill_floats(r * r);
         if (is_cover(s) || is_cover(other)) {
-            if (const unsigned suspects = bits_of(touching) & wanted) {
-                refine_pair(links, s, other, suspects, relative, marks);
-                if constexpr (Motion::is_moving)
-                    marks.exact_near |= bits_of(gap < square_of(marks.growth, r)) & wanted & ~suspects;
-                return;
-            }
-        } else {
-            marks.touching = marks.touching | touching;
+            const unsigned suspects = bits_of(gap < square_of(marks.growth, r)) & wanted;
+            if (suspects) refine_pair(links, s, other, suspects, relative, marks);
+            return;
         }
+        marks.touching = marks.touching | (gap < fill_floats(r * r));
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
             if (bits_of(near) & wanted)
@@ -303,68 +293,94 @@ class Block {
 
     // Whether a sphere only covers a solid.
     CSPACE_INLINE bool is_cover(int s) const { return robot.sphere_solids && robot.sphere_solids[s] >= 0; }
-    CSPACE_INLINE bool is_cover_near(int s, int x, int i, int lane, float gap) const {
-        float frame[12];
-        copy_lane(frames[x], lane, frame);
-        return scene.exact.reaches_primitive(scene.exact.owner, s, frame, i, gap);
+    CSPACE_INLINE const Ball& ball_around(int s) const {
+        return is_cover(s) ? robot.solid_balls[robot.sphere_solids[s]] : robot.spheres[s];
     }
-    CSPACE_INLINE bool is_pair_near(int s, int x, int other, int other_x, int lane, float gap) const {
-        float frame[12], other_frame[12];
-        copy_lane(frames[x], lane, frame), copy_lane(frames[other_x], lane, other_frame);
-        return scene.exact.reaches_sphere(scene.exact.owner, s, frame, other, other_frame, gap);
-    }
-    // Of lanes in which a cover touches: those in which the solid does, or may within its motion. The spheres
-    // of a solid come one after the other, so the last answer is kept.
-    template <class Near>
-    void refine(int one, int other, unsigned suspects, const Near& is_near, const float* growth,
-                unsigned& touching, unsigned& near) {
-        const bool is_moving = growth != nullptr;
+    // What a sphere covers against a primitive, in a lane.
+    struct PrimitiveTest {
+        const Block& block;
+        int s, x, i;
+        bool touches(int lane) const {
+            float frame[12];
+            copy_lane(block.frames[x], lane, frame);
+            const ExactTest& exact = block.scene.exact;
+            return exact.reaches_primitive(exact.owner, s, frame, i, block.scene.margin);
+        }
+        float measure(int lane, float* normal) const {
+            float frame[12];
+            copy_lane(block.frames[x], lane, frame);
+            const ExactTest& exact = block.scene.exact;
+            return exact.measure_primitive(exact.owner, s, frame, i, normal) - block.scene.margin;
+        }
+    };
+    // Two spheres, or what they cover, against each other.
+    struct PairTest {
+        const Block& block;
+        int s, x, other, other_x;
+        bool touches(int lane) const {
+            float frame[12], other_frame[12];
+            copy_lane(block.frames[x], lane, frame), copy_lane(block.frames[other_x], lane, other_frame);
+            const ExactTest& exact = block.scene.exact;
+            return exact.reaches_sphere(exact.owner, s, frame, other, other_frame, block.scene.pair_margin);
+        }
+        float measure(int lane, float* normal) const {
+            float frame[12], other_frame[12];
+            copy_lane(block.frames[x], lane, frame), copy_lane(block.frames[other_x], lane, other_frame);
+            const ExactTest& exact = block.scene.exact;
+            return exact.measure_sphere(exact.owner, s, frame, other, other_frame, normal) -
+                   block.scene.pair_margin;
+        }
+    };
+    // Of lanes in which a cover may touch: those in which the solid does, or may on its way. The spheres of a
+    // solid come one after the other, so the last answer is kept.
+    template <class Motion, class Test>
+    void refine(int one, int other, unsigned suspects, const Test& test, const Way* way, float radius,
+                Marks<Motion>& marks) {
+        const bool is_moving = way != nullptr;
         if (refined_.stamp != w.stamp || refined_.one != one || refined_.other != other ||
             refined_.is_moving != is_moving)
             refined_ = {w.stamp, one, other, is_moving, 0, 0, 0};
         for (unsigned bits = suspects & ~refined_.tested; bits; bits &= bits - 1) {
             const int lane = lowest_lane(bits);
             refined_.tested |= 1u << lane;
-            if (is_near(lane, 0.0f))
+            float normal[3];
+            if (test.touches(lane))
                 refined_.touching |= 1u << lane;
-            else if (growth && is_near(lane, growth[lane]))
+            else if (way && way->may_close(lane, test.measure(lane, normal), radius, normal))
                 refined_.near |= 1u << lane;
         }
-        touching |= refined_.touching & suspects, near |= refined_.near & suspects;
+        marks.exact_touching |= refined_.touching & suspects, marks.exact_near |= refined_.near & suspects;
     }
     template <class Motion>
     CSPACE_COLD void refine_primitive(int x, int s, int i, unsigned suspects, const Motion& motion,
                                       Marks<Motion>& marks) {
-        alignas(32) float growth[float_lanes];
         const int solid = robot.sphere_solids[s];
+        const Ball& ball = robot.solid_balls[solid];
+        const PrimitiveTest test = {*this, s, x, i};
         if constexpr (Motion::is_moving) {
-            const Ball& ball = robot.solid_balls[solid];
-            store_floats(growth, motion.growth_within(x, place_ball(frames[x], ball), ball.r));
+            const Way way = motion.way_of(x, place_ball(frames[x], ball));
+            refine(solid, i, suspects, test, &way, ball.r, marks);
+        } else {
+            refine(solid, i, suspects, test, nullptr, 0, marks);
         }
-        refine(
-            solid, i, suspects,
-            [&](int lane, float gap) { return is_cover_near(s, x, i, lane, scene.margin + gap); },
-            Motion::is_moving ? growth : nullptr, marks.exact_touching, marks.exact_near);
     }
     // Sphere s is of link b of the pair, the other one of link a. Numbers below zero stand for spheres.
     template <class Motion, class Relative>
     CSPACE_COLD void refine_pair(const LinkPair& links, int s, int other, unsigned suspects,
                                  const Relative& relative, Marks<Motion>& marks) {
-        alignas(32) float growth[float_lanes];
         const int x = robot.links[links.b].body, other_x = robot.links[links.a].body;
         const auto number = [&](int sphere) {
             return is_cover(sphere) ? robot.sphere_solids[sphere] : -1 - sphere;
         };
+        const int one = number(s), two = first_pair + number(other) + robot.n_spheres;
+        const PairTest test = {*this, s, x, other, other_x};
         if constexpr (Motion::is_moving) {
-            const Ball& ball = is_cover(s) ? robot.solid_balls[robot.sphere_solids[s]] : robot.spheres[s];
-            store_floats(growth, relative.growth_within(place_ball(frames[x], ball), ball.r));
+            const Ball& ball = ball_around(s);
+            const Way way = relative.way_of(place_ball(frames[x], ball));
+            refine(one, two, suspects, test, &way, ball.r, marks);
+        } else {
+            refine(one, two, suspects, test, nullptr, 0, marks);
         }
-        refine(
-            number(s), first_pair + number(other) + robot.n_spheres, suspects,
-            [&](int lane, float gap) {
-                return is_pair_near(s, x, other, other_x, lane, scene.pair_margin + gap);
-            },
-            Motion::is_moving ? growth : nullptr, marks.exact_touching, marks.exact_near);
     }
     // The lanes in which a sphere, or the solid that it covers, touches a primitive.
     CSPACE_INLINE unsigned lanes_touching(int x, int s, const Place& at, int i) const {
@@ -374,7 +390,7 @@ class Block {
         unsigned lanes = touching_lanes(gap, r + radius);
         if (is_cover(s))
             for (unsigned bits = lanes; bits; bits &= bits - 1)
-                if (!is_cover_near(s, x, i, lowest_lane(bits), scene.margin))
+                if (!PrimitiveTest{*this, s, x, i}.touches(lowest_lane(bits)))
                     lanes &= ~(1u << lowest_lane(bits));
         return lanes;
     }
@@ -384,7 +400,7 @@ class Block {
         unsigned lanes = touching_lanes(square_distance(at, other_at), r);
         if (is_cover(s) || is_cover(other))
             for (unsigned bits = lanes; bits; bits &= bits - 1)
-                if (!is_pair_near(s, x, other, other_x, lowest_lane(bits), scene.pair_margin))
+                if (!PairTest{*this, s, x, other, other_x}.touches(lowest_lane(bits)))
                     lanes &= ~(1u << lowest_lane(bits));
         return lanes;
     }

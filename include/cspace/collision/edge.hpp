@@ -116,12 +116,10 @@ class EdgeCheck {
             const Floats distance = sqrt(gap), left = distance - r - edge.width_2_ * kappa;
             return distance * left < abs(rate) * edge.width_;
         }
-        // At all places of body x within a ball.
-        CSPACE_INLINE Floats growth_within(int x, const Place& at, float radius) const {
-            return growth(x, at) + turn_of(block.rates[x].w) * radius;
-        }
-        CSPACE_INLINE Floats turn_of(const Floats* w) const {
-            return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) * edge.width_;
+        // How body x moves around a place.
+        CSPACE_INLINE Way way_of(int x, const Place& at) const {
+            return {velocity_at(block.frames[x], block.rates[x], at), block.rates[x].w, edge.width_,
+                    edge.width_2_ * edge.w_.kappa[x]};
         }
         // How body b of a pair moves against body a.
         struct Relative {
@@ -137,17 +135,16 @@ class EdgeCheck {
             // Where a ball of body b may come as near to one of body a as r.
             CSPACE_INLINE FloatMask may_meet(const Place& at, const Place& other, Floats gap, float r) const {
                 const Velocity v = velocity_at(rate, at);
-                const Floats speed =
-                    (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
+                const Floats speed = (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
                 return motion.may_approach(gap, speed, r, kappa);
             }
             // Sets most_growth from the growth of the ball of body b.
             CSPACE_INLINE void bound_growth(Floats growth, float radius) {
-                most_growth = growth + motion.turn_of(rate.w) * radius;
+                const Floats *w = rate.w, turn = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) * radius;
+                most_growth = growth + turn * motion.edge.width_;
             }
-            // At all places on body b within a ball.
-            CSPACE_INLINE Floats growth_within(const Place& at, float radius) const {
-                return growth(at) + motion.turn_of(rate.w) * radius;
+            CSPACE_INLINE Way way_of(const Place& at) const {
+                return {velocity_at(rate, at), rate.w, motion.edge.width_, bend};
             }
         };
         CSPACE_INLINE Relative relative(int p) const {
@@ -413,8 +410,7 @@ class EdgeCheck {
                 ++kept;
             }
             const Growth growth = is_whole ? body_growth : relative.growth(b);
-            if (block_.may_meet(a, b, sum, growth) &&
-                block_.test_link_pair(links, motion, relative, growth))
+            if (block_.may_meet(a, b, sum, growth) && block_.test_link_pair(links, motion, relative, growth))
                 return true;
         }
         if (is_first_ && kept == 0) w_.kept_pairs[p] = 0;

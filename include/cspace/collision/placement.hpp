@@ -1,6 +1,8 @@
 // Forward kinematics of eight configurations: frames and velocities of all bodies, places of balls.
 #pragma once
 
+#include <cmath>
+
 #include "cspace/collision/robot.hpp"
 #include "cspace/math/float_trig.hpp"
 
@@ -165,6 +167,39 @@ CSPACE_INLINE Velocity velocity_at(const RelativeRate& rate, const Place& at) {
             rate.u[1] + (rate.w[2] * d[0] - rate.w[0] * d[2]),
             rate.u[2] + (rate.w[0] * d[1] - rate.w[1] * d[0])};
 }
+// How a body moves around a place within the intervals of all lanes: by its velocity and turn times their
+// half widths, and by no more than `bend` besides.
+class Way {
+  public:
+    CSPACE_INLINE Way(const Velocity& v, const Floats* w, Floats width, Floats bend) {
+        store_floats(shift_[0], v.x * width), store_floats(shift_[1], v.y * width);
+        store_floats(shift_[2], v.z * width);
+        for (int k = 0; k < 3; ++k) store_floats(turn_[k], w[k] * width);
+        store_floats(bend_, bend);
+    }
+    // Whether a place no farther than `radius` from that one may come nearer by a gap: along a unit normal
+    // to something convex, or to anything for a normal of zeros.
+    bool may_close(int lane, float gap, float radius, const float* n) const {
+        const auto at = [&](const float (*rows)[float_lanes]) {
+            return Vector{rows[0][lane], rows[1][lane], rows[2][lane]};
+        };
+        const Vector shift = at(shift_), turn = at(turn_), normal = {n[0], n[1], n[2]};
+        const bool has_normal = n[0] != 0 || n[1] != 0 || n[2] != 0;
+        const Vector across = {turn.y * n[2] - turn.z * n[1], turn.z * n[0] - turn.x * n[2],
+                               turn.x * n[1] - turn.y * n[0]};
+        const float along = has_normal ? std::fabs(dot(shift, normal)) : std::sqrt(dot(shift, shift));
+        const Vector& lever = has_normal ? across : turn;
+        return gap <= along + std::sqrt(dot(lever, lever)) * radius + bend_[lane];
+    }
+
+  private:
+    struct Vector {
+        float x, y, z;
+    };
+    static float dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+    alignas(32) float shift_[3][float_lanes], turn_[3][float_lanes], bend_[float_lanes];
+};
 CSPACE_INLINE Floats norm(const Velocity& v) { return sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 CSPACE_INLINE Floats speed_at(const Frame& frame, const Rate& rate, const Place& at) {
     return norm(velocity_at(frame, rate, at));

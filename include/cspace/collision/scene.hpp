@@ -61,11 +61,16 @@ struct Cloud {
 // that carries a sphere, R by rows, then p.
 struct ExactTest {
     const void* owner;
-    // Whether the solid that a sphere covers comes within a gap of a primitive.
+    // Whether the solid that a sphere covers comes within a gap of a primitive; and how far away it is. The
+    // unit normal leads from something convex to the solid; it is zero where the other one is not convex.
     bool (*reaches_primitive)(const void* owner, int sphere, const float* frame, int primitive, float gap);
-    // Whether two spheres, or the solids that they cover, come within a gap of each other.
+    float (*measure_primitive)(const void* owner, int sphere, const float* frame, int primitive,
+                               float* normal);
+    // The same for two spheres, or the solids that they cover.
     bool (*reaches_sphere)(const void* owner, int sphere, const float* frame, int other,
                            const float* other_frame, float gap);
+    float (*measure_sphere)(const void* owner, int sphere, const float* frame, int other,
+                            const float* other_frame, float* normal);
 };
 
 struct Scene {
