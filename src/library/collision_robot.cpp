@@ -83,6 +83,14 @@ void cluster(std::span<OwnedBall> spheres, std::vector<std::size_t>& sizes) {
     cluster(spheres.subspan(middle), sizes);
 }
 
+// Of a ball that a solid holds, around the centre of one that covers it.
+float inner_radius(const shapes::Convex& solid, const Ball& ball) {
+    const Vec3d center = {ball.x, ball.y, ball.z};
+    const double depth = shapes::find_depth(solid, center);
+    const double rounding = (double(ball.r) + norm(center)) * tolerance::float_rounding;
+    return depth > rounding ? std::min(ball.r, rounded(depth - rounding)) : -1.0f;
+}
+
 // How far the slide of a prismatic joint can take what it carries.
 double travel_of(const model::Joint& joint, std::span<const double> lower, std::span<const double> upper) {
     if (!joint.prismatic) return 0.0;
@@ -181,6 +189,13 @@ void RobotData::add_solids() {
         solid_balls_.push_back({rounded(center.x), rounded(center.y), rounded(center.z),
                                 rounded(shapes::bound_size(solid) + reach * tolerance::float_rounding)});
     }
+    for (std::size_t s = 0; s < spheres_.size(); ++s) {
+        const Ball& ball = spheres_[s];
+        const int solid = sphere_solids_.empty() ? -1 : sphere_solids_[s];
+        inner_radii_.push_back(solid < 0 ? ball.r : inner_radius(given_solids_[std::size_t(solid)], ball));
+    }
+    inner_radii_.resize(spheres_.size() + lanes, -1.0f);
+    view_.inner_radii = inner_radii_.data();
     view_.sphere_solids = sphere_solids_.empty() ? nullptr : sphere_solids_.data();
     view_.solid_balls = solid_balls_.data();
 }

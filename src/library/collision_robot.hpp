@@ -61,6 +61,7 @@ class RobotData {
     std::vector<Group> groups_;
     std::vector<Ball> spheres_, solid_balls_;
     std::vector<int> sphere_solids_;  // none where no sphere covers a solid
+    std::vector<float> inner_radii_;
     std::vector<BodyPair> pairs_;
     std::vector<LinkPair> link_pairs_;
     std::vector<float> levers_, pair_levers_;

@@ -260,7 +260,19 @@ class Block {
         const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
         if (is_cover(s)) {
-            const unsigned suspects = bits_of(gap < square_of(marks.growth, sum)) & wanted;
+            const unsigned near = bits_of(gap < square_of(marks.growth, sum)) & wanted;
+            if (!near) return;
+            // The gaps of others are exact only as far as they compare with this radius.
+            const float inner = is_convex(scene, i) ? robot.inner_radii[s] : -1.0f;
+            const float excess = robot.spheres[s].r - robot.inner_radii[s];
+            unsigned suspects = settle_inner(gap, near, sum - excess, inner, marks);
+            if constexpr (Motion::is_moving) {
+                const unsigned far = lanes_moving_far(gap, sum, excess, marks.growth) & suspects;
+                if (far && is_convex(scene, i))
+                    suspects &= ~far | bits_of(motion.may_reach(x, i, at, gap, sum));
+                marks.exact_near |= far & suspects;
+                suspects &= ~far;
+            }
             if (suspects) refine_primitive(x, s, i, suspects, motion, marks);
             return;
         }
@@ -279,7 +291,18 @@ class Block {
         const float r = robot.spheres[s].r + scene.pair_margin + robot.spheres[other].r;
         const Floats gap = square_distance(at, other_at);
         if (is_cover(s) || is_cover(other)) {
-            const unsigned suspects = bits_of(gap < square_of(marks.growth, r)) & wanted;
+            const unsigned near = bits_of(gap < square_of(marks.growth, r)) & wanted;
+            if (!near) return;
+            const float inner = robot.inner_radii[s], other_inner = robot.inner_radii[other];
+            const float excess = robot.spheres[s].r - inner + robot.spheres[other].r - other_inner;
+            unsigned suspects =
+                settle_inner(gap, near, r - excess, inner < other_inner ? inner : other_inner, marks);
+            if constexpr (Motion::is_moving) {
+                const unsigned far = lanes_moving_far(gap, r, excess, marks.growth) & suspects;
+                if (far) suspects &= ~far | bits_of(relative.may_meet(at, other_at, gap, r));
+                marks.exact_near |= far & suspects;
+                suspects &= ~far;
+            }
             if (suspects) refine_pair(links, s, other, suspects, relative, marks);
             return;
         }
@@ -295,6 +318,19 @@ class Block {
     CSPACE_INLINE bool is_cover(int s) const { return robot.sphere_solids && robot.sphere_solids[s] >= 0; }
     CSPACE_INLINE const Ball& ball_around(int s) const {
         return is_cover(s) ? robot.solid_balls[robot.sphere_solids[s]] : robot.spheres[s];
+    }
+    // Of near lanes, those left once the balls inside the solids have told where these touch for sure.
+    template <class Motion>
+    CSPACE_INLINE unsigned settle_inner(Floats gap, unsigned near, float sum, float inner,
+                                        Marks<Motion>& marks) {
+        const unsigned sure = inner > 0 ? bits_of(gap < fill_floats(sum * sum)) & near : 0u;
+        marks.exact_touching |= sure;
+        return near & ~sure;
+    }
+    // Lanes in which covers do not touch, and move so far that the solids would tell no more.
+    CSPACE_INLINE static unsigned lanes_moving_far(Floats gap, float sum, float excess, Floats growth) {
+        constexpr float share = 2;
+        return bits_of((gap > fill_floats(sum * sum)) & (growth > fill_floats(share * excess)));
     }
     // What a sphere covers against a primitive, in a lane.
     struct PrimitiveTest {

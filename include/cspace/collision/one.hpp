@@ -146,14 +146,30 @@ class OneCheck {
             if (!wanted) continue;
             const bool has_covers = robot_.sphere_solids != nullptr;
             unsigned touching = find_touching(scene_, primitive, chunk_place(c), balls, has_covers);
-            for (; touching; touching &= touching - 1) {
-                const int sphere = robot_.chunks[c].first + lowest_lane(touching);
-                if (is_cover(sphere) && !reaches(body, sphere, primitive)) continue;
-                w_.contact = {robot_.sphere_links[sphere], primitive, false, 0};
-                return true;
-            }
+            if (has_covers && touching) touching = find_reaching(body, c, primitive, touching);
+            if (!touching) continue;
+            const int sphere = robot_.chunks[c].first + lowest_lane(touching);
+            w_.contact = {robot_.sphere_links[sphere], primitive, false, 0};
+            return true;
         }
         return false;
+    }
+    // Of the spheres of a chunk that touch a primitive, one that counts itself or whose solid touches it too.
+    unsigned find_reaching(int body, int c, int primitive, unsigned touching) const {
+        const int first = robot_.chunks[c].first;
+        const Floats inner = load_floats(robot_.inner_radii + first);
+        const unsigned inside = touching & bits_of(inner > 0.0f);
+        const Mover balls{0.0f, inner + scene_.margin, inside};
+        const unsigned sure = inside ? find_touching(scene_, primitive, chunk_place(c), balls, true) : 0u;
+        int last = -1;  // solid that does not touch
+        for (; touching; touching &= touching - 1) {
+            const int lane = lowest_lane(touching), s = first + lane;
+            if (!is_cover(s) || sure >> lane & 1) return 1u << lane;
+            if (robot_.sphere_solids[s] == last) continue;
+            if (reaches(body, s, primitive)) return 1u << lane;
+            last = robot_.sphere_solids[s];
+        }
+        return 0;
     }
     // Whether a sphere only covers a solid; whether the solid touches a primitive, and two of them each
     // other.
@@ -256,6 +272,12 @@ class OneCheck {
             const int c = w_.near_chunks[k];
             const Floats gap = square_distance(at, chunk_place(c));
             unsigned bits = bits_of(gap < square(r + chunk_radii(c))) & w_.near_lanes[k];
+            if (!bits) continue;
+            if (!robot_.sphere_solids) return true;
+            const float inner = robot_.inner_radii[s] + scene_.pair_margin;
+            const Floats others = load_floats(robot_.inner_radii + robot_.chunks[c].first);
+            const FloatMask is_sure = (others > 0.0f) & (gap < square(inner + others));
+            if (robot_.inner_radii[s] > 0 && (bits_of(is_sure) & bits)) return true;
             for (; bits; bits &= bits - 1)
                 if (meets(s, robot_.chunks[c].first + lowest_lane(bits))) return true;
         }

@@ -76,6 +76,9 @@ struct Robot {
     // around the solids, in the frames of their bodies.
     const int* sphere_solids;
     const Ball* solid_balls;
+    // Of each sphere the radius of a ball around its centre that the solid holds, below zero if its centre is
+    // outside.
+    const float* inner_radii;
     const int* pair_numbers;
     const unsigned char* pair_lanes;
     // Bounds [m] on the distance of the sphere centres of a body from the axis of a joint, 0 if it does not

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "cspace/shapes/plain.hpp"
+#include "cspace/shapes/distance.hpp"
 
 namespace cspace::shapes {
 
@@ -63,6 +63,21 @@ inline Vec3d find_center(const Convex& solid) {
     Vec3d sum = solid.points[0];
     for (int i = 1; i < solid.n_points; ++i) sum = sum + solid.points[i];
     return (1.0 / solid.n_points) * sum;
+}
+// How deep a place is inside a solid of one or two points, a box or a cylinder; below zero outside.
+inline double find_depth(const Convex& solid, const Vec3d& place) {
+    switch (solid.core) {
+        case Convex::Core::box:
+            return -distance_from_box(place, solid.pose.t, solid.pose.R, solid.half).value;
+        case Convex::Core::cylinder:
+            return -distance_from_cylinder(place, solid.pose.t, column(solid.pose.R, 2), solid.half.z,
+                                           solid.half.x)
+                        .value;
+        default:
+            return -distance_from_capsule(place, solid.points[0], solid.points[solid.n_points - 1],
+                                          solid.radius)
+                        .value;
+    }
 }
 // How far places of the solid are from its centre.
 inline double bound_size(const Convex& solid) {
