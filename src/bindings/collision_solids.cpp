@@ -88,10 +88,18 @@ std::vector<int> add_solids(SolidPacker& packer, const nb::tuple& shapes, const 
         const auto radius = [&] { return number_in(shape, names.radius); };
         const auto length = [&] { return number_in(shape, names.length); };
         switch (kind) {
-            case Kind::box: packer.add_box(owner, T, numbers_in<3>(shape, names.size).data()); break;
-            case Kind::sphere: packer.add_sphere(owner, T, radius()); break;
-            case Kind::capsule: packer.add_capsule(owner, T, radius(), length()); break;
-            case Kind::cylinder: packer.add_cylinder(owner, T, radius(), length()); break;
+            case Kind::box:
+                packer.add_box(owner, T, numbers_in<3>(shape, names.size).data());
+                break;
+            case Kind::sphere:
+                packer.add_sphere(owner, T, radius());
+                break;
+            case Kind::capsule:
+                packer.add_capsule(owner, T, radius(), length());
+                break;
+            case Kind::cylinder:
+                packer.add_cylinder(owner, T, radius(), length());
+                break;
             default:
                 packer.add_half_space(owner, T, numbers_in<3>(shape, names.normal).data(),
                                       number_in(shape, names.offset));

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "collision_grid.hpp"
 #include "collision_tree.hpp"
 #include "cspace/shapes/plain.hpp"
 
@@ -21,10 +22,11 @@ class CloudData {
     shapes::Distance distance(const Vec3d& point, double limit) const;
 
   private:
+    Bounds bounds_;  // of the points, at last of the balls
     std::vector<double> points_;
     std::vector<TreeNode> nodes_;
     std::vector<float> x_, y_, z_;
-    Bounds bounds_;
+    GridData grid_;
     double radius_;
 };
 

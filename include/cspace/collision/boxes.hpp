@@ -33,7 +33,8 @@ CSPACE_INLINE int list_boxes(const Scene& scene, const float (&low)[3], const fl
     int n = 0;
     for (int first = 0; first < scene.n; first += float_lanes) {
         const auto meets = [&](int k) {
-            return (load_floats(scene.low[k] + first) < high[k]) & (load_floats(scene.high[k] + first) > low[k]);
+            return (load_floats(scene.low[k] + first) < high[k]) &
+                   (load_floats(scene.high[k] + first) > low[k]);
         };
         for (unsigned bits = bits_of(meets(0) & meets(1) & meets(2)); bits; bits &= bits - 1)
             into[n++] = first + lowest_lane(bits);

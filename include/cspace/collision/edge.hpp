@@ -130,8 +130,7 @@ class EdgeCheck {
             // Where a ball of body b may come as near to one of body a as r.
             CSPACE_INLINE FloatMask may_meet(const Place& at, const Place& other, Floats gap, float r) const {
                 const Velocity v = velocity_at(rate, at);
-                const Floats speed =
-                    (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
+                const Floats speed = (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
                 return motion.may_approach(gap, speed, r, kappa);
             }
             // Sets most_growth from the growth of the ball of body b.
@@ -403,8 +402,7 @@ class EdgeCheck {
                 ++kept;
             }
             const Growth growth = is_whole ? body_growth : relative.growth(b);
-            if (block_.may_meet(a, b, sum, growth) &&
-                block_.test_link_pair(links, motion, relative, growth))
+            if (block_.may_meet(a, b, sum, growth) && block_.test_link_pair(links, motion, relative, growth))
                 return true;
         }
         if (is_first_ && kept == 0) w_.kept_pairs[p] = 0;

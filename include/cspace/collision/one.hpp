@@ -79,8 +79,9 @@ class OneCheck {
             const Floats x = load_floats(robot_.body_balls.x + b), y = load_floats(robot_.body_balls.y + b),
                          z = load_floats(robot_.body_balls.z + b);
             for (int r = 0; r < 3; ++r)
-                store_floats(w_.ball_columns + r * stride_ + b,
-                             column(3 * r) * x + (column(3 * r + 1) * y + (column(3 * r + 2) * z + column(9 + r))));
+                store_floats(
+                    w_.ball_columns + r * stride_ + b,
+                    column(3 * r) * x + (column(3 * r + 1) * y + (column(3 * r + 2) * z + column(9 + r))));
         }
     }
     CSPACE_INLINE Place balls_from(int b) const {
@@ -129,7 +130,8 @@ class OneCheck {
                 return found ? 0u : bits_of(all) & moving;
             };
             visit_boxes(scene_, meets, [&](int p, unsigned bits) {
-                for (bits = find_touching(scene_, p, at, Mover{0.0f, r, bits}); bits && !found; bits &= bits - 1)
+                for (bits = find_touching(scene_, p, at, Balls{r, bits}, false); bits && !found;
+                     bits &= bits - 1)
                     found = body_touches(first + lowest_lane(bits), p);
             });
         }
@@ -140,7 +142,7 @@ class OneCheck {
         const BodyChunks& own = robot_.body_chunks[body];
         for (int c = own.first; c < own.first + own.count; ++c) {
             const unsigned wanted = lanes_that_count(c, primitive);
-            const Mover balls{0.0f, chunk_radii(c) + scene_.margin, wanted};
+            const Balls balls = {chunk_radii(c) + scene_.margin, wanted};
             if (!wanted) continue;
             const unsigned touching = find_touching(scene_, primitive, chunk_place(c), balls);
             if (!touching) continue;
@@ -170,7 +172,8 @@ class OneCheck {
                 const Floats reach = load_floats(robot_.body_balls.r + first) + r;
                 const Floats gap = square_distance(balls_from(first), fill_place(ball_center(a)));
                 for (unsigned bits = bits_of(gap < square(reach)) & wanted; bits; bits &= bits - 1)
-                    if (pair_touches(robot_.pair_numbers[a * stride_ + first + lowest_lane(bits)])) return true;
+                    if (pair_touches(robot_.pair_numbers[a * stride_ + first + lowest_lane(bits)]))
+                        return true;
             }
         return false;
     }
