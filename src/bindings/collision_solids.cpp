@@ -17,6 +17,8 @@ using namespace cspace::collision;
 
 namespace {
 
+using AnyTuple = nb::typed<nb::tuple, nb::any, nb::ellipsis>;
+
 enum class Kind { box, sphere, capsule, cylinder, half_space, other };
 constexpr std::size_t known_kinds = std::size_t(Kind::other);
 
@@ -72,7 +74,7 @@ Rows arrays_of(const SolidRows& rows, npy_intp width) {
 }
 
 // Packs the shapes that are solids; the numbers of the others.
-std::vector<int> add_solids(SolidPacker& packer, const nb::tuple& shapes, const nb::tuple& classes) {
+std::vector<int> add_solids(SolidPacker& packer, const AnyTuple& shapes, const AnyTuple& classes) {
     const KindTable kinds(classes);
     const FieldNames names;
     std::vector<int> others;
@@ -113,8 +115,8 @@ SolidPacker packer_in(const ConstDoubles& T_base_world) {
     return SolidPacker(kinematics::read_matrix(T_base_world.data));
 }
 
-std::tuple<Rows, Rows, Rows, Rows, std::vector<int>> pack_solids(const nb::tuple& shapes,
-                                                                 const nb::tuple& classes,
+std::tuple<Rows, Rows, Rows, Rows, std::vector<int>> pack_solids(const AnyTuple& shapes,
+                                                                 const AnyTuple& classes,
                                                                  const ConstDoubles& T_base_world) {
     SolidPacker packer = packer_in(T_base_world);
     std::vector<int> others = add_solids(packer, shapes, classes);
@@ -123,7 +125,7 @@ std::tuple<Rows, Rows, Rows, Rows, std::vector<int>> pack_solids(const nb::tuple
 }
 
 // Null if one of the shapes is no solid.
-std::shared_ptr<SceneData> compile_solids(const nb::tuple& shapes, const nb::tuple& classes,
+std::shared_ptr<SceneData> compile_solids(const AnyTuple& shapes, const AnyTuple& classes,
                                           const ConstDoubles& T_base_world) {
     SolidPacker packer = packer_in(T_base_world);
     return add_solids(packer, shapes, classes).empty() ? std::make_shared<SceneData>(packer.primitives())

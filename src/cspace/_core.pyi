@@ -358,14 +358,14 @@ class CollisionChecker:
     def find_clearance(self, q: numpy.typing.NDArray[numpy.float64]) -> tuple[float, numpy.typing.NDArray[numpy.float64], bool, tuple[bool, int, int] | None]:
         """Distance, gradient, whether another pair is as near, the nearest pair."""
 
-def pack_solids(shapes: tuple, classes: tuple, T_base_world: numpy.typing.NDArray[numpy.float64]) -> tuple[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], list[int]]:
+def pack_solids(shapes: tuple[Any, ...], classes: tuple[Any, ...], T_base_world: numpy.typing.NDArray[numpy.float64]) -> tuple[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], list[int]]:
     """
     Rows of boxes, of capsules, of cylinders and of half spaces, each with the numbers of their
     shapes, and the numbers of the shapes that are none of these. classes: box, sphere, capsule,
     cylinder and half space. T_base_world (4, 4).
     """
 
-def compile_solids(shapes: tuple, classes: tuple, T_base_world: numpy.typing.NDArray[numpy.float64]) -> CollisionScene:
+def compile_solids(shapes: tuple[Any, ...], classes: tuple[Any, ...], T_base_world: numpy.typing.NDArray[numpy.float64]) -> CollisionScene:
     """
     The scene of shapes that all are solids, as by pack_solids; None for others.
     """

@@ -178,8 +178,8 @@ class _Goals:
 
 def _find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> _Goals:
     """The configurations of a goal as `plan` takes it, IK solutions at the turns nearest to the start."""
-    if space.dof != POSE_SIZE and (rows := space.plain_rows(goal)) is not None:
-        return _Goals(rows, "", True)
+    if space.dof != POSE_SIZE and (plain := space.plain_rows(goal)) is not None:
+        return _Goals(plain, "", True)
     if isinstance(goal, Mapping):
         solutions = robot.ik(**goal)
     elif np.shape(goal) == (4, 4) and (space.dof != POSE_SIZE or _is_pose(goal)):

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "collision_grid.hpp"
 #include "collision_tree.hpp"
 #include "cspace/shapes/convex_distance.hpp"
 
@@ -24,10 +25,11 @@ class CloudData {
     shapes::ConvexDistance distance(const shapes::Convex& solid, double limit) const;
 
   private:
+    Bounds bounds_;  // of the points, at last of the balls
     std::vector<double> points_;
     std::vector<TreeNode> nodes_;
     std::vector<float> x_, y_, z_;
-    Bounds bounds_;
+    GridData grid_;
     double radius_;
 
     // Calls visit(ball) for the balls that may be within limit() of a solid, until it returns true.

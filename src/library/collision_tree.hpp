@@ -26,8 +26,8 @@ struct Tree {
 Tree build_tree(const std::vector<Bounds>& items, int leaf_size, double grown);
 
 // Points, three numbers each, in the order of a curve that fills space (Morton 1966, "A computer oriented
-// geodetic data base"): neighbours on it are near each other.
-std::vector<double> sort_points(std::span<const double> points);
+// geodetic data base"): neighbours on it are near each other. all: the box around them.
+std::vector<double> sort_points(std::span<const double> points, const Bounds& all);
 // The tree of points in such an order; `first` of nodes that are no leaves is the first point below them.
 std::vector<TreeNode> build_point_tree(std::span<const double> points, int leaf_size);
 

@@ -26,7 +26,7 @@ Row between(const Row& a, const Row& b, double share) {
 TEST(a_verdict_is_the_sign_of_the_clearance_alone_and_in_a_batch) {
     check::Random random{1};
     int touching = 0;
-    for (int arm = 0; arm < 60; ++arm) {
+    for (int arm = 0; arm < 200; ++arm) {
         const auto cell = check::random_cell(random, 1 + random.below(10), 0, arm % 2);
         const auto memory = cell.checker->borrow_workspace();
         constexpr std::size_t rows = 37;

@@ -55,6 +55,16 @@ struct Mover {
 template <class Growth>
 Mover(float, Growth, unsigned) -> Mover<Growth>;
 
+// Balls that do not move, one per lane.
+struct Balls {
+    Floats r;
+    unsigned wanted;
+    CSPACE_INLINE Floats reach(float radius) const { return square(r + radius); }
+    CSPACE_INLINE Sought seek(float radius, bool any) const {
+        return {reach(radius), reach(radius), wanted, any};
+    }
+};
+
 // Meshes and clouds come last, and are not.
 CSPACE_INLINE bool is_convex(const Scene& scene, int i) {
     return i < scene.n_boxes + scene.n_capsules + scene.n_cylinders + scene.n_half_spaces;
@@ -63,8 +73,8 @@ CSPACE_INLINE bool is_convex(const Scene& scene, int i) {
 // Of primitive i; `radius` receives what it is grown by. In the lanes that are wanted it compares with the
 // squares of r + radius and of the reach as the exact one does; if `any`, in one lane in which the ball may
 // touch the primitive, where there is one.
-template <class Growth>
-CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball,
+template <class AnyBall>
+CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, const AnyBall& ball,
                                 float& radius, bool any = false) {
     if (i < scene.n_boxes) {
         radius = scene.boxes[i].radius;
@@ -94,12 +104,12 @@ CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, cons
     radius = scene.clouds[i].radius;
     return square_gap(scene.clouds[i], at, ball.seek(radius, any));
 }
-// The lanes in which a ball may touch primitive i; at least one of them, or all.
-template <class Growth>
-CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball,
-                                     bool all = false) {
+// The lanes in which a ball may touch primitive i; if `any`, at least one of them.
+template <class AnyBall>
+CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at, const AnyBall& ball,
+                                     bool any = true) {
     float radius;
-    const Floats gap = square_gap(scene, i, at, ball, radius, !all);
+    const Floats gap = square_gap(scene, i, at, ball, radius, any);
     return bits_of(gap < ball.reach(radius)) & ball.wanted;
 }
 

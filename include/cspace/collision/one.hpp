@@ -130,7 +130,7 @@ class OneCheck {
                 return found ? 0u : bits_of(all) & moving;
             };
             visit_boxes(scene_, meets, [&](int p, unsigned bits) {
-                for (bits = find_touching(scene_, p, at, Mover{0.0f, r, bits}, true); bits && !found;
+                for (bits = find_touching(scene_, p, at, Balls{r, bits}, false); bits && !found;
                      bits &= bits - 1)
                     found = body_touches(first + lowest_lane(bits), p);
             });
@@ -142,10 +142,10 @@ class OneCheck {
         const BodyChunks& own = robot_.body_chunks[body];
         for (int c = own.first; c < own.first + own.count; ++c) {
             const unsigned wanted = lanes_that_count(c, primitive);
-            const Mover balls{0.0f, chunk_radii(c) + scene_.margin, wanted};
+            const Balls balls = {chunk_radii(c) + scene_.margin, wanted};
             if (!wanted) continue;
             const bool has_covers = robot_.sphere_solids != nullptr;
-            unsigned touching = find_touching(scene_, primitive, chunk_place(c), balls, has_covers);
+            unsigned touching = find_touching(scene_, primitive, chunk_place(c), balls, !has_covers);
             if (has_covers && touching) touching = find_reaching(body, c, primitive, touching);
             if (!touching) continue;
             const int sphere = robot_.chunks[c].first + lowest_lane(touching);
@@ -159,8 +159,8 @@ class OneCheck {
         const int first = robot_.chunks[c].first;
         const Floats inner = load_floats(robot_.inner_radii + first);
         const unsigned inside = touching & bits_of(inner > 0.0f);
-        const Mover balls{0.0f, inner + scene_.margin, inside};
-        const unsigned sure = inside ? find_touching(scene_, primitive, chunk_place(c), balls, true) : 0u;
+        const Balls balls = {inner + scene_.margin, inside};
+        const unsigned sure = inside ? find_touching(scene_, primitive, chunk_place(c), balls, false) : 0u;
         int last = -1;  // solid that does not touch
         for (; touching; touching &= touching - 1) {
             const int lane = lowest_lane(touching), s = first + lane;

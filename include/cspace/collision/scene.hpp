@@ -49,12 +49,27 @@ struct Mesh {
     float radius;
 };
 
-// Points in the order of their tree, each with the same radius around it.
+// Cells of one size around the points of a cloud. steps: of each cell, rows of x first, then those of y and
+// z; least[steps]: the square of a distance that no place in such a cell is nearer to a point than. Places
+// beyond the cells are no nearer than the cell beside them. ways: how many cells to go along x, y and z to
+// one with a point, as near as the steps say: along z first, then along y and x, each from the cell that was
+// reached. points: of a cell that has some, one of them. No cells: n[0] = 0.
+struct DistanceGrid {
+    const unsigned char* steps;
+    const signed char* ways[3];
+    const int* points;
+    const float* least;
+    float low[3], cells_per_metre;
+    int n[3];
+};
+
+// Points in the order of their tree, each with the same radius around it; eight may be read from any of them.
 struct Cloud {
     const TreeNode* nodes;
     const float *x, *y, *z;
     int n_nodes;
     float radius;
+    DistanceGrid grid;
 };
 
 // The exact test of a robot's convex solids: their covers only tell where it is needed. frame: of the body

@@ -13,7 +13,7 @@ from cspace._core import CollisionChecker, CollisionRobot, CollisionScene, compi
 from cspace.arrays import Array, bounded_number
 from cspace.collision.exact_solids import join_shapes, place_shape, split_shapes
 from cspace.collision.pack_scene import SOLIDS, PackedScene, pack_obstacles
-from cspace.collision.robot_geometry import RobotGeometry
+from cspace.collision.robot_geometry import NO_PAIRS, RobotGeometry
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import LARGEST_NUMBER
@@ -23,9 +23,6 @@ KEPT_CHECKERS: Final = 8
 
 ATTACHED_COVER: Final = 0.005
 """Excess [m] of the spheres that cover an attached object."""
-
-NO_PAIRS: Final = np.empty((0, 2), dtype=np.int64)
-"""What may touch if nothing is allowed to."""
 
 NOTHING: Final = Scene()
 """The scene without obstacles."""

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from cspace._core import CollisionRobot
+from cspace._core import CollisionChecker, CollisionRobot, compile_solids
 from cspace.arrays import Array, positive_number
 from cspace.collision.exact_solids import PlacedShapes, join_shapes, place_shape
 from cspace.collision.link_pairs import SAMPLES, Allowed, adjacent_pairs, always_touching
@@ -29,6 +29,12 @@ FREE_TRAVEL: Final = 1.0
 """How far prismatic joints without limits move in samples [m]."""
 
 Integers = npt.NDArray[np.int64]
+
+NO_PAIRS: Final[Integers] = np.empty((0, 2), dtype=np.int64)
+"""No links are checked against each other, or nothing may touch."""
+
+EMPTY_SCENE: Final = compile_solids((), (), np.eye(4))
+"""No obstacles, compiled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,8 +184,7 @@ def robot_geometry(
     ]
     adjacent = adjacent_pairs(link_bodies.tolist(), assembly.parent.tolist())
     radii = split_rows(spheres[:, 3], sphere_links)
-    pairs, allowed = choose_pairs(description, links, link_bodies, adjacent, centers, radii)
-    return RobotGeometry(
+    geometry = RobotGeometry(
         robot=robot.name,
         source="capsules of the skeleton" if skeleton else "collision elements of the description",
         reason="" if len(spheres) else missing_reason(robot, description),
@@ -190,8 +195,8 @@ def robot_geometry(
         solids=placed.solids,
         sphere_solids=placed.sphere_solids,
         excess=placed.excess,
-        pairs=np.array(pairs, dtype=np.int64).reshape(-1, 2),
-        allowed=tuple(allowed),
+        pairs=NO_PAIRS,
+        allowed=(),
         joints=joint_rows(assembly, mount),
         lower=np.array(robot.limits.lower),
         upper=np.array(robot.limits.upper),
@@ -199,6 +204,9 @@ def robot_geometry(
         T_world_base=mount,
         frames=frames,
     )
+    pairs, allowed = choose_pairs(description, geometry, adjacent, samples, centers, radii)
+    rows = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    return replace(geometry, pairs=rows, allowed=tuple(allowed), _kept={})
 
 
 def frames_on_base(assembly: Assembly, T_world_base: Array) -> dict[str, tuple[int, Array]]:
@@ -251,18 +259,32 @@ def split_rows(rows: Array, owners: Integers) -> list[Array]:
     return np.split(rows, np.flatnonzero(np.diff(owners)) + 1) if len(rows) else []
 
 
+def meets_always(geometry: RobotGeometry, pair: tuple[int, int], samples: Array) -> bool:
+    """Whether two links whose spheres touch in all samples do so as they are: solids are less than covers."""
+    if not len(geometry.solids):
+        return True
+    travel = geometry.lower + geometry.upper
+    if not np.isfinite(travel[list(geometry.prismatic)]).all():
+        return True  # no checks are made for such a robot
+    pairs = np.array([pair], dtype=np.int64)
+    core = geometry.compile(geometry.link_bodies, geometry.shapes, geometry.sphere_links, pairs)
+    checker = CollisionChecker(core, EMPTY_SCENE, 0.0, NO_PAIRS)
+    return bool(checker.check_rows(np.ascontiguousarray(samples), 1).all())
+
+
 def choose_pairs(
     description: Description,
-    links: Sequence[str],
-    bodies: Integers,
+    geometry: RobotGeometry,
     adjacent: Sequence[tuple[int, int]],
+    samples: Array,
     centers: Sequence[Array],
     radii: Sequence[Array],
 ) -> tuple[list[tuple[int, int]], list[Allowed]]:
     """The pairs of links that are checked, by number, and the others with their reasons.
 
-    centers: per link those of its spheres at samples (samples, n, 3) [m]; radii (n,).
+    centers: per link those of its spheres at the samples (samples, n, 3) [m]; radii (n,).
     """
+    links, bodies = geometry.links, geometry.link_bodies
     reasons = {pair: "adjacent" for pair in adjacent}
     number = {name: k for k, name in enumerate(links)}
     for a, b, why in description.allowed_pairs:
@@ -271,6 +293,7 @@ def choose_pairs(
     every = [(a, b) for a in range(len(links)) for b in range(a + 1, len(links)) if bodies[a] != bodies[b]]
     always = f"touch at each of {SAMPLES} random configurations"
     open_pairs = [pair for pair in every if pair not in reasons]
-    reasons |= dict.fromkeys(always_touching(open_pairs, centers, radii), always)
+    touching = always_touching(open_pairs, centers, radii)
+    reasons |= dict.fromkeys([pair for pair in touching if meets_always(geometry, pair, samples)], always)
     allowed = [(links[a], links[b], reasons[a, b]) for a, b in every if (a, b) in reasons]
     return [pair for pair in every if pair not in reasons], allowed
