@@ -15,6 +15,7 @@ from cspace.arrays import Array, positive_number
 from cspace.collision.exact_solids import PlacedShapes, join_shapes, place_shape
 from cspace.collision.link_pairs import SAMPLES, Allowed, adjacent_pairs, always_touching
 from cspace.collision.link_shapes import Solids, described_solids, skeleton_solids
+from cspace.collision.pack_scene import SOLIDS
 from cspace.errors import InputError, suggest
 from cspace.kinematics import Assembly, KinematicModel, random_configurations
 from cspace.model import Description
@@ -33,7 +34,7 @@ Integers = npt.NDArray[np.int64]
 NO_PAIRS: Final[Integers] = np.empty((0, 2), dtype=np.int64)
 """No links are checked against each other, or nothing may touch."""
 
-EMPTY_SCENE: Final = compile_solids((), (), np.eye(4))
+EMPTY_SCENE: Final = compile_solids((), SOLIDS, np.eye(4))
 """No obstacles, compiled."""
 
 
@@ -44,11 +45,11 @@ class RobotGeometry:
 
     robot: the name. source: what the spheres are made from. reason: why there are none. links: names of the
     links with spheres; link_bodies (n,): what carries each, 0 the base and k + 1 joint k. spheres (m, 4):
-    centres and radii [m] in the frame of the body; sphere_links (m,): the link of each. solids (s, 16): boxes,
-    cylinders and capsules, which are taken exactly; sphere_solids (m,): the solid that a sphere only helps to
-    cover, −1 where the sphere itself counts. excess [m]: no sphere that counts sticks out of the shapes of its
-    link by more. pairs (k, 2): links that are checked against each other.
-    allowed: pairs of links that are not, with the reason.
+    centres and radii [m] in the frame of the body; sphere_links (m,): the link of each. solids (s, 16):
+    boxes, cylinders and capsules, which are taken exactly; sphere_solids (m,): the solid that a sphere only
+    helps to cover, −1 where the sphere itself counts. excess [m]: no sphere that counts sticks out of the
+    shapes of its link by more. pairs (k, 2): links that are checked against each other. allowed: pairs of
+    links that are not, with the reason.
 
     joints (j, 21): T_parent_joint by rows, parent, coordinate, ratio, offset, prismatic, the base at the
     origin. lower, upper (dof,): limits. joint_names. T_world_base (4, 4). frames: name → (joint that carries
@@ -184,7 +185,7 @@ def robot_geometry(
     ]
     adjacent = adjacent_pairs(link_bodies.tolist(), assembly.parent.tolist())
     radii = split_rows(spheres[:, 3], sphere_links)
-    geometry = RobotGeometry(
+    without_pairs = RobotGeometry(
         robot=robot.name,
         source="capsules of the skeleton" if skeleton else "collision elements of the description",
         reason="" if len(spheres) else missing_reason(robot, description),
@@ -204,9 +205,9 @@ def robot_geometry(
         T_world_base=mount,
         frames=frames,
     )
-    pairs, allowed = choose_pairs(description, geometry, adjacent, samples, centers, radii)
+    pairs, allowed = choose_pairs(description, without_pairs, adjacent, samples, centers, radii)
     rows = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-    return replace(geometry, pairs=rows, allowed=tuple(allowed), _kept={})
+    return replace(without_pairs, pairs=rows, allowed=tuple(allowed), _kept={})
 
 
 def frames_on_base(assembly: Assembly, T_world_base: Array) -> dict[str, tuple[int, Array]]:
@@ -242,7 +243,7 @@ def missing_reason(robot: KinematicModel, description: Description) -> str:
 def place_links(
     solids: Solids, frames: Mapping[str, tuple[int, Array]], cover: float
 ) -> tuple[tuple[str, ...], Integers, PlacedShapes, Integers]:
-    """Links in the order of their bodies, the bodies, shapes in the frames of bodies, links of the spheres."""
+    """Links in the order of their bodies, the bodies, shapes in their frames, the links of the spheres."""
     order = sorted(solids, key=lambda name: frames[name][0])
     parts: list[PlacedShapes] = []
     owners: list[int] = []
