@@ -43,6 +43,9 @@ SceneData::SceneData(const Primitives& given)
                                   std::fabs(R[3 * k + 2]) * half[2];
             low[k] = c[k] - extent, high[k] = c[k] + extent;
         }
+        const float* axes = box.axes;
+        box.is_upright =
+            axes[2] == 0 && axes[5] == 0 && axes[6] == 0 && axes[7] == 0 && std::fabs(axes[8]) == 1;
         const double grown = rounding_of({norm(c), norm(half)});
         box.radius = float(grown);
         boxes_.push_back(box);

@@ -10,11 +10,14 @@ CSPACE_INLINE Floats clamp_positive(Floats x) { return max(x, fill_floats(0.0f))
 
 CSPACE_INLINE Floats square_gap(const Box& box, const Place& at) {
     const Floats x = at.x - box.center[0], y = at.y - box.center[1], z = at.z - box.center[2];
-    const auto beyond = [&](int k) {
-        const float* axis = box.axes + 3 * k;
-        return clamp_positive(abs(x * axis[0] + (y * axis[1] + z * axis[2])) - box.half[k]);
-    };
-    return square(beyond(0)) + square(beyond(1)) + square(beyond(2));
+    const auto beyond = [&](Floats along, int k) { return clamp_positive(abs(along) - box.half[k]); };
+    const float *a = box.axes, *b = a + 3, *c = a + 6;
+    if (box.is_upright)  // the same sums without their zeros
+        return square(beyond(x * a[0] + y * a[1], 0)) + square(beyond(x * b[0] + y * b[1], 1)) +
+               square(beyond(z, 2));
+    return square(beyond(x * a[0] + (y * a[1] + z * a[2]), 0)) +
+           square(beyond(x * b[0] + (y * b[1] + z * b[2]), 1)) +
+           square(beyond(x * c[0] + (y * c[1] + z * c[2]), 2));
 }
 CSPACE_INLINE Floats square_gap(const Capsule& capsule, const Place& at) {
     const float* v = capsule.along;

@@ -7,6 +7,7 @@ namespace cspace::collision {
 
 struct Box {
     float center[3], axes[9], half[3], radius;  // axes: row k is the k-th axis of the box
+    bool is_upright;                            // the third axis is ± z
 };
 struct Capsule {
     float start[3], along[3], inverse_square, radius;  // inverse_square: 1 / |along|², 0 for a sphere
