@@ -25,10 +25,25 @@ std::vector<std::pair<int, int>> read_pairs(const Integers& given) {
     return pairs;
 }
 
+// Rows (16): 0 for a box, 1 a cylinder, 2 a capsule; half sides of a box, or radius twice and half length;
+// the pose in the frame of its body, R by rows, then p. A capsule lies along z like a cylinder.
+shapes::Convex read_solid(const double* row) {
+    const double* r = row + 4;
+    const Posed pose = {{{{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}}}, {r[9], r[10], r[11]}};
+    if (row[0] == 0) return shapes::make_box(pose, {row[1], row[2], row[3]});
+    if (row[0] == 1) return shapes::make_cylinder(pose, row[1], row[3]);
+    const Vec3d ends[] = {pose * Vec3d{0, 0, -row[3]}, pose * Vec3d{0, 0, row[3]}};
+    return shapes::make_points(ends, 2, row[1]);
+}
+
 // joints (n, 21): the pose T_parent_joint by rows, parent, coordinate, ratio, offset, prismatic.
 std::shared_ptr<RobotData> make_robot(const ConstDoubles& joints, const ConstDoubles& bounds,
                                       const Integers& link_bodies, const ConstDoubles& spheres,
-                                      const Integers& sphere_links, const Integers& pairs) {
+                                      const Integers& sphere_links, const Integers& pairs,
+                                      const ConstDoubles& solids, const Integers& sphere_solids) {
+    constexpr npy_intp solid_width = 16;
+    require(solids.ndim() == 2 && solids.shape(1) == solid_width && sphere_solids.size == sphere_links.size,
+            "solids must be an array (n, 16), with the solid of each sphere");
     constexpr npy_intp joint_width = 21;
     require(joints.ndim() == 2 && joints.shape(1) == joint_width, "joints must be an array (n, 21)");
     require(bounds.ndim() == 2 && bounds.shape(0) == 2, "bounds must be an array (2, n)");
@@ -41,12 +56,15 @@ std::shared_ptr<RobotData> make_robot(const ConstDoubles& joints, const ConstDou
     std::vector<Sphere> balls;
     for (npy_intp k = 0; k < sphere_links.size; ++k) {
         const double* row = spheres.data + 4 * k;
-        balls.push_back({{row[0], row[1], row[2]}, row[3], int(sphere_links.data[k])});
+        balls.push_back(
+            {{row[0], row[1], row[2]}, row[3], int(sphere_links.data[k]), int(sphere_solids.data[k])});
     }
+    std::vector<shapes::Convex> exact;
+    for (npy_intp k = 0; k < solids.shape(0); ++k) exact.push_back(read_solid(solids.data + solid_width * k));
     const std::vector<int> bodies(link_bodies.data, link_bodies.data + link_bodies.size);
     const std::size_t n = std::size_t(bounds.shape(1));
     return std::make_shared<RobotData>(read, int(n), std::span(bounds.data, n), std::span(bounds.data + n, n),
-                                       bodies, balls, read_pairs(pairs));
+                                       bodies, balls, read_pairs(pairs), exact);
 }
 
 std::vector<int> read_integers(const Integers& given) { return {given.data, given.data + given.size}; }
@@ -139,9 +157,9 @@ std::tuple<double, Doubles, bool, std::optional<NamedContact>> find_clearance(co
 }  // namespace
 
 void bind_collision(nb::module_& m) {
-    nb::class_<RobotData>(m, "CollisionRobot", "A robot made of spheres.")
+    nb::class_<RobotData>(m, "CollisionRobot", "A robot made of spheres and solids.")
         .def(nb::new_(&make_robot), "joints"_a, "bounds"_a, "link_bodies"_a, "spheres"_a, "sphere_links"_a,
-             "pairs"_a);
+             "pairs"_a, "solids"_a, "sphere_solids"_a);
     nb::class_<SceneData>(m, "CollisionScene", "Obstacles in the frame of a robot's base.")
         .def(nb::new_(&make_scene), "boxes"_a, "capsules"_a, "cylinders"_a, "half_spaces"_a, "triangles"_a,
              "mesh_sizes"_a, "is_solid"_a, "points"_a, "cloud_sizes"_a, "cloud_radii"_a, "owners"_a);

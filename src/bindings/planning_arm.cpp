@@ -39,6 +39,39 @@ struct NamedPlan {
     }
 };
 
+// Numbers of a list or tuple of rows of equal length, one below the other; an array of no size for others.
+Doubles read_nested_rows(PyObject* value, npy_intp width) {
+    const bool is_sequence = PyList_CheckExact(value) || PyTuple_CheckExact(value);
+    const Py_ssize_t n = is_sequence ? PySequence_Fast_GET_SIZE(value) : 0;
+    Doubles rows({n, width});
+    for (Py_ssize_t i = 0; i < n; ++i) {
+        double* const row = rows.data + i * width;
+        const double* numbers = read_in_place(PySequence_Fast_ITEMS(value)[i], 0, width, row);
+        if (!numbers) return Doubles({0, width});
+        if (numbers != row) std::copy_n(numbers, width, row);
+    }
+    return rows;
+}
+// One configuration (dof,) or several (n, dof) as rows, n > 0, of numbers that are finite and not beyond
+// ±largest. None for everything else, which Python converts or names.
+std::optional<ConstDoubles> as_rows(nb::handle value, int dof, double largest) {
+    ConstDoubles rows;
+    const npy_intp width = dof;
+    if (PyArray_CheckExact(value.ptr())) {
+        if (!rows.read(value.ptr()) || rows.ndim() < 1 || rows.ndim() > 2 ||
+            rows.shape(rows.ndim() - 1) != width)
+            return std::nullopt;
+        if (rows.ndim() == 1) rows.read(Doubles({1, width}, rows.data).array.ptr());
+    } else {
+        Doubles one({1, width});
+        const bool is_one = read_sequence(value.ptr(), width, one.data);
+        rows.read((is_one ? one : read_nested_rows(value.ptr(), width)).array.ptr());
+    }
+    const bool all_fit = std::all_of(rows.data, rows.data + rows.size,
+                                     [&](double number) { return std::fabs(number) <= largest; });
+    return all_fit && rows.size > 0 ? std::optional(rows) : std::nullopt;
+}
+
 ArmSpace read_space(const collision::Checker& checker, const ConstDoubles& bounds, const Bytes& wraps) {
     require(bounds.ndim() == 2 && bounds.shape(0) == 2 && bounds.shape(1) == checker.dof(),
             "bounds must be an array (2, dof)");
@@ -129,6 +162,8 @@ void bind_planning_arm(nb::module_& m) {
                 return std::tuple(name_contact(*p.checker, p.plan.blocker), p.plan.blocker_edges);
             },
             "What blocked most edges, and how many.");
+    m.def("as_rows", &as_rows, "value"_a, "dof"_a, "largest"_a,
+          "Configurations (dof,) or (n, dof) of numbers up to ±largest as rows; None for anything else.");
     m.def("plan_arm", &plan_one, "checker"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a, "options"_a,
           nb::keep_alive<0, 1>(), "From any of the starts (s, dof) to any of the goals (g, dof).");
     m.def("plan_arms", &plan_each, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a, "threads"_a,

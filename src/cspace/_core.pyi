@@ -332,9 +332,9 @@ def measure_cover(vertices: numpy.typing.NDArray[numpy.float64], faces: numpy.ty
     """
 
 class CollisionRobot:
-    """A robot made of spheres."""
+    """A robot made of spheres and solids."""
 
-    def __init__(self, joints: numpy.typing.NDArray[numpy.float64], bounds: numpy.typing.NDArray[numpy.float64], link_bodies: numpy.typing.NDArray[numpy.int64], spheres: numpy.typing.NDArray[numpy.float64], sphere_links: numpy.typing.NDArray[numpy.int64], pairs: numpy.typing.NDArray[numpy.int64]) -> None: ...
+    def __init__(self, joints: numpy.typing.NDArray[numpy.float64], bounds: numpy.typing.NDArray[numpy.float64], link_bodies: numpy.typing.NDArray[numpy.int64], spheres: numpy.typing.NDArray[numpy.float64], sphere_links: numpy.typing.NDArray[numpy.int64], pairs: numpy.typing.NDArray[numpy.int64], solids: numpy.typing.NDArray[numpy.float64], sphere_solids: numpy.typing.NDArray[numpy.int64]) -> None: ...
 
 class CollisionScene:
     """Obstacles in the frame of a robot's base."""
@@ -357,6 +357,18 @@ class CollisionChecker:
 
     def find_clearance(self, q: numpy.typing.NDArray[numpy.float64]) -> tuple[float, numpy.typing.NDArray[numpy.float64], bool, tuple[bool, int, int] | None]:
         """Distance, gradient, whether another pair is as near, the nearest pair."""
+
+def pack_solids(shapes: tuple[Any, ...], classes: tuple[Any, ...], T_base_world: numpy.typing.NDArray[numpy.float64]) -> tuple[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int64]], list[int]]:
+    """
+    Rows of boxes, of capsules, of cylinders and of half spaces, each with the numbers of their
+    shapes, and the numbers of the shapes that are none of these. classes: box, sphere, capsule,
+    cylinder and half space. T_base_world (4, 4).
+    """
+
+def compile_solids(shapes: tuple[Any, ...], classes: tuple[Any, ...], T_base_world: numpy.typing.NDArray[numpy.float64]) -> CollisionScene:
+    """
+    The scene of shapes that all are solids, as by pack_solids; None for others.
+    """
 
 class ArmOptions:
     """Options of plans of arms."""
@@ -404,6 +416,11 @@ class ArmPlan:
     @property
     def blocker(self) -> tuple[tuple[bool, int, int] | None, int]:
         """What blocked most edges, and how many."""
+
+def as_rows(value: object, dof: int, largest: float) -> numpy.typing.NDArray[numpy.float64] | None:
+    """
+    Configurations (dof,) or (n, dof) of numbers up to ±largest as rows; None for anything else.
+    """
 
 def plan_arm(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions) -> ArmPlan:
     """From any of the starts (s, dof) to any of the goals (g, dof)."""

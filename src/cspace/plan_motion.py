@@ -27,6 +27,9 @@ Seed = int | np.random.Generator | None
 GOAL_SAMPLES: Final = 16
 """Configurations that are looked for where a goal leaves freedom."""
 
+POSE_SIZE: Final = 4
+"""Rows and columns of a pose: as many configurations of an arm with four joints look like one."""
+
 MOST_THREADS: Final = 1024
 """Threads that are believed."""
 
@@ -175,9 +178,11 @@ class _Goals:
 
 def _find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> _Goals:
     """The configurations of a goal as `plan` takes it, IK solutions at the turns nearest to the start."""
+    if space.dof != POSE_SIZE and (plain := space.plain_rows(goal)) is not None:
+        return _Goals(plain, "", True)
     if isinstance(goal, Mapping):
         solutions = robot.ik(**goal)
-    elif np.shape(goal) == (4, 4) and (space.dof != 4 or _is_pose(goal)):
+    elif np.shape(goal) == (4, 4) and (space.dof != POSE_SIZE or _is_pose(goal)):
         solutions = robot.ik(goal)
     else:
         if isinstance(goal, str) or np.ndim(goal) not in (1, 2):

@@ -1,6 +1,7 @@
 #include "collision.hpp"
 
 #include "cspace/collision/edge.hpp"
+#include "cspace/collision/one.hpp"
 #include "cspace/collision/rows.hpp"
 
 namespace cspace::collision::inline CSPACE_ISA {
@@ -8,6 +9,7 @@ namespace cspace::collision::inline CSPACE_ISA {
 void prepare_workspace(const Robot& robot, Workspace& w) {
     set_identity(static_cast<Frame*>(w.frames)[0]);
     set_resting(static_cast<Rate*>(w.rates)[0]);
+    place_base(robot, w);
     w.n_order = 0;
     for (Touch& touch : w.touches) touch = {};
     for (int b = robot.n_bodies - 1; b > 0; --b)
@@ -22,6 +24,10 @@ int prove_edge(const Robot& robot, const Scene& scene, Workspace& w, const float
 int sample_edge(const Robot& robot, const Scene& scene, Workspace& w, const float* from, const float* to,
                 int n) {
     return EdgeCheck(robot, scene, w, from, to).sample(n) ? 0 : 1;
+}
+
+bool touches_something(const Robot& robot, const Scene& scene, Workspace& w, const float* q) {
+    return OneCheck(robot, scene, w).find_contact(q);
 }
 
 unsigned check_rows(const Robot& robot, const Scene& scene, Workspace& w, const float* columns, int count) {

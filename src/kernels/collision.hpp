@@ -15,6 +15,10 @@ CSPACE_NARROW_KERNEL(cspace::collision, int, prove_edge,
 CSPACE_NARROW_KERNEL(cspace::collision, int, sample_edge,
                      (const cspace::collision::Robot& robot, const cspace::collision::Scene& scene,
                       cspace::collision::Workspace& w, const float* from, const float* to, int n))
+// Whether one configuration touches something, and what.
+CSPACE_NARROW_KERNEL(cspace::collision, bool, touches_something,
+                     (const cspace::collision::Robot& robot, const cspace::collision::Scene& scene,
+                      cspace::collision::Workspace& w, const float* q))
 // Bit i: whether row i of up to eight configurations touches something. columns: row k has coordinate k of
 // each, eight of them.
 CSPACE_NARROW_KERNEL(cspace::collision, unsigned, check_rows,

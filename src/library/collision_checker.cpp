@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include "cspace/math/threads.hpp"
@@ -46,6 +47,14 @@ std::size_t lay_out(const Robot& robot, int n_primitives, std::byte* memory, Wor
     bytes(w.body_places, bodies, place);
     bytes(w.link_places, links, place);
     bytes(w.sphere_places, spheres, place);
+    const std::size_t stride = std::size_t(robot.body_stride);  // more than there are joints
+    bytes(w.one_frames, bodies, 12 * sizeof(float));
+    arena.take(w.joint_columns, 3 * stride, sizeof(float));
+    arena.take(w.frame_columns, 12 * stride, sizeof(float));
+    arena.take(w.ball_columns, 3 * stride, sizeof(float));
+    arena.take(w.sphere_columns, 3 * std::size_t(robot.n_chunks), lane_bytes);
+    arena.take(w.near_chunks, std::size_t(robot.n_chunks) + 1, sizeof(int));
+    arena.take(w.near_lanes, std::size_t(robot.n_chunks) + 1, sizeof(unsigned));
     arena.take(w.body_stamps, bodies, sizeof(unsigned));
     arena.take(w.link_stamps, links, sizeof(unsigned));
     arena.take(w.group_stamps, groups, sizeof(unsigned));
@@ -68,6 +77,15 @@ std::size_t lay_out(const Robot& robot, int n_primitives, std::byte* memory, Wor
     return arena.used();
 }
 
+// R by rows, then p.
+Posed read_frame(const float* f) {
+    return {{{{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}}}, {f[9], f[10], f[11]}};
+}
+
+void write_normal(const Vec3d& n, float* normal) {
+    normal[0] = float(n.x), normal[1] = float(n.y), normal[2] = float(n.z);
+}
+
 }  // namespace
 
 void WorkspaceMemory::Free::operator()(std::byte* p) const {
@@ -77,8 +95,9 @@ void WorkspaceMemory::Free::operator()(std::byte* p) const {
 WorkspaceMemory::WorkspaceMemory(const Robot& robot, int n_primitives) {
     const std::size_t size = lay_out(robot, n_primitives, nullptr, w);
     memory_.reset(static_cast<std::byte*>(::operator new(size, std::align_val_t(alignment))));
-    std::fill_n(memory_.get(), size, std::byte(0));
     lay_out(robot, n_primitives, memory_.get(), w);
+    // The stack is last, and read where it was written.
+    std::fill(memory_.get(), reinterpret_cast<std::byte*>(w.stack), std::byte(0));
     kernels::prepare_workspace(robot, w);
 }
 
@@ -86,6 +105,7 @@ Checker::Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const S
                  double margin, std::span<const std::pair<int, int>> allowed)
     : robot_(std::move(robot)), data_(std::move(scene)), scene_(data_->view()) {
     scene_.margin = scene_.pair_margin = float(margin) + robot_->slack();
+    scene_.exact = {this, &reaches_primitive, &measure_primitive, &reaches_sphere, &measure_sphere};
     if (!allowed.empty()) {
         allowed_.assign(std::size_t(this->robot().n_links) * std::size_t(scene_.n), 0);
         for (const auto& [link, object] : allowed)
@@ -103,8 +123,41 @@ Checker::Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const S
     check_base();
 }
 
+bool Checker::reaches_primitive(const void* owner, int sphere, const float* frame, int primitive, float gap) {
+    const Checker& checker = *static_cast<const Checker*>(owner);
+    const shapes::Convex solid = checker.robot_->solid_of(sphere);
+    return checker.data_->is_within(primitive, move_solid(read_frame(frame), solid), double(gap));
+}
+bool Checker::reaches_sphere(const void* owner, int sphere, const float* frame, int other,
+                             const float* other_frame, float gap) {
+    const RobotData& robot = *static_cast<const Checker*>(owner)->robot_;
+    return shapes::is_within(move_solid(read_frame(frame), robot.solid_of(sphere)),
+                             move_solid(read_frame(other_frame), robot.solid_of(other)), double(gap));
+}
+
+float Checker::measure_primitive(const void* owner, int sphere, const float* frame, int primitive,
+                                 float* normal) {
+    const Checker& checker = *static_cast<const Checker*>(owner);
+    const shapes::Convex solid = move_solid(read_frame(frame), checker.robot_->solid_of(sphere));
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto found = checker.data_->distance(primitive, solid, infinity);
+    const bool has_normal = found && checker.data_->is_convex(primitive);
+    write_normal(has_normal ? found->normal : Vec3d{0, 0, 0}, normal);
+    return found ? round_low(found->value) : 0.0f;
+}
+float Checker::measure_sphere(const void* owner, int sphere, const float* frame, int other,
+                              const float* other_frame, float* normal) {
+    const RobotData& robot = *static_cast<const Checker*>(owner)->robot_;
+    const shapes::ConvexDistance found =
+        shapes::measure_distance(move_solid(read_frame(frame), robot.solid_of(sphere)),
+                                 move_solid(read_frame(other_frame), robot.solid_of(other)));
+    write_normal(found.normal, normal);
+    return round_low(found.value);
+}
+
 // The base does not move: it is checked once, here.
 void Checker::check_base() {
+    constexpr float base_frame[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
     const Robot& all = robot();
     const Body& base = all.bodies[0];
     base_contact_ = {};
@@ -113,7 +166,8 @@ void Checker::check_base() {
             for (int s = all.groups[g].first; s < all.groups[g].first + all.groups[g].count; ++s)
                 for (int i = 0; i < scene_.n; ++i) {
                     if (scene_.allowed && scene_.allowed[l * scene_.n + i]) continue;
-                    if (kernels::ball_touches(scene_, i, all.spheres[s])) {
+                    if (kernels::ball_touches(scene_, i, all.spheres[s]) &&
+                        (!all.sphere_solids || reaches_primitive(this, s, base_frame, i, scene_.margin))) {
                         base_contact_ = {l, i, false, 0};
                         return;
                     }
@@ -157,7 +211,7 @@ bool Checker::is_free(const double* q, WorkspaceMemory& memory) const {
     }
     float a[most_coordinates], b[most_coordinates];
     round_edge(q, q, a, b);
-    return kernels::sample_edge(robot(), scene_, memory.w, a, b, 1) == 0;
+    return !kernels::touches_something(robot(), scene_, memory.w, a);
 }
 
 void Checker::check_rows(const double* q, std::size_t n, std::uint8_t* collides, int threads) const {

@@ -91,6 +91,15 @@ class Checker {
     mutable std::vector<std::unique_ptr<WorkspaceMemory>> spare_;
 
     void check_base();
+    // The exact tests of kernels; owner: a checker.
+    static bool reaches_primitive(const void* owner, int sphere, const float* frame, int primitive,
+                                  float gap);
+    static float measure_primitive(const void* owner, int sphere, const float* frame, int primitive,
+                                   float* normal);
+    static bool reaches_sphere(const void* owner, int sphere, const float* frame, int other,
+                               const float* other_frame, float gap);
+    static float measure_sphere(const void* owner, int sphere, const float* frame, int other,
+                                const float* other_frame, float* normal);
 };
 
 }  // namespace cspace::collision

@@ -3,6 +3,7 @@
 
 #include "collision_checker.hpp"
 #include "cspace/kinematics/jacobian.hpp"
+#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/distance.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -26,37 +27,39 @@ std::vector<Posed> place_bodies(std::span<const model::Joint> joints, const doub
     return bodies;
 }
 
+// A sphere of a link, or a convex solid that its spheres cover.
+struct Part {
+    int link, solid;  // solid −1: a sphere
+    Vec3d center;
+    double size;  // how far its places are from the centre
+    shapes::Convex shape;
+};
+
 class Search {
   public:
     Search(const RobotData& robot, const Scene& scene, const SceneData& data, const double* q)
         : robot_(robot), scene_(scene), data_(data), bodies_(place_bodies(robot.given_joints(), q)) {
-        for (const Sphere& sphere : robot.given_spheres())
-            centers_.push_back(bodies_[std::size_t(body_of(sphere.link))] * sphere.center);
+        list_parts();
         result_.distance = std::numeric_limits<double>::infinity();
         result_.gradient.assign(std::size_t(robot.view().n_coordinates), 0.0);
     }
 
     Clearance run() {
-        const auto spheres = robot_.given_spheres();
-        for (std::size_t s = 0; s < spheres.size(); ++s) {
-            const int link = spheres[s].link;
-            const double r = spheres[s].radius;
-            const auto limit = [&] { return result_.distance + r + tolerance::same_distance; };
-            data_.visit_near(centers_[s], limit, [&](int i) {
-                if (scene_.allowed && scene_.allowed[link * scene_.n + i]) return;
-                const shapes::Distance d = data_.distance(i, centers_[s], limit());
-                offer({link, i, false, 0}, d.value - r, d.normal, centers_[s], link, centers_[s], -1);
-            });
-        }
+        for (const Part& part : parts_)
+            data_.visit_near(
+                part.center, [&] { return limit() + part.size; },
+                [&](int i) {
+                    if (scene_.allowed && scene_.allowed[part.link * scene_.n + i]) return;
+                    if (part.solid < 0)
+                        offer_sphere(part.link, part.center, part.size, i);
+                    else
+                        offer_solid(part, i);
+                });
         for (const auto& [a, b] : robot_.given_pairs())
-            for (std::size_t s = 0; s < spheres.size(); ++s) {
-                if (spheres[s].link != a) continue;
-                for (std::size_t t = 0; t < spheres.size(); ++t) {
-                    if (spheres[t].link != b) continue;
-                    const shapes::Distance d = shapes::from_place(centers_[s], centers_[t], 0);
-                    offer({a, b, true, 0}, d.value - spheres[s].radius - spheres[t].radius, d.normal,
-                          centers_[s], a, centers_[t], b);
-                }
+            for (const Part& one : parts_) {
+                if (one.link != a) continue;
+                for (const Part& other : parts_)
+                    if (other.link == b) offer_pair(one, other);
             }
         return result_;
     }
@@ -66,8 +69,50 @@ class Search {
     const Scene& scene_;
     const SceneData& data_;
     std::vector<Posed> bodies_;
-    std::vector<Vec3d> centers_;
+    std::vector<Part> parts_;
     Clearance result_;
+
+    void list_parts() {
+        int last = -1;  // solid; its spheres come one after the other
+        for (const Sphere& sphere : robot_.given_spheres()) {
+            const Posed& body = bodies_[std::size_t(body_of(sphere.link))];
+            if (sphere.solid < 0) {
+                const Vec3d center = body * sphere.center;
+                parts_.push_back(
+                    {sphere.link, -1, center, sphere.radius, shapes::make_ball(center, sphere.radius)});
+            } else if (sphere.solid != last) {
+                const shapes::Convex solid =
+                    shapes::move_solid(body, robot_.given_solids()[std::size_t(sphere.solid)]);
+                parts_.push_back({sphere.link, sphere.solid, shapes::find_center(solid),
+                                  shapes::bound_size(solid), solid});
+            }
+            last = sphere.solid;
+        }
+    }
+
+    double limit() const { return result_.distance + tolerance::same_distance; }
+    void offer_sphere(int link, const Vec3d& center, double r, int i) {
+        const shapes::Distance d = data_.distance(i, center, limit() + r);
+        offer({link, i, false, 0}, d.value - r, d.normal, center, link, center, -1);
+    }
+    // Where the solid touches a mesh, its cover tells how deep.
+    void offer_solid(const Part& part, int i) {
+        if (const auto d = data_.distance(i, part.shape, limit()))
+            return offer({part.link, i, false, 0}, d->value, d->normal, d->first, part.link, d->first, -1);
+        const Posed& body = bodies_[std::size_t(body_of(part.link))];
+        for (const Sphere& sphere : robot_.given_spheres())
+            if (sphere.solid == part.solid) offer_sphere(part.link, body * sphere.center, sphere.radius, i);
+    }
+    void offer_pair(const Part& a, const Part& b) {
+        const Contact pair = {a.link, b.link, true, 0};
+        const shapes::Distance d = shapes::from_place(a.center, b.center, 0);
+        const double least = d.value - a.size - b.size;
+        if (a.solid < 0 && b.solid < 0)
+            return offer(pair, least, d.normal, a.center, a.link, b.center, b.link);
+        if (least > limit()) return;
+        const shapes::ConvexDistance found = shapes::measure_distance(a.shape, b.shape);
+        offer(pair, found.value, found.normal, found.first, a.link, found.second, b.link);
+    }
 
     int body_of(int link) const { return robot_.view().links[link].body; }
 

@@ -10,26 +10,29 @@ namespace cspace::collision {
 
 namespace {
 
-constexpr int leaf_size = 16;  // points: a point takes a third of the time of a box
+constexpr float far_away = 1e18f;  // its square is finite
+constexpr int leaf_size = 16;      // points: a point takes a third of the time of a box
 
 }  // namespace
 
 CloudData::CloudData(std::span<const double> points, double radius)
-    : points_(sort_points(points)),
+    : bounds_(bound_points(points)),
+      points_(sort_points(points, bounds_)),
       nodes_(build_point_tree(points_, leaf_size)),
-      bounds_(bound_points(points)),
       radius_(radius) {
     const std::size_t n = points.size() / 3;
-    x_.resize(n), y_.resize(n), z_.resize(n);
+    for (std::vector<float>* column : {&x_, &y_, &z_}) column->assign(n + 8, far_away);
     visit_range(0, n, [&](std::size_t i) {
         const double* p = &points_[3 * i];
         x_[i] = float(p[0]), y_[i] = float(p[1]), z_[i] = float(p[2]);
     });
+    grid_ = GridData(std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n), bounds_);
     for (std::size_t k = 0; k < 3; ++k) bounds_.low[k] -= radius, bounds_.high[k] += radius;
 }
 
 Cloud CloudData::view() const {
-    return {nodes_.data(), x_.data(), y_.data(), z_.data(), int(nodes_.size()), round_high(radius_)};
+    return {nodes_.data(),      x_.data(),           y_.data(),   z_.data(),
+            int(nodes_.size()), round_high(radius_), grid_.view()};
 }
 
 shapes::Distance CloudData::distance(const Vec3d& point, double limit) const {
@@ -46,6 +49,24 @@ shapes::Distance CloudData::distance(const Vec3d& point, double limit) const {
     });
     if (found < 0) return {infinity, {0, 0, 1}};
     return shapes::from_place(point, place(found), radius_);
+}
+
+bool CloudData::is_within(const shapes::Convex& solid, double gap) const {
+    return visit_balls(
+        solid, [&] { return gap; },
+        [&](const shapes::Convex& ball) { return shapes::is_within(solid, ball, gap); });
+}
+
+shapes::ConvexDistance CloudData::distance(const shapes::Convex& solid, double limit) const {
+    shapes::ConvexDistance best = shapes::nothing_near(shapes::find_center(solid));
+    visit_balls(
+        solid, [&] { return std::min(limit, best.value); },
+        [&](const shapes::Convex& ball) {
+            const shapes::ConvexDistance d = shapes::measure_distance(solid, ball);
+            if (d.value < best.value) best = d;
+            return false;
+        });
+    return best;
 }
 
 }  // namespace cspace::collision

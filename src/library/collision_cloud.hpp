@@ -4,8 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "collision_grid.hpp"
 #include "collision_tree.hpp"
-#include "cspace/shapes/plain.hpp"
+#include "cspace/shapes/convex_distance.hpp"
 
 namespace cspace::collision {
 
@@ -19,13 +20,29 @@ class CloudData {
     const Bounds& bounds() const { return bounds_; }
     // The distance of a point from the nearest ball, up to `limit`; some distance beyond it elsewhere.
     shapes::Distance distance(const Vec3d& point, double limit) const;
+    // Whether a convex solid comes within a gap of a ball; and its distance, up to `limit`.
+    bool is_within(const shapes::Convex& solid, double gap) const;
+    shapes::ConvexDistance distance(const shapes::Convex& solid, double limit) const;
 
   private:
+    Bounds bounds_;  // of the points, at last of the balls
     std::vector<double> points_;
     std::vector<TreeNode> nodes_;
     std::vector<float> x_, y_, z_;
-    Bounds bounds_;
+    GridData grid_;
     double radius_;
+
+    // Calls visit(ball) for the balls that may be within limit() of a solid, until it returns true.
+    template <class Limit, class Visit>
+    bool visit_balls(const shapes::Convex& solid, const Limit& limit, const Visit& visit) const {
+        const double size = shapes::bound_size(solid) + radius_;
+        return visit_near(
+            nodes_, shapes::find_center(solid), [&] { return size + limit(); },
+            [&](int k) {
+                const double* p = &points_[3 * std::size_t(k)];
+                return visit(shapes::make_ball({p[0], p[1], p[2]}, radius_));
+            });
+    }
 };
 
 }  // namespace cspace::collision

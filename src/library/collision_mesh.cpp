@@ -143,6 +143,35 @@ bool MeshData::contains(const Vec3d& point) const {
     return exits > 0.5;
 }
 
+bool MeshData::is_within(const shapes::Convex& solid, double gap) const {
+    const Vec3d center = shapes::find_center(solid);
+    const double reach = shapes::bound_size(solid) + gap;
+    const auto touches = [&](int k) { return shapes::is_within(solid, triangle_at(k), gap); };
+    return visit_near(nodes_, center, [&] { return reach; }, touches) || contains(center);
+}
+
+std::optional<shapes::ConvexDistance> MeshData::distance(const shapes::Convex& solid, double limit) const {
+    const Vec3d center = shapes::find_center(solid);
+    const double size = shapes::bound_size(solid);
+    if (contains(center)) return {};
+    shapes::ConvexDistance best = shapes::nothing_near(center);
+    const bool touches = visit_near(
+        nodes_, center, [&] { return size + std::min(limit, best.value); },
+        [&](int k) {
+            const shapes::ConvexDistance d = shapes::measure_distance(solid, triangle_at(k));
+            if (d.value < best.value) best = d;
+            return d.value <= 0;
+        });
+    if (touches) return {};
+    return best;
+}
+
+shapes::Convex MeshData::triangle_at(int k) const {
+    const Corners& t = corners_[std::size_t(k)];
+    const Vec3d points[] = {t.a, t.b, t.c};
+    return shapes::make_points(points, 3, 0);
+}
+
 shapes::Distance MeshData::distance(const Vec3d& point, double limit) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const bool is_inside = contains(point);

@@ -57,22 +57,38 @@ Joint rounded_joint(const model::Joint& given) {
     return joint;
 }
 
+// A sphere of the view, and the solid that it covers.
+struct OwnedBall {
+    Ball ball;
+    int solid;
+};
+
 // Orders spheres so that those near each other come together: halves along the longest side, again and again.
-void cluster(std::span<Ball> spheres, std::vector<std::size_t>& sizes) {
+void cluster(std::span<OwnedBall> spheres, std::vector<std::size_t>& sizes) {
     if (spheres.size() <= spheres_of_group) return sizes.push_back(spheres.size());
     float low[3] = {1e30f, 1e30f, 1e30f}, high[3] = {-1e30f, -1e30f, -1e30f};
     const auto part = [](const Ball& b, int k) { return k == 0 ? b.x : k == 1 ? b.y : b.z; };
-    for (const Ball& s : spheres)
+    for (const OwnedBall& s : spheres)
         for (int k = 0; k < 3; ++k)
-            low[k] = std::min(low[k], part(s, k)), high[k] = std::max(high[k], part(s, k));
+            low[k] = std::min(low[k], part(s.ball, k)), high[k] = std::max(high[k], part(s.ball, k));
     int longest = 0;
     for (int k = 1; k < 3; ++k)
         if (high[k] - low[k] > high[longest] - low[longest]) longest = k;
     const auto middle = spheres.size() / 2;
     std::nth_element(spheres.begin(), spheres.begin() + std::ptrdiff_t(middle), spheres.end(),
-                     [&](const Ball& a, const Ball& b) { return part(a, longest) < part(b, longest); });
+                     [&](const OwnedBall& a, const OwnedBall& b) {
+                         return part(a.ball, longest) < part(b.ball, longest);
+                     });
     cluster(spheres.first(middle), sizes);
     cluster(spheres.subspan(middle), sizes);
+}
+
+// Of a ball that a solid holds, around the centre of one that covers it.
+float inner_radius(const shapes::Convex& solid, const Ball& ball) {
+    const Vec3d center = {ball.x, ball.y, ball.z};
+    const double depth = shapes::find_depth(solid, center);
+    const double rounding = (double(ball.r) + norm(center)) * tolerance::float_rounding;
+    return depth > rounding ? std::min(ball.r, rounded(depth - rounding)) : -1.0f;
 }
 
 // How far the slide of a prismatic joint can take what it carries.
@@ -88,10 +104,12 @@ double travel_of(const model::Joint& joint, std::span<const double> lower, std::
 
 RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, std::span<const double> lower,
                      std::span<const double> upper, std::span<const int> link_bodies,
-                     std::span<const Sphere> spheres, std::span<const std::pair<int, int>> pairs)
+                     std::span<const Sphere> spheres, std::span<const std::pair<int, int>> pairs,
+                     std::span<const shapes::Convex> solids)
     : given_joints_(joints.begin(), joints.end()),
       given_spheres_(spheres.begin(), spheres.end()),
-      given_pairs_(pairs.begin(), pairs.end()) {
+      given_pairs_(pairs.begin(), pairs.end()),
+      given_solids_(solids.begin(), solids.end()) {
     view_.n_coordinates = n_coordinates;
     check_order(joints, link_bodies, spheres, pairs);
     constexpr double largest = 1e12;  // of an angle
@@ -110,9 +128,11 @@ RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, st
     view_.n_joints = int(joints_.size()), view_.n_bodies = int(bodies_.size()),
     view_.n_coordinates = n_coordinates;
     view_.body_stride = padded(view_.n_bodies);
+    add_solids();
     add_pairs(pairs);
     view_.pair_stride = padded(int(pairs_.size()));
     bound_levers(joints, lower, upper);
+    add_columns();
     view_.joints = joints_.data(), view_.bodies = bodies_.data(), view_.links = links_.data();
     view_.groups = groups_.data(), view_.spheres = spheres_.data();
     view_.pairs = pairs_.data(), view_.link_pairs = link_pairs_.data();
@@ -144,10 +164,40 @@ void RobotData::check_order(std::span<const model::Joint> joints, std::span<cons
         require(is_below(spheres[s].link, link_bodies.size()) &&
                     (s == 0 || spheres[s - 1].link <= spheres[s].link),
                 "spheres must come in the order of their links");
+    for (const Sphere& sphere : spheres)
+        require(sphere.solid == -1 || is_below(sphere.solid, given_solids_.size()),
+                "the solids of spheres must be numbers of solids, or -1");
     for (const auto& [a, b] : pairs)
         require(is_below(a, link_bodies.size()) && is_below(b, link_bodies.size()) &&
                     link_bodies[std::size_t(a)] != link_bodies[std::size_t(b)],
                 "pairs must be links of two bodies");
+}
+
+shapes::Convex RobotData::solid_of(int sphere) const {
+    const int solid = sphere_solids_.empty() ? -1 : sphere_solids_[std::size_t(sphere)];
+    if (solid >= 0) return given_solids_[std::size_t(solid)];
+    const Ball& ball = spheres_[std::size_t(sphere)];
+    return shapes::make_ball({ball.x, ball.y, ball.z}, ball.r);
+}
+
+void RobotData::add_solids() {
+    if (std::all_of(sphere_solids_.begin(), sphere_solids_.end(), [](int solid) { return solid < 0; }))
+        sphere_solids_.clear();
+    for (const shapes::Convex& solid : given_solids_) {
+        const Vec3d center = shapes::find_center(solid);
+        const double reach = norm(center) + shapes::bound_size(solid);
+        solid_balls_.push_back({rounded(center.x), rounded(center.y), rounded(center.z),
+                                rounded(shapes::bound_size(solid) + reach * tolerance::float_rounding)});
+    }
+    for (std::size_t s = 0; s < spheres_.size(); ++s) {
+        const Ball& ball = spheres_[s];
+        const int solid = sphere_solids_.empty() ? -1 : sphere_solids_[s];
+        inner_radii_.push_back(solid < 0 ? ball.r : inner_radius(given_solids_[std::size_t(solid)], ball));
+    }
+    inner_radii_.resize(spheres_.size() + lanes, -1.0f);
+    view_.inner_radii = inner_radii_.data();
+    view_.sphere_solids = sphere_solids_.empty() ? nullptr : sphere_solids_.data();
+    view_.solid_balls = solid_balls_.data();
 }
 
 void RobotData::add_links(std::span<const int> link_bodies, std::span<const Sphere> spheres) {
@@ -155,24 +205,27 @@ void RobotData::add_links(std::span<const int> link_bodies, std::span<const Sphe
     for (std::size_t l = 0; l < link_bodies.size(); ++l) {
         Link link = {link_bodies[l], int(groups_.size()), 0, {0, 0, 0, 0}};
         const std::size_t first = spheres_.size();
+        std::vector<OwnedBall> own;
         for (; next < spheres.size() && spheres[next].link == int(l); ++next) {
             const Sphere& s = spheres[next];
-            spheres_.push_back(
-                {rounded(s.center.x), rounded(s.center.y), rounded(s.center.z), rounded(s.radius)});
+            own.push_back({{rounded(s.center.x), rounded(s.center.y), rounded(s.center.z), rounded(s.radius)},
+                           s.solid});
         }
-        const std::span<Ball> own = std::span(spheres_).subspan(first);
         std::vector<std::size_t> sizes;
         if (own.size() > most_spheres_in_group)
             cluster(own, sizes);
         else if (!own.empty())
             sizes.push_back(own.size());
+        for (const OwnedBall& each : own) spheres_.push_back(each.ball), sphere_solids_.push_back(each.solid);
         std::size_t at = first;
         for (const std::size_t size : sizes) {
             groups_.push_back({int(at), int(size), ball_around(std::span(spheres_).subspan(at, size))});
             at += size;
         }
         link.count = int(sizes.size());
-        if (!own.empty()) link.ball = link.count == 1 ? groups_.back().ball : ball_around(own);
+        if (!own.empty())
+            link.ball =
+                link.count == 1 ? groups_.back().ball : ball_around(std::span(spheres_).subspan(first));
         Body& body = bodies_[std::size_t(link.body)];
         if (body.count == 0) body.first = int(l);
         ++body.count;
@@ -207,13 +260,51 @@ void RobotData::add_pairs(std::span<const std::pair<int, int>> pairs) {
     }
 }
 
+void RobotData::Columns::assign(std::span<const Ball> balls, int padded_size) {
+    for (std::vector<float>* column : {&x, &y, &z, &r}) column->assign(std::size_t(padded_size), 0.0f);
+    for (std::size_t i = 0; i < balls.size(); ++i)
+        x[i] = balls[i].x, y[i] = balls[i].y, z[i] = balls[i].z, r[i] = balls[i].r;
+}
+
+void RobotData::add_columns() {
+    constexpr float no_radius = -3e38f;
+    const std::size_t stride = std::size_t(view_.body_stride);
+    std::vector<Ball> balls(stride, {0, 0, 0, no_radius});
+    for (const Link& link : links_)
+        for (int g = link.first; g < link.first + link.count; ++g)
+            sphere_links_.insert(sphere_links_.end(), std::size_t(groups_[std::size_t(g)].count),
+                                 int(&link - links_.data()));
+    std::size_t next = 0;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const std::size_t first = next;
+        while (next < spheres_.size() && links_[std::size_t(sphere_links_[next])].body == int(b)) ++next;
+        if (next > first) balls[b] = bodies_[b].ball;
+        body_chunks_.push_back({int(chunks_.size()), padded(int(next - first)) / lanes});
+        for (std::size_t s = first; s < next; s += lanes)
+            chunks_.push_back({int(s), int(std::min<std::size_t>(lanes, next - s))});
+    }
+    body_columns_.assign(balls, int(stride));
+    sphere_columns_.assign(spheres_, int(spheres_.size()) + lanes);
+    pair_numbers_.assign(bodies_.size() * stride, -1);
+    pair_lanes_.assign(bodies_.size() * stride / lanes, 0);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const std::size_t at = std::size_t(pairs_[p].a) * stride + std::size_t(pairs_[p].b);
+        pair_numbers_[at] = int(p);
+        pair_lanes_[at / lanes] |= static_cast<unsigned char>(1u << at % lanes);
+    }
+    view_.body_balls = body_columns_.view(), view_.sphere_columns = sphere_columns_.view();
+    view_.chunks = chunks_.data(), view_.body_chunks = body_chunks_.data();
+    view_.sphere_links = sphere_links_.data(), view_.n_chunks = int(chunks_.size());
+    view_.pair_numbers = pair_numbers_.data(), view_.pair_lanes = pair_lanes_.data();
+}
+
 void RobotData::bound_levers(std::span<const model::Joint> joints, std::span<const double> lower,
                              std::span<const double> upper) {
     constexpr double least = 1e-6;  // a joint on whose axis a body lies moves it nevertheless
     constexpr double round_up = 1 + 1e-6;
     const auto radial = [](const Vec3d& p) { return std::hypot(p.x, p.y); };
     const auto travel = [&](const model::Joint& joint) { return travel_of(joint, lower, upper); };
-    // Distances of the sphere centres of body b from its own axis and its origin.
+    // Distances of the sphere centres of body b from its own axis and its origin; of covers, of all places.
     const auto extent = [&](int b, bool from_axis) {
         double farthest = 0;
         const Body& body = bodies_[std::size_t(b)];
@@ -224,7 +315,9 @@ void RobotData::bound_levers(std::span<const model::Joint> joints, std::span<con
                 for (int s = group.first; s < group.first + group.count; ++s) {
                     const Ball& ball = spheres_[std::size_t(s)];
                     const Vec3d c = {ball.x, ball.y, ball.z};
-                    farthest = std::max(farthest, from_axis ? radial(c) : std::hypot(c.x, c.y, c.z));
+                    const bool is_cover = !sphere_solids_.empty() && sphere_solids_[std::size_t(s)] >= 0;
+                    farthest = std::max(farthest, (from_axis ? radial(c) : std::hypot(c.x, c.y, c.z)) +
+                                                      (is_cover ? double(ball.r) : 0.0));
                 }
             }
         }

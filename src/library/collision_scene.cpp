@@ -43,6 +43,9 @@ SceneData::SceneData(const Primitives& given)
                                   std::fabs(R[3 * k + 2]) * half[2];
             low[k] = c[k] - extent, high[k] = c[k] + extent;
         }
+        const float* axes = box.axes;
+        box.is_upright =
+            axes[2] == 0 && axes[5] == 0 && axes[6] == 0 && axes[7] == 0 && std::fabs(axes[8]) == 1;
         const double grown = rounding_of({norm(c), norm(half)});
         box.radius = float(grown);
         boxes_.push_back(box);
@@ -99,6 +102,8 @@ SceneData::SceneData(const Primitives& given)
     add_meshes(given);
     add_clouds(given);
     build_boxes();
+    const int n = int(low_[0].size());
+    pad_bounds();
     view_ = {boxes_.data(),
              capsules_.data(),
              cylinders_.data(),
@@ -111,7 +116,7 @@ SceneData::SceneData(const Primitives& given)
              int(half_spaces_.size()),
              int(meshes_.size()),
              int(clouds_.size()),
-             int(low_[0].size()),
+             n,
              {low_[0].data(), low_[1].data(), low_[2].data()},
              {high_[0].data(), high_[1].data(), high_[2].data()},
              tree_.nodes.data(),
@@ -119,7 +124,8 @@ SceneData::SceneData(const Primitives& given)
              int(tree_.nodes.size()),
              nullptr,
              0,
-             0};
+             0,
+             {}};
 }
 
 shapes::Distance SceneData::distance(int primitive, const Vec3d& point, double limit) const {
@@ -148,6 +154,60 @@ shapes::Distance SceneData::distance(int primitive, const Vec3d& point, double l
     i -= half_spaces_.size();
     if (i < mesh_data_.size()) return mesh_data_[i].distance(point, limit);
     return cloud_data_[i - mesh_data_.size()].distance(point, limit);
+}
+
+template <class OnConvex, class OnHalfSpace, class OnMesh, class OnCloud>
+auto SceneData::visit_primitive(int primitive, const OnConvex& on_convex, const OnHalfSpace& on_half_space,
+                                const OnMesh& on_mesh, const OnCloud& on_cloud) const {
+    const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
+    std::size_t i = std::size_t(primitive);
+    if (i < boxes_.size()) {
+        const double* row = &box_rows_[15 * i];
+        const Mat3d R = {{{row[3], row[4], row[5]}, {row[6], row[7], row[8]}, {row[9], row[10], row[11]}}};
+        return on_convex(shapes::make_box({R, vector(row)}, vector(row + 12)));
+    }
+    i -= boxes_.size();
+    if (i < capsules_.size()) {
+        const double* row = &capsule_rows_[7 * i];
+        const Vec3d ends[] = {vector(row), vector(row + 3)};
+        return on_convex(shapes::make_points(ends, 2, row[6]));
+    }
+    i -= capsules_.size();
+    if (i < cylinders_.size()) {
+        const double* row = &cylinder_rows_[8 * i];
+        return on_convex(shapes::make_cylinder({frame_along(vector(row + 3)), vector(row)}, row[7], row[6]));
+    }
+    i -= cylinders_.size();
+    if (i < half_spaces_.size()) {
+        const double* row = &half_space_rows_[4 * i];
+        return on_half_space(vector(row), row[3]);
+    }
+    i -= half_spaces_.size();
+    if (i < mesh_data_.size()) return on_mesh(mesh_data_[i]);
+    return on_cloud(cloud_data_[i - mesh_data_.size()]);
+}
+
+bool SceneData::is_within(int primitive, const shapes::Convex& solid, double gap) const {
+    const auto is_near = [&](const auto& data) { return data.is_within(solid, gap); };
+    return visit_primitive(
+        primitive, [&](const shapes::Convex& other) { return shapes::is_within(solid, other, gap); },
+        [&](const Vec3d& normal, double offset) {
+            return shapes::measure_above(solid, normal, offset).value <= gap;
+        },
+        is_near, is_near);
+}
+
+std::optional<shapes::ConvexDistance> SceneData::distance(int primitive, const shapes::Convex& solid,
+                                                          double limit) const {
+    using Found = std::optional<shapes::ConvexDistance>;
+    const auto measure = [&](const auto& data) -> Found { return data.distance(solid, limit); };
+    return visit_primitive(
+        primitive,
+        [&](const shapes::Convex& other) -> Found { return shapes::measure_distance(solid, other); },
+        [&](const Vec3d& normal, double offset) -> Found {
+            return shapes::measure_above(solid, normal, offset);
+        },
+        measure, measure);
 }
 
 void SceneData::add_meshes(const Primitives& given) {
@@ -185,6 +245,12 @@ void SceneData::build_boxes() {
     tree_ = build_tree(boxes, leaf_size, 0);
 }
 
+void SceneData::pad_bounds() {
+    constexpr std::size_t lanes = 8;
+    constexpr float beyond = 3e38f;
+    const std::size_t padded = (low_[0].size() + lanes - 1) / lanes * lanes;
+    for (int k = 0; k < 3; ++k) low_[k].resize(padded, beyond), high_[k].resize(padded, -beyond);
+}
 void SceneData::add_bounds(const Bounds& box, double grown) {
     add_bounds({box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}, grown);
 }

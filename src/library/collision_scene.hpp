@@ -1,6 +1,7 @@
 // The owner of a scene's primitives, rounded to float in the frame of the robot's base.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,8 +28,14 @@ class SceneData {
     explicit SceneData(const Primitives& given);
     const Scene& view() const { return view_; }  // without margins, and nothing allowed
     int owner(int primitive) const { return owners_[std::size_t(primitive)]; }
+    bool is_convex(int primitive) const { return primitive < view_.n - view_.n_meshes - view_.n_clouds; }
     // The distance of a point from a primitive, in double; some distance beyond `limit` where it is larger.
     shapes::Distance distance(int primitive, const Vec3d& point, double limit) const;
+    // Whether a convex solid comes within a gap of a primitive.
+    bool is_within(int primitive, const shapes::Convex& solid, double gap) const;
+    // The distance of a convex solid, in double, up to `limit`; none where it touches a mesh.
+    std::optional<shapes::ConvexDistance> distance(int primitive, const shapes::Convex& solid,
+                                                   double limit) const;
 
     // Calls visit(primitive) for those whose boxes are within limit() of a point; it may shrink meanwhile.
     template <class Limit, class Visit>
@@ -60,9 +67,14 @@ class SceneData {
     std::vector<int> owners_;
     std::vector<float> low_[3], high_[3];
 
+    // What primitive i is: calls one of them with it.
+    template <class OnConvex, class OnHalfSpace, class OnMesh, class OnCloud>
+    auto visit_primitive(int primitive, const OnConvex& on_convex, const OnHalfSpace& on_half_space,
+                         const OnMesh& on_mesh, const OnCloud& on_cloud) const;
     void add_meshes(const Primitives& given);
     void add_clouds(const Primitives& given);
     void build_boxes();
+    void pad_bounds();
     void add_bounds(const Bounds& box, double grown);
     void add_bounds(const double (&low)[3], const double (&high)[3], double grown);
 };

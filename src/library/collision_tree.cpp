@@ -101,7 +101,7 @@ class Builder {
 // Keys of points: the place on the curve above the number of the point. The bits of a place are sorted by
 // digits.
 using Key = std::uint64_t;
-constexpr int digit_bits = 11, digits = 4, most_axis_bits = 14;  // three axes in four digits
+constexpr int digit_bits = 11, digits = 3, most_axis_bits = digit_bits;  // as many digits as axes
 
 struct Curve {
     std::vector<Key> keys;
@@ -109,7 +109,7 @@ struct Curve {
     std::size_t point(std::size_t i) const { return std::size_t(keys[i] & ((Key(1) << index_bits) - 1)); }
 };
 
-// The lowest 14 bits of x, two zeros behind each.
+// The lowest bits of x, up to 16, two zeros behind each.
 Key spread_bits(Key x) {
     x = (x | x << 16) & 0x0000ff0000ff;
     x = (x | x << 8) & 0x00f00f00f00f;
@@ -197,8 +197,8 @@ Bounds bound_points(std::span<const double> points) {
     return all;
 }
 
-std::vector<double> sort_points(std::span<const double> points) {
-    Curve curve = place_on_curve(points, bound_points(points));
+std::vector<double> sort_points(std::span<const double> points, const Bounds& all) {
+    Curve curve = place_on_curve(points, all);
     sort_keys(curve);
     std::vector<double> sorted(points.size());
     visit_range(0, curve.keys.size(), [&](std::size_t i) {

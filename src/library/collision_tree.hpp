@@ -26,8 +26,8 @@ struct Tree {
 Tree build_tree(const std::vector<Bounds>& items, int leaf_size, double grown);
 
 // Points, three numbers each, in the order of a curve that fills space (Morton 1966, "A computer oriented
-// geodetic data base"): neighbours on it are near each other.
-std::vector<double> sort_points(std::span<const double> points);
+// geodetic data base"): neighbours on it are near each other. all: the box around them.
+std::vector<double> sort_points(std::span<const double> points, const Bounds& all);
 // The tree of points in such an order; `first` of nodes that are no leaves is the first point below them.
 std::vector<TreeNode> build_point_tree(std::span<const double> points, int leaf_size);
 
@@ -39,6 +39,30 @@ Bounds bound_all(const std::vector<Bounds>& items);
 // Rounded down, and up.
 float round_low(double x);
 float round_high(double x);
+
+// Calls visit(item) for the items of leaves whose boxes are within limit() of a point, which may shrink
+// meanwhile, until it returns true; whether it did.
+template <class Limit, class Visit>
+bool visit_near(std::span<const TreeNode> nodes, const Vec3d& point, const Limit& limit, const Visit& visit) {
+    const double at[] = {point.x, point.y, point.z};
+    for (std::size_t i = 0; i < nodes.size();) {
+        const TreeNode& node = nodes[i];
+        const double reach = limit();
+        double square = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double beyond = std::max({double(node.low[k]) - at[k], at[k] - double(node.high[k]), 0.0});
+            square += beyond * beyond;
+        }
+        if (!(reach >= 0 && square <= reach * reach)) {
+            i = std::size_t(node.next);
+            continue;
+        }
+        for (int k = node.first; k < node.first + node.count; ++k)
+            if (visit(k)) return true;
+        ++i;
+    }
+    return false;
+}
 
 // The item that is nearest to a point; −1 if none is nearer than the root of `least`, which receives the
 // square of its distance. measure(item) is the square of the distance of an item.

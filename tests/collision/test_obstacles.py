@@ -103,3 +103,26 @@ def test_paths_are_planned_around_meshes_and_clouds():
         assert plan
         for a, b in zip(plan.path[:-1], plan.path[1:], strict=True):
             assert robot.edge(a, b, scene)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_solids_are_the_same_beside_a_mesh_out_of_reach(seed):
+    """Scenes of solids alone are packed in the core, others by arrays; a base that is mounted counts in both."""
+    rng = np.random.default_rng(seed)
+    robot = random_robot(seed).with_base(random_pose(rng, 0.5))
+    solids = [
+        cs.Box(rng.uniform(0.1, 0.5, 3), random_pose(rng, 1.2)),
+        cs.Sphere(0.2, rng.uniform(-1, 1, 3)),
+        cs.Capsule(0.1, 0.4, random_pose(rng, 1.2)),
+        cs.Cylinder(0.15, 0.5, random_pose(rng, 1.2)),
+        cs.HalfSpace(rng.normal(size=3), -1.0, random_pose(rng, 0.2)),
+    ]
+    vertices, faces = box_mesh([0.1, 0.1, 0.1])
+    scene = cs.Scene(solids)
+    beside = scene.add(cs.Mesh(vertices, faces, [500.0, 0.0, 0.0]))
+    q = robot.random_configuration(200, rng=seed, reach=1.0)
+    np.testing.assert_array_equal(robot.collides(q, scene), robot.collides(q, beside))
+    np.testing.assert_array_equal([robot.collides(row, scene) for row in q], robot.collides(q, scene))
+    found, again = robot.clearance(q, scene), robot.clearance(q, beside)
+    np.testing.assert_array_equal(found.distance, again.distance)
+    assert found.pair == again.pair

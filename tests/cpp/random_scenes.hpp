@@ -14,6 +14,7 @@ struct RandomCell {
     std::vector<double> lower, upper;
     std::vector<int> link_bodies;
     std::vector<cspace::collision::Sphere> spheres;
+    std::vector<cspace::shapes::Convex> solids;
     std::vector<std::pair<int, int>> pairs;
     std::vector<double> boxes, capsules, cylinders, half_spaces, triangles, points, cloud_radii;
     std::vector<int> mesh_sizes, is_solid, cloud_sizes, owners;
@@ -71,9 +72,24 @@ inline void add_mesh(Random& random, RandomCell& cell, const cspace::Vec3d& cent
     cell.is_solid.push_back(random.uniform(0, 1) < 0.67);
 }
 
+// A box, cylinder or capsule in the frame of a body, and the ball around it for a cover.
+inline void add_solid(Random& random, RandomCell& cell, int link, const cspace::Vec3d& center) {
+    using namespace cspace;
+    const Posed pose = {random_rotation(random), center};
+    const auto size = [&] { return random.uniform(0.01, 0.12); };
+    const Vec3d ends[] = {center, pose * Vec3d{0, 0, 2 * size()}};
+    const int kind = random.below(3);
+    const shapes::Convex solid = kind == 0   ? shapes::make_box(pose, {size(), size(), size()})
+                                 : kind == 1 ? shapes::make_cylinder(pose, size(), size())
+                                             : shapes::make_points(ends, 2, size() / 2);
+    cell.spheres.push_back(
+        {shapes::find_center(solid), shapes::bound_size(solid), link, int(cell.solids.size())});
+    cell.solids.push_back(solid);
+}
+
 // A tree of n joints: some prismatic, some that mimic another, one link or two per body, up to 20 spheres a
-// link; every pair of bodies that are not neighbours is checked.
-inline RandomCell random_cell(Random& random, int n, double margin = 0) {
+// link, and solids if asked for; every pair of bodies that are not neighbours is checked.
+inline RandomCell random_cell(Random& random, int n, double margin = 0, bool has_solids = false) {
     using namespace cspace;
     RandomCell cell;
     int coordinates = 0;
@@ -96,6 +112,8 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
             const int link = int(cell.link_bodies.size());
             cell.link_bodies.push_back(b);
             const Vec3d center = 0.15 * random.vector();
+            for (int s = has_solids ? random.below(3) : 0; s > 0; --s)
+                add_solid(random, cell, link, center + 0.1 * random.vector());
             for (int s = random.uniform(0, 1) < 0.3 ? 20 : 1 + random.below(4); s > 0; --s)
                 cell.spheres.push_back({center + 0.1 * random.vector(), random.uniform(0.01, 0.06), link});
         }
@@ -149,7 +167,7 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0) {
             if (cell.link_bodies[l] == 0 || random.uniform(0, 1) < 0.02) allowed.push_back({int(l), int(i)});
     cell.checker = std::make_unique<collision::Checker>(
         std::make_shared<collision::RobotData>(cell.joints, coordinates, cell.lower, cell.upper,
-                                               cell.link_bodies, cell.spheres, cell.pairs),
+                                               cell.link_bodies, cell.spheres, cell.pairs, cell.solids),
         std::make_shared<collision::SceneData>(collision::Primitives{
             cell.boxes, cell.capsules, cell.cylinders, cell.half_spaces, cell.triangles, cell.points,
             cell.cloud_radii, cell.mesh_sizes, cell.is_solid, cell.cloud_sizes, cell.owners}),

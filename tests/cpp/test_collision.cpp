@@ -26,8 +26,8 @@ Row between(const Row& a, const Row& b, double share) {
 TEST(a_verdict_is_the_sign_of_the_clearance_alone_and_in_a_batch) {
     check::Random random{1};
     int touching = 0;
-    for (int arm = 0; arm < 60; ++arm) {
-        const auto cell = check::random_cell(random, 1 + random.below(10));
+    for (int arm = 0; arm < 200; ++arm) {
+        const auto cell = check::random_cell(random, 1 + random.below(10), 0, arm % 2);
         const auto memory = cell.checker->borrow_workspace();
         constexpr std::size_t rows = 37;
         std::vector<double> all;
@@ -53,7 +53,7 @@ TEST(no_configuration_of_a_proved_edge_touches_anything) {
     check::Random random{2};
     int proved = 0, blocked = 0, undecided = 0;
     for (int arm = 0; arm < 80; ++arm) {
-        const auto cell = check::random_cell(random, 1 + random.below(9));
+        const auto cell = check::random_cell(random, 1 + random.below(9), 0, arm % 2);
         const auto memory = cell.checker->borrow_workspace();
         for (int i = 0; i < 40; ++i) {
             const Row a = cell.configuration(random);

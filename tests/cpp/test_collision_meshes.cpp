@@ -267,3 +267,21 @@ TEST(balls_touch_clouds_as_their_nearest_points_say) {
             check_places(cloud, radius, random_places(random, 60, 1.0));
     }
 }
+
+TEST(balls_touch_dense_clouds_far_from_the_origin_too) {
+    check::Random random{8};
+    for (const double offset : {0.0, 1.0}) {
+        Obstacle cloud;
+        cloud.radius = 0.002;
+        for (int i = 0; i < 20000; ++i) {
+            Vec3d p = 0.6 * random.vector();
+            (i % 3 == 0 ? p.x : i % 3 == 1 ? p.y : p.z) = 0.2 * double(i % 7);
+            add_corner(cloud.points, p + Vec3d{offset, 0, offset});
+        }
+        for (const double radius : {0.0, 0.02, 0.07, 0.2}) {
+            std::vector<Vec3d> places = random_places(random, 100, 0.9);
+            for (Vec3d& at : places) at = at + Vec3d{offset, 0, offset};
+            check_places(cloud, radius, places);
+        }
+    }
+}

@@ -225,6 +225,36 @@ def test_problems_of_a_batch_have_a_status_each():
     assert np.isinf(many.cost[1])
 
 
+def test_rows_are_the_same_however_they_are_written():
+    space = ArmSpace(random_robot(3))
+    row = np.linspace(-0.5, 0.5, space.dof)
+    for given in (
+        row,
+        row.tolist(),
+        tuple(row),
+        [row],
+        [row.tolist()],
+        row[None],
+        np.asfortranarray([row, row])[:1],
+    ):
+        found = space.as_rows(given, "start")
+        np.testing.assert_array_equal(found, row[None])
+        assert found.dtype == np.float64
+        assert found.flags.c_contiguous
+    whole = [1] * space.dof
+    np.testing.assert_array_equal(space.as_rows([whole, whole], "start"), np.ones((2, space.dof)))
+    for bad in (
+        [np.nan] * space.dof,
+        [1e300] * space.dof,
+        [[*whole, 1.0]],
+        [whole, [1.0]],
+        [],
+        np.zeros((0, space.dof)),
+    ):
+        with pytest.raises((InputError, InputTypeError), match="start"):
+            space.as_rows(bad, "start")
+
+
 def test_a_time_limit_is_heeded():
     robot = wall_arm()
     cage = [cs.Sphere(0.02, [0.5 * np.cos(t), 0.5 * np.sin(t), 0]) for t in (0.5, 1.5)]

@@ -2,7 +2,8 @@
 //
 // A test descends from the ball of a body over those of its links and groups to its spheres. `Motion` says by
 // how much a ball may move within what a lane stands for (edge.hpp, rows.hpp): nothing for a configuration,
-// v w + κ w² for an interval of half width w.
+// v w + κ w² for an interval of half width w. A sphere that covers a solid stands for it: where it touches
+// something, the solid is tested exactly.
 #pragma once
 
 #include "cspace/collision/gap.hpp"
@@ -14,6 +15,12 @@ namespace cspace::collision::inline CSPACE_ISA {
 struct Candidates {
     const int* begin;
     int count;
+};
+
+// How a body of a pair moves against the other if neither moves.
+struct AtRest {
+    NoMotion most_growth;
+    CSPACE_INLINE NoMotion growth(const Place&) const { return {}; }
 };
 
 class Block {
@@ -135,43 +142,44 @@ class Block {
             const float r = robot.spheres[group.first + s].r + scene.margin;
             Marks<Motion> marks(motion.growth(x, at));
             for (int k = 0; k < near.count; ++k) {
-                compare_primitive(x, at, near.begin[k], r, motion, marks);
+                compare_primitive(x, group.first + s, at, near.begin[k], r, motion, marks);
             }
-            if (settle(marks) && motion.is_done(*this))
-                return record_primitive(l, group.first + s, at, r, near);
+            if (settle(marks) && motion.is_done(*this)) return record_primitive(l, group.first + s, at, near);
         }
         return false;
     }
 
     // Tests two links of a pair of bodies against each other: the spheres of each that the other's ball may
-    // meet. Growth counts the motion of body b against body a.
-    template <class Motion>
-    CSPACE_INLINE bool test_link_pair(int p, const LinkPair& links, const Motion& motion) {
-        const BodyPair& pair = robot.pairs[p];
+    // meet. `relative` is how the body of b moves against that of a, `growth` by how much the ball of b does.
+    template <class Motion, class Relative, class Growth>
+    CSPACE_INLINE bool test_link_pair(const LinkPair& links, const Motion& motion, const Relative& relative,
+                                      Growth growth) {
         const Link &a = robot.links[links.a], &b = robot.links[links.b];
         const Place at_a = link_place(links.a), at_b = link_place(links.b);
-        const int count = list_spheres(a, at_b, b.ball.r, motion.pair_growth(p, at_b));
+        const int count = list_spheres(a, at_b, b.ball.r, growth);
         if (count == 0) return false;
         for (int g = b.first; g < b.first + b.count; ++g) {
             const Group& group = robot.groups[g];
             if (b.count > 1) {
-                const Place at = place_ball(frames[pair.b], group.ball);
-                if (!may_meet(at, at_a, group.ball.r + a.ball.r, motion.pair_growth(p, at))) continue;
+                const Place at = place_ball(frames[b.body], group.ball);
+                if (!may_meet(at, at_a, group.ball.r + a.ball.r, relative.growth(at))) continue;
             }
-            const Place* places = sphere_places(g, pair.b);
+            const Place* places = sphere_places(g, b.body);
             for (int s = 0; s < group.count; ++s) {
                 const Place& at = places[s];
                 const float r = robot.spheres[group.first + s].r + scene.pair_margin;
-                Marks<Motion> marks(motion.pair_growth(p, at));
-                if (!(bits_of(square_distance(at, at_a) < square_of(marks.growth, r + a.ball.r)) & wanted))
+                const Floats from_a = square_distance(at, at_a);
+                if (!(bits_of(from_a < square_of(relative.most_growth, r + a.ball.r)) & wanted)) continue;
+                Marks<Motion> marks(relative.growth(at));
+                if (Motion::is_moving && !(bits_of(from_a < square_of(marks.growth, r + a.ball.r)) & wanted))
                     continue;
                 const Place* all = static_cast<Place*>(w.sphere_places);
                 for (int k = 0; k < count; ++k) {
                     const int other = w.near_spheres[k];
-                    compare_balls(p, at, all[other], r + robot.spheres[other].r, motion, marks);
+                    compare_balls(links, group.first + s, at, other, all[other], relative, marks);
                 }
                 if (settle(marks) && motion.is_done(*this))
-                    return record_pair(links, group.first + s, at, r, count);
+                    return record_pair(links, group.first + s, at, count);
             }
         }
         return false;
@@ -191,18 +199,11 @@ class Block {
     CSPACE_INLINE bool test_touch(const Touch& touch) {
         const Ball& ball = robot.spheres[touch.sphere];
         const Place at = place_ball(frames[touch.body], ball);
-        float radius;
-        Floats gap;
-        if (touch.other_body < 0) {
-            gap =
-                square_gap(scene, touch.other, at, Mover{ball.r + scene.margin, NoMotion{}, wanted}, radius);
-            radius += ball.r + scene.margin;
-        } else {
-            const Ball& other = robot.spheres[touch.other];
-            gap = square_distance(at, place_ball(frames[touch.other_body], other));
-            radius = ball.r + other.r + scene.pair_margin;
-        }
-        hit = bits_of(gap < fill_floats(radius * radius)) & wanted;
+        if (touch.other_body < 0)
+            hit = lanes_touching(touch.body, touch.sphere, at, touch.other);
+        else
+            hit = lanes_meeting(touch.body, touch.sphere, at, touch.other_body, touch.other,
+                                place_ball(frames[touch.other_body], robot.spheres[touch.other]));
         return hit != 0;
     }
 
@@ -229,24 +230,52 @@ class Block {
     }
 
   private:
+    // Solids and what they were tested against exactly, a primitive or, from `first_pair` on, another one.
+    struct Refined {
+        unsigned stamp = 0;
+        int one = -1, other = -1;
+        bool is_moving = false;
+        unsigned tested = 0, touching = 0, near = 0;
+    };
+    static constexpr int first_pair = 1 << 30;
+
     int placed_ = 0;  // bodies 0 … placed_ have their frames
+    Refined refined_;
 
     // Of several tests: the lanes in which something touches, or may within its motion.
     template <class Motion>
     struct Marks {
         decltype(Motion::no_growth()) growth;
         FloatMask touching = fill_floats(0.0f) < fill_floats(0.0f), near = touching;
+        unsigned exact_touching = 0, exact_near = 0;  // of solids
 
         CSPACE_INLINE explicit Marks(decltype(Motion::no_growth()) growth) : growth(growth) {}
     };
     // A sphere against a primitive. The growth bounds the motion first; where it does not suffice, the part
     // of the motion that brings them nearer.
     template <class Motion>
-    CSPACE_INLINE void compare_primitive(int x, const Place& at, int i, float r, const Motion& motion,
+    CSPACE_INLINE void compare_primitive(int x, int s, const Place& at, int i, float r, const Motion& motion,
                                          Marks<Motion>& marks) {
         float radius;
         const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
+        if (is_cover(s)) {
+            const unsigned near = bits_of(gap < square_of(marks.growth, sum)) & wanted;
+            if (!near) return;
+            // The gaps of others are exact only as far as they compare with this radius.
+            const float inner = is_convex(scene, i) ? robot.inner_radii[s] : -1.0f;
+            const float excess = robot.spheres[s].r - robot.inner_radii[s];
+            unsigned suspects = settle_inner(gap, near, sum - excess, inner, marks);
+            if constexpr (Motion::is_moving) {
+                const unsigned far = lanes_moving_far(gap, sum, excess, marks.growth) & suspects;
+                if (far && is_convex(scene, i))
+                    suspects &= ~far | bits_of(motion.may_reach(x, i, at, gap, sum));
+                marks.exact_near |= far & suspects;
+                suspects &= ~far;
+            }
+            if (suspects) refine_primitive(x, s, i, suspects, motion, marks);
+            return;
+        }
         marks.touching = marks.touching | (gap < fill_floats(sum * sum));
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
@@ -256,43 +285,186 @@ class Block {
         }
     }
     // The same for a sphere of body b of a pair against one of body a.
-    template <class Motion>
-    CSPACE_INLINE void compare_balls(int p, const Place& at, const Place& other, float r,
-                                     const Motion& motion, Marks<Motion>& marks) {
-        const Floats gap = square_distance(at, other);
+    template <class Motion, class Relative>
+    CSPACE_INLINE void compare_balls(const LinkPair& links, int s, const Place& at, int other,
+                                     const Place& other_at, const Relative& relative, Marks<Motion>& marks) {
+        const float r = robot.spheres[s].r + scene.pair_margin + robot.spheres[other].r;
+        const Floats gap = square_distance(at, other_at);
+        if (is_cover(s) || is_cover(other)) {
+            const unsigned near = bits_of(gap < square_of(marks.growth, r)) & wanted;
+            if (!near) return;
+            const float inner = robot.inner_radii[s], other_inner = robot.inner_radii[other];
+            const float excess = robot.spheres[s].r - inner + robot.spheres[other].r - other_inner;
+            unsigned suspects =
+                settle_inner(gap, near, r - excess, inner < other_inner ? inner : other_inner, marks);
+            if constexpr (Motion::is_moving) {
+                const unsigned far = lanes_moving_far(gap, r, excess, marks.growth) & suspects;
+                if (far) suspects &= ~far | bits_of(relative.may_meet(at, other_at, gap, r));
+                marks.exact_near |= far & suspects;
+                suspects &= ~far;
+            }
+            if (suspects) refine_pair(links, s, other, suspects, relative, marks);
+            return;
+        }
         marks.touching = marks.touching | (gap < fill_floats(r * r));
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
             if (bits_of(near) & wanted)
-                marks.near = marks.near | (near & motion.may_meet(p, at, other, gap, r));
+                marks.near = marks.near | (near & relative.may_meet(at, other_at, gap, r));
         }
+    }
+
+    // Whether a sphere only covers a solid.
+    CSPACE_INLINE bool is_cover(int s) const { return robot.sphere_solids && robot.sphere_solids[s] >= 0; }
+    CSPACE_INLINE const Ball& ball_around(int s) const {
+        return is_cover(s) ? robot.solid_balls[robot.sphere_solids[s]] : robot.spheres[s];
+    }
+    // Of near lanes, those left once the balls inside the solids have told where these touch for sure.
+    template <class Motion>
+    CSPACE_INLINE unsigned settle_inner(Floats gap, unsigned near, float sum, float inner,
+                                        Marks<Motion>& marks) {
+        const unsigned sure = inner > 0 ? bits_of(gap < fill_floats(sum * sum)) & near : 0u;
+        marks.exact_touching |= sure;
+        return near & ~sure;
+    }
+    // Lanes in which covers do not touch, and move so far that the solids would tell no more.
+    CSPACE_INLINE static unsigned lanes_moving_far(Floats gap, float sum, float excess, Floats growth) {
+        constexpr float share = 2;
+        return bits_of((gap > fill_floats(sum * sum)) & (growth > fill_floats(share * excess)));
+    }
+    // What a sphere covers against a primitive, in a lane.
+    struct PrimitiveTest {
+        const Block& block;
+        int s, x, i;
+        bool touches(int lane) const {
+            float frame[12];
+            copy_lane(block.frames[x], lane, frame);
+            const ExactTest& exact = block.scene.exact;
+            return exact.reaches_primitive(exact.owner, s, frame, i, block.scene.margin);
+        }
+        float measure(int lane, float* normal) const {
+            float frame[12];
+            copy_lane(block.frames[x], lane, frame);
+            const ExactTest& exact = block.scene.exact;
+            return exact.measure_primitive(exact.owner, s, frame, i, normal) - block.scene.margin;
+        }
+    };
+    // Two spheres, or what they cover, against each other.
+    struct PairTest {
+        const Block& block;
+        int s, x, other, other_x;
+        bool touches(int lane) const {
+            float frame[12], other_frame[12];
+            copy_lane(block.frames[x], lane, frame), copy_lane(block.frames[other_x], lane, other_frame);
+            const ExactTest& exact = block.scene.exact;
+            return exact.reaches_sphere(exact.owner, s, frame, other, other_frame, block.scene.pair_margin);
+        }
+        float measure(int lane, float* normal) const {
+            float frame[12], other_frame[12];
+            copy_lane(block.frames[x], lane, frame), copy_lane(block.frames[other_x], lane, other_frame);
+            const ExactTest& exact = block.scene.exact;
+            return exact.measure_sphere(exact.owner, s, frame, other, other_frame, normal) -
+                   block.scene.pair_margin;
+        }
+    };
+    // Of lanes in which a cover may touch: those in which the solid does, or may on its way. The spheres of a
+    // solid come one after the other, so the last answer is kept.
+    template <class Motion, class Test>
+    void refine(int one, int other, unsigned suspects, const Test& test, const Way* way, float radius,
+                Marks<Motion>& marks) {
+        const bool is_moving = way != nullptr;
+        if (refined_.stamp != w.stamp || refined_.one != one || refined_.other != other ||
+            refined_.is_moving != is_moving)
+            refined_ = {w.stamp, one, other, is_moving, 0, 0, 0};
+        for (unsigned bits = suspects & ~refined_.tested; bits; bits &= bits - 1) {
+            const int lane = lowest_lane(bits);
+            refined_.tested |= 1u << lane;
+            float normal[3];
+            if (test.touches(lane))
+                refined_.touching |= 1u << lane;
+            else if (way && way->may_close(lane, test.measure(lane, normal), radius, normal))
+                refined_.near |= 1u << lane;
+        }
+        marks.exact_touching |= refined_.touching & suspects, marks.exact_near |= refined_.near & suspects;
+    }
+    template <class Motion>
+    CSPACE_COLD void refine_primitive(int x, int s, int i, unsigned suspects, const Motion& motion,
+                                      Marks<Motion>& marks) {
+        const int solid = robot.sphere_solids[s];
+        const Ball& ball = robot.solid_balls[solid];
+        const PrimitiveTest test = {*this, s, x, i};
+        if constexpr (Motion::is_moving) {
+            const Way way = motion.way_of(x, place_ball(frames[x], ball));
+            refine(solid, i, suspects, test, &way, ball.r, marks);
+        } else {
+            refine(solid, i, suspects, test, nullptr, 0, marks);
+        }
+    }
+    // Sphere s is of link b of the pair, the other one of link a. Numbers below zero stand for spheres.
+    template <class Motion, class Relative>
+    CSPACE_COLD void refine_pair(const LinkPair& links, int s, int other, unsigned suspects,
+                                 const Relative& relative, Marks<Motion>& marks) {
+        const int x = robot.links[links.b].body, other_x = robot.links[links.a].body;
+        const auto number = [&](int sphere) {
+            return is_cover(sphere) ? robot.sphere_solids[sphere] : -1 - sphere;
+        };
+        const int one = number(s), two = first_pair + number(other) + robot.n_spheres;
+        const PairTest test = {*this, s, x, other, other_x};
+        if constexpr (Motion::is_moving) {
+            const Ball& ball = ball_around(s);
+            const Way way = relative.way_of(place_ball(frames[x], ball));
+            refine(one, two, suspects, test, &way, ball.r, marks);
+        } else {
+            refine(one, two, suspects, test, nullptr, 0, marks);
+        }
+    }
+    // The lanes in which a sphere, or the solid that it covers, touches a primitive.
+    CSPACE_INLINE unsigned lanes_touching(int x, int s, const Place& at, int i) const {
+        const float r = robot.spheres[s].r + scene.margin;
+        float radius;
+        const Floats gap = square_gap(scene, i, at, Mover{r, NoMotion{}, wanted}, radius);
+        unsigned lanes = touching_lanes(gap, r + radius);
+        if (is_cover(s))
+            for (unsigned bits = lanes; bits; bits &= bits - 1)
+                if (!PrimitiveTest{*this, s, x, i}.touches(lowest_lane(bits)))
+                    lanes &= ~(1u << lowest_lane(bits));
+        return lanes;
+    }
+    CSPACE_INLINE unsigned lanes_meeting(int x, int s, const Place& at, int other_x, int other,
+                                         const Place& other_at) const {
+        const float r = robot.spheres[s].r + robot.spheres[other].r + scene.pair_margin;
+        unsigned lanes = touching_lanes(square_distance(at, other_at), r);
+        if (is_cover(s) || is_cover(other))
+            for (unsigned bits = lanes; bits; bits &= bits - 1)
+                if (!PairTest{*this, s, x, other, other_x}.touches(lowest_lane(bits)))
+                    lanes &= ~(1u << lowest_lane(bits));
+        return lanes;
     }
     template <class Motion>
     CSPACE_INLINE bool settle(const Marks<Motion>& marks) {
-        if constexpr (Motion::is_moving) unsure |= bits_of(marks.near) & wanted;
-        const unsigned touching = bits_of(marks.touching) & wanted;
+        if constexpr (Motion::is_moving) unsure |= (bits_of(marks.near) & wanted) | marks.exact_near;
+        const unsigned touching = (bits_of(marks.touching) & wanted) | marks.exact_touching;
         hit |= touching;
         return touching != 0;
     }
     // Which of the primitives a sphere touches.
-    CSPACE_COLD bool record_primitive(int l, int s, const Place& at, float r, Candidates near) {
+    CSPACE_COLD bool record_primitive(int l, int s, const Place& at, Candidates near) {
         for (int k = 0; k < near.count; ++k) {
-            float radius;
-            const Floats gap = square_gap(scene, near.begin[k], at, Mover{r, NoMotion{}, wanted}, radius);
-            if (!touches(gap, r + radius)) continue;
+            if (!lanes_touching(robot.links[l].body, s, at, near.begin[k])) continue;
             const Contact contact = {l, near.begin[k], false, 0};
             return record_touch({robot.links[l].body, s, -1, near.begin[k], contact});
         }
         return true;
     }
     // Which of the listed spheres another sphere touches.
-    CSPACE_COLD bool record_pair(const LinkPair& links, int s, const Place& at, float r, int count) {
+    CSPACE_COLD bool record_pair(const LinkPair& links, int s, const Place& at, int count) {
         const Place* all = static_cast<Place*>(w.sphere_places);
         const Contact contact = {links.a, links.b, true, 0};
         for (int k = 0; k < count; ++k) {
             const int other = w.near_spheres[k];
-            if (!touches(square_distance(at, all[other]), r + robot.spheres[other].r)) continue;
-            return record_touch({robot.links[links.b].body, s, robot.links[links.a].body, other, contact});
+            const int x = robot.links[links.b].body, other_x = robot.links[links.a].body;
+            if (!lanes_meeting(x, s, at, other_x, other, all[other])) continue;
+            return record_touch({x, s, other_x, other, contact});
         }
         w.contact = contact;
         return true;
@@ -303,7 +475,7 @@ class Block {
         w.contact = touch.contact;
         return true;
     }
-    CSPACE_INLINE bool touches(Floats gap, float r) const {
+    CSPACE_INLINE unsigned touching_lanes(Floats gap, float r) const {
         return bits_of(gap < fill_floats(r * r)) & wanted;
     }
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cspace/collision/scene.hpp"
-#include "cspace/math/isa.hpp"
+#include "cspace/math/float_lanes.hpp"
 
 namespace cspace::collision::inline CSPACE_ISA {
 
@@ -26,6 +26,20 @@ CSPACE_INLINE void visit_boxes(const Scene& scene, const Meets& meets, const Vis
         for (int k = node.first; k < node.first + node.count; ++k) try_primitive(scene.order[k]);
         ++i;
     }
+}
+
+// Lists the primitives of a scene without a tree whose boxes meet a box; how many.
+CSPACE_INLINE int list_boxes(const Scene& scene, const float (&low)[3], const float (&high)[3], int* into) {
+    int n = 0;
+    for (int first = 0; first < scene.n; first += float_lanes) {
+        const auto meets = [&](int k) {
+            return (load_floats(scene.low[k] + first) < high[k]) &
+                   (load_floats(scene.high[k] + first) > low[k]);
+        };
+        for (unsigned bits = bits_of(meets(0) & meets(1) & meets(2)); bits; bits &= bits - 1)
+            into[n++] = first + lowest_lane(bits);
+    }
+    return n;
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA

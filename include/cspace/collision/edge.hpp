@@ -106,21 +106,6 @@ class EdgeCheck {
             return speed_at(block.frames[x], block.rates[x], at) * edge.width_ +
                    edge.width_2_ * edge.w_.kappa[x];
         }
-        CSPACE_INLINE Floats pair_growth(int p, const Place& at) const {
-            return norm(velocity_in_pair(p, at)) * edge.width_ + edge.width_2_ * edge.w_.pair_kappa[p];
-        }
-        CSPACE_INLINE Velocity velocity_in_pair(int p, const Place& at) const {
-            const BodyPair& pair = edge.robot_.pairs[p];
-            return relative_velocity(block.frames[pair.a], block.rates[pair.a], block.frames[pair.b],
-                                     block.rates[pair.b], at);
-        }
-        // Where a ball of body b may come as near to one of body a as r.
-        CSPACE_INLINE FloatMask may_meet(int p, const Place& at, const Place& other, Floats gap,
-                                         float r) const {
-            const Velocity v = velocity_in_pair(p, at);
-            const Floats rate = (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
-            return may_approach(gap, rate, r, edge.w_.pair_kappa[p]);
-        }
         // Where a ball of body x may come as near to a primitive as r.
         CSPACE_INLINE FloatMask may_reach(int x, int primitive, const Place& at, Floats gap, float r) const {
             const Velocity v = velocity_at(block.frames[x], block.rates[x], at);
@@ -131,13 +116,44 @@ class EdgeCheck {
             const Floats distance = sqrt(gap), left = distance - r - edge.width_2_ * kappa;
             return distance * left < abs(rate) * edge.width_;
         }
-        // An upper bound of pair_growth at all places on body b.
-        CSPACE_INLINE Floats pair_bound(int p) const {
+        // How body x moves around a place.
+        CSPACE_INLINE Way way_of(int x, const Place& at) const {
+            return {velocity_at(block.frames[x], block.rates[x], at), block.rates[x].w, edge.width_,
+                    edge.width_2_ * edge.w_.kappa[x]};
+        }
+        // How body b of a pair moves against body a.
+        struct Relative {
+            const Moving& motion;
+            RelativeRate rate;
+            Floats bend;  // by the acceleration
+            float kappa;
+            Floats most_growth;  // at all places on body b
+
+            CSPACE_INLINE Floats growth(const Place& at) const {
+                return norm(velocity_at(rate, at)) * motion.edge.width_ + bend;
+            }
+            // Where a ball of body b may come as near to one of body a as r.
+            CSPACE_INLINE FloatMask may_meet(const Place& at, const Place& other, Floats gap, float r) const {
+                const Velocity v = velocity_at(rate, at);
+                const Floats speed = (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
+                return motion.may_approach(gap, speed, r, kappa);
+            }
+            // Sets most_growth from the growth of the ball of body b.
+            CSPACE_INLINE void bound_growth(Floats growth, float radius) {
+                const Floats *w = rate.w, turn = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) * radius;
+                most_growth = growth + turn * motion.edge.width_;
+            }
+            CSPACE_INLINE Way way_of(const Place& at) const {
+                return {velocity_at(rate, at), rate.w, motion.edge.width_, bend};
+            }
+        };
+        CSPACE_INLINE Relative relative(int p) const {
             const BodyPair& pair = edge.robot_.pairs[p];
-            const Rate &a = block.rates[pair.a], &b = block.rates[pair.b];
-            const Floats x = b.w[0] - a.w[0], y = b.w[1] - a.w[1], z = b.w[2] - a.w[2];
-            const Floats turn = sqrt(x * x + y * y + z * z) * edge.robot_.bodies[pair.b].ball.r;
-            return pair_growth(p, block.body_place(pair.b)) + turn * edge.width_;
+            const float kappa = edge.w_.pair_kappa[p];
+            return {*this,
+                    relative_rate(block.frames[pair.a], block.rates[pair.a], block.frames[pair.b],
+                                  block.rates[pair.b]),
+                    edge.width_2_ * kappa, kappa, fill_floats(0.0f)};
         }
         static float cover(float) { return 0; }
         static bool is_done(const Block& block) { return block.hit != 0; }
@@ -149,8 +165,11 @@ class EdgeCheck {
         static constexpr bool is_moving = false;
         static NoMotion no_growth() { return {}; }
         CSPACE_INLINE NoMotion growth(int, const Place&) const { return {}; }
-        CSPACE_INLINE NoMotion pair_growth(int, const Place&) const { return {}; }
-        CSPACE_INLINE NoMotion pair_bound(int) const { return {}; }
+        // As of Moving.
+        struct Relative : AtRest {
+            void bound_growth(NoMotion, float) {}
+        };
+        static Relative relative(int) { return {}; }
         float cover(float reach) const { return reach * covered; }
         static bool is_done(const Block& block) { return block.hit != 0; }
     };
@@ -259,15 +278,26 @@ class EdgeCheck {
 
     // The test that found a contact last, before candidates are chosen: it settles most blocked edges.
     bool test_likely(int test) {
-        constexpr int most_primitives = 64;
         const Still motion{*this, 0.0f};
         if (test >= robot_.n_bodies) return test_likely_pair(test - robot_.n_bodies, motion);
-        if (scene_.n > most_primitives) return false;
-        for (int i = 0; i < scene_.n; ++i) w_.near_body[i] = i;
-        const Candidates near =
-            block_.narrow({w_.near_body, scene_.n}, block_.body_place(test),
-                          robot_.bodies[test].ball.r + scene_.margin, NoMotion{}, w_.near_body);
+        if (scene_.n_nodes) return false;
+        const Place& at = block_.body_place(test);
+        const float r = robot_.bodies[test].ball.r + scene_.margin;
+        float low[3], high[3];
+        bound_places(at, r, low, high);
+        const int count = list_boxes(scene_, low, high, w_.near_body);
+        const Candidates near = block_.narrow({w_.near_body, count}, at, r, NoMotion{}, w_.near_body);
         return near.count && block_.test_links(test, near, motion);
+    }
+    // The box around the places of a ball in all lanes.
+    static void bound_places(const Place& at, float r, float (&low)[3], float (&high)[3]) {
+        const Floats rows[float_lanes] = {at.x, at.y, at.z, at.x, at.x, at.x, at.x, at.x};
+        Floats least, greatest;
+        bound_rows(rows, least, greatest);
+        alignas(32) float all_low[float_lanes], all_high[float_lanes];
+        store_floats(all_low, least - r);
+        store_floats(all_high, greatest + r);
+        for (int k = 0; k < 3; ++k) low[k] = all_low[k], high[k] = all_high[k];
     }
 
     bool test_likely_pair(int p, const Still& motion) {
@@ -276,7 +306,7 @@ class EdgeCheck {
             const LinkPair& links = robot_.link_pairs[k];
             const float sum = robot_.links[links.a].ball.r + robot_.links[links.b].ball.r;
             if (block_.may_meet(block_.link_place(links.a), block_.link_place(links.b), sum, NoMotion{}) &&
-                block_.test_link_pair(p, links, motion))
+                block_.test_link_pair(links, motion, AtRest{}, NoMotion{}))
                 return true;
         }
         return false;
@@ -353,16 +383,20 @@ class EdgeCheck {
         } else if (!Motion::is_moving && !block_.may_meet(at_a, at_b, r, NoMotion{})) {
             return false;
         }
-        if (Motion::is_moving && !block_.may_meet(at_a, at_b, r, motion.pair_growth(p, at_b))) {
+        auto relative = motion.relative(p);
+        const auto growth = relative.growth(at_b);
+        if (Motion::is_moving && !block_.may_meet(at_a, at_b, r, growth)) {
             if (is_first_) w_.kept_pairs[p] = 0;
             return false;
         }
-        return test_link_pairs(p, motion);
+        relative.bound_growth(growth, robot_.bodies[pair.b].ball.r);
+        return test_link_pairs(p, motion, relative, growth);
     }
-    template <class Motion>
-    bool test_link_pairs(int p, const Motion& motion) {
+    template <class Motion, class Growth>
+    bool test_link_pairs(int p, const Motion& motion, const typename Motion::Relative& relative,
+                         Growth body_growth) {
         const BodyPair& pair = robot_.pairs[p];
-        const auto bound = motion.pair_bound(p);
+        const bool is_whole = robot_.bodies[pair.b].count == 1;  // the link of b
         int kept = 0;
         for (int k = pair.first; k < pair.first + pair.count; ++k) {
             if (!is_first_ && !w_.kept_links[k]) continue;
@@ -370,12 +404,13 @@ class EdgeCheck {
             const Place &a = block_.link_place(links.a), &b = block_.link_place(links.b);
             const float sum = robot_.links[links.a].ball.r + robot_.links[links.b].ball.r;
             if (is_first_) {
-                w_.kept_links[k] = block_.may_meet(a, b, sum + motion.cover(w_.pair_reach[p]), bound);
+                w_.kept_links[k] =
+                    block_.may_meet(a, b, sum + motion.cover(w_.pair_reach[p]), relative.most_growth);
                 if (!w_.kept_links[k]) continue;
                 ++kept;
             }
-            if (block_.may_meet(a, b, sum, motion.pair_growth(p, b)) &&
-                block_.test_link_pair(p, links, motion))
+            const Growth growth = is_whole ? body_growth : relative.growth(b);
+            if (block_.may_meet(a, b, sum, growth) && block_.test_link_pair(links, motion, relative, growth))
                 return true;
         }
         if (is_first_ && kept == 0) w_.kept_pairs[p] = 0;

@@ -10,11 +10,14 @@ CSPACE_INLINE Floats clamp_positive(Floats x) { return max(x, fill_floats(0.0f))
 
 CSPACE_INLINE Floats square_gap(const Box& box, const Place& at) {
     const Floats x = at.x - box.center[0], y = at.y - box.center[1], z = at.z - box.center[2];
-    const auto beyond = [&](int k) {
-        const float* axis = box.axes + 3 * k;
-        return clamp_positive(abs(x * axis[0] + (y * axis[1] + z * axis[2])) - box.half[k]);
-    };
-    return square(beyond(0)) + square(beyond(1)) + square(beyond(2));
+    const auto beyond = [&](Floats along, int k) { return clamp_positive(abs(along) - box.half[k]); };
+    const float *a = box.axes, *b = a + 3, *c = a + 6;
+    if (box.is_upright)  // the same sums without their zeros
+        return square(beyond(x * a[0] + y * a[1], 0)) + square(beyond(x * b[0] + y * b[1], 1)) +
+               square(beyond(z, 2));
+    return square(beyond(x * a[0] + (y * a[1] + z * a[2]), 0)) +
+           square(beyond(x * b[0] + (y * b[1] + z * b[2]), 1)) +
+           square(beyond(x * c[0] + (y * c[1] + z * c[2]), 2));
 }
 CSPACE_INLINE Floats square_gap(const Capsule& capsule, const Place& at) {
     const float* v = capsule.along;
@@ -55,6 +58,16 @@ struct Mover {
 template <class Growth>
 Mover(float, Growth, unsigned) -> Mover<Growth>;
 
+// Balls that do not move, one per lane.
+struct Balls {
+    Floats r;
+    unsigned wanted;
+    CSPACE_INLINE Floats reach(float radius) const { return square(r + radius); }
+    CSPACE_INLINE Sought seek(float radius, bool any) const {
+        return {reach(radius), reach(radius), wanted, any};
+    }
+};
+
 // Meshes and clouds come last, and are not.
 CSPACE_INLINE bool is_convex(const Scene& scene, int i) {
     return i < scene.n_boxes + scene.n_capsules + scene.n_cylinders + scene.n_half_spaces;
@@ -63,8 +76,8 @@ CSPACE_INLINE bool is_convex(const Scene& scene, int i) {
 // Of primitive i; `radius` receives what it is grown by. In the lanes that are wanted it compares with the
 // squares of r + radius and of the reach as the exact one does; if `any`, in one lane in which the ball may
 // touch the primitive, where there is one.
-template <class Growth>
-CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball,
+template <class AnyBall>
+CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, const AnyBall& ball,
                                 float& radius, bool any = false) {
     if (i < scene.n_boxes) {
         radius = scene.boxes[i].radius;
@@ -94,11 +107,12 @@ CSPACE_INLINE Floats square_gap(const Scene& scene, int i, const Place& at, cons
     radius = scene.clouds[i].radius;
     return square_gap(scene.clouds[i], at, ball.seek(radius, any));
 }
-// The lanes in which a ball may touch primitive i; at least one of them.
-template <class Growth>
-CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at, const Mover<Growth>& ball) {
+// The lanes in which a ball may touch primitive i; if `any`, at least one of them.
+template <class AnyBall>
+CSPACE_INLINE unsigned find_touching(const Scene& scene, int i, const Place& at, const AnyBall& ball,
+                                     bool any = true) {
     float radius;
-    const Floats gap = square_gap(scene, i, at, ball, radius, true);
+    const Floats gap = square_gap(scene, i, at, ball, radius, any);
     return bits_of(gap < ball.reach(radius)) & ball.wanted;
 }
 

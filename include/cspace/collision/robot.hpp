@@ -45,6 +45,18 @@ struct BodyPair {
     int a, b, first, count;  // bodies, link pairs
 };
 
+// Balls by columns: eight may be read from any of them.
+struct BallColumns {
+    const float *x, *y, *z, *r;
+};
+// Up to eight spheres of a body, in order; those of a body are its chunks from `first` on.
+struct Chunk {
+    int first, count;  // spheres
+};
+struct BodyChunks {
+    int first, count;  // chunks
+};
+
 struct Robot {
     const Joint* joints;
     const Body* bodies;
@@ -53,12 +65,28 @@ struct Robot {
     const Ball* spheres;
     const BodyPair* pairs;
     const LinkPair* link_pairs;
+    // For checks of one configuration, whose lanes are bodies or spheres. A body without spheres has a radius
+    // far below zero. pair_numbers[a · body_stride + b]: the pair of bodies a < b; pair_lanes[(a ·
+    // body_stride + b) / 8]: in which of the eight bodies from b on there is one.
+    BallColumns body_balls, sphere_columns;
+    const Chunk* chunks;
+    const BodyChunks* body_chunks;
+    const int* sphere_links;
+    // Of each sphere the convex solid that it helps to cover, −1 if it counts itself; null if all do. Balls
+    // around the solids, in the frames of their bodies.
+    const int* sphere_solids;
+    const Ball* solid_balls;
+    // Of each sphere the radius of a ball around its centre that the solid holds, below zero if its centre is
+    // outside.
+    const float* inner_radii;
+    const int* pair_numbers;
+    const unsigned char* pair_lanes;
     // Bounds [m] on the distance of the sphere centres of a body from the axis of a joint, 0 if it does not
     // move the body (1 for a prismatic joint that does): row j has `body_stride` bodies.
     const float* levers;
     // The same for the motion of body b of a pair against body a: row j has `pair_stride` pairs.
     const float* pair_levers;
-    int n_joints, n_bodies, n_links, n_groups, n_spheres, n_pairs, n_link_pairs, n_coordinates;
+    int n_joints, n_bodies, n_links, n_groups, n_spheres, n_chunks, n_pairs, n_link_pairs, n_coordinates;
     int body_stride, pair_stride;  // multiples of eight
 };
 

@@ -10,7 +10,6 @@ struct Apart {
     static constexpr bool is_moving = false;
     static NoMotion no_growth() { return {}; }
     CSPACE_INLINE NoMotion growth(int, const Place&) const { return {}; }
-    CSPACE_INLINE NoMotion pair_growth(int, const Place&) const { return {}; }
     static bool is_done(Block& block) {
         block.wanted &= ~block.hit;
         return block.wanted == 0;
@@ -60,7 +59,7 @@ inline unsigned lanes_in_collision(Block& block, const Floats* q, unsigned wante
             const LinkPair& links = robot.link_pairs[i];
             const float sum = robot.links[links.a].ball.r + robot.links[links.b].ball.r;
             if (block.may_meet(block.link_place(links.a), block.link_place(links.b), sum, NoMotion{}))
-                block.test_link_pair(p, links, apart);
+                block.test_link_pair(links, apart, AtRest{}, NoMotion{});
         }
     }
     return block.hit & wanted;

@@ -7,6 +7,7 @@ namespace cspace::collision {
 
 struct Box {
     float center[3], axes[9], half[3], radius;  // axes: row k is the k-th axis of the box
+    bool is_upright;                            // the third axis is ± z
 };
 struct Capsule {
     float start[3], along[3], inverse_square, radius;  // inverse_square: 1 / |along|², 0 for a sphere
@@ -49,12 +50,43 @@ struct Mesh {
     float radius;
 };
 
-// Points in the order of their tree, each with the same radius around it.
+// Cells of one size around the points of a cloud. steps: of each cell, rows of x first, then those of y and
+// z; least[steps]: the square of a distance that no place in such a cell is nearer to a point than. Places
+// beyond the cells are no nearer than the cell beside them. ways: how many cells to go along x, y and z to
+// one with a point, as near as the steps say: along z first, then along y and x, each from the cell that was
+// reached. points: of a cell that has some, one of them. No cells: n[0] = 0.
+struct DistanceGrid {
+    const unsigned char* steps;
+    const signed char* ways[3];
+    const int* points;
+    const float* least;
+    float low[3], cells_per_metre;
+    int n[3];
+};
+
+// Points in the order of their tree, each with the same radius around it; eight may be read from any of them.
 struct Cloud {
     const TreeNode* nodes;
     const float *x, *y, *z;
     int n_nodes;
     float radius;
+    DistanceGrid grid;
+};
+
+// The exact test of a robot's convex solids: their covers only tell where it is needed. frame: of the body
+// that carries a sphere, R by rows, then p.
+struct ExactTest {
+    const void* owner;
+    // Whether the solid that a sphere covers comes within a gap of a primitive; and how far away it is. The
+    // unit normal leads from something convex to the solid; it is zero where the other one is not convex.
+    bool (*reaches_primitive)(const void* owner, int sphere, const float* frame, int primitive, float gap);
+    float (*measure_primitive)(const void* owner, int sphere, const float* frame, int primitive,
+                               float* normal);
+    // The same for two spheres, or the solids that they cover.
+    bool (*reaches_sphere)(const void* owner, int sphere, const float* frame, int other,
+                           const float* other_frame, float gap);
+    float (*measure_sphere)(const void* owner, int sphere, const float* frame, int other,
+                            const float* other_frame, float* normal);
 };
 
 struct Scene {
@@ -66,7 +98,8 @@ struct Scene {
     const Cloud* clouds;
     int n_boxes, n_capsules, n_cylinders, n_half_spaces, n_meshes, n_clouds;
     int n;  // of all primitives, in this order
-    // The boxes around the primitives: low and high of each, per coordinate.
+    // The boxes around the primitives: low and high of each, per coordinate, filled up to a multiple of eight
+    // with boxes that nothing meets.
     const float *low[3], *high[3];
     // A tree of these boxes, and the primitives in the order of its leaves. No nodes where they are few.
     const TreeNode* nodes;
@@ -75,6 +108,7 @@ struct Scene {
     // allowed[link · n + primitive]: they may touch. Null if no such pair is allowed.
     const unsigned char* allowed;
     float margin, pair_margin;  // added to the radii of spheres against primitives, and to pairs of spheres
+    ExactTest exact;
 };
 
 }  // namespace cspace::collision

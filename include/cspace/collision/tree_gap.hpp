@@ -138,10 +138,60 @@ inline Floats square_gap(const Mesh& mesh, const Place& at, const Sought& sought
     if (!mesh.facets || sought.is_met(least)) return least;
     return select(find_inside(mesh, at), fill_floats(0.0f), least);
 }
+
+// The cells of places, and in which lanes the points may be nearer than the root of a limit.
+CSPACE_INLINE unsigned find_cells(const DistanceGrid& grid, const Place& at, Floats limit,
+                                  int (&cells)[float_lanes]) {
+    alignas(32) float cell[3][float_lanes], bound[float_lanes];
+    const Floats place[] = {at.x, at.y, at.z};
+    for (int k = 0; k < 3; ++k) {
+        const Floats from_low = (place[k] - grid.low[k]) * grid.cells_per_metre;
+        const Floats last = fill_floats(float(grid.n[k] - 1));
+        store_floats(cell[k], min(max(from_low, fill_floats(0.0f)), last));
+    }
+    for (int i = 0; i < float_lanes; ++i) {
+        const int x = int(cell[0][i]), y = int(cell[1][i]), z = int(cell[2][i]);
+        cells[i] = (z * grid.n[1] + y) * grid.n[0] + x;
+        bound[i] = grid.least[grid.steps[cells[i]]];
+    }
+    return bits_of(load_floats(bound) < limit);
+}
+// Whether one of eight points in and around the cell to which the steps lead is nearer than the root of a
+// limit.
+CSPACE_INLINE bool is_near_points(const Cloud& cloud, int cell, float x, float y, float z, float limit) {
+    const DistanceGrid& grid = cloud.grid;
+    cell += grid.ways[2][cell] * grid.n[0] * grid.n[1];
+    cell += grid.ways[1][cell] * grid.n[0];
+    cell += grid.ways[0][cell];
+    const int k = grid.points[cell];
+    const Floats gap = square(x - load_floats(cloud.x + k)) +
+                       (square(y - load_floats(cloud.y + k)) + square(z - load_floats(cloud.z + k)));
+    return bits_of(gap < limit) != 0;
+}
+// As of a mesh. The cells settle most lanes, the tree the others.
 inline Floats square_gap(const Cloud& cloud, const Place& at, const Sought& sought) {
-    return find_least<true>(cloud.nodes, cloud.n_nodes, at, sought, [&](int k) {
+    if (cloud.n_nodes == 0) return sought.limit;
+    int cells[float_lanes];
+    alignas(32) float x[float_lanes], y[float_lanes], z[float_lanes], squares[float_lanes],
+        enough[float_lanes];
+    Sought rest = sought;
+    rest.wanted &= find_cells(cloud.grid, at, sought.limit, cells);
+    if (!rest.wanted) return sought.limit;
+    store_floats(x, at.x), store_floats(y, at.y), store_floats(z, at.z);
+    store_floats(squares, sought.limit), store_floats(enough, sought.enough);
+    for (unsigned lanes = rest.wanted; lanes; lanes &= lanes - 1) {
+        const int i = lowest_lane(lanes);
+        if (!is_near_points(cloud, cells[i], x[i], y[i], z[i], enough[i])) continue;
+        squares[i] = 0;
+        rest.wanted &= ~(1u << i);
+        if (sought.any) return load_floats(squares);
+    }
+    const Floats found = load_floats(squares);
+    if (!rest.wanted) return found;
+    const Floats least = find_least<true>(cloud.nodes, cloud.n_nodes, at, rest, [&](int k) {
         return square(at.x - cloud.x[k]) + (square(at.y - cloud.y[k]) + square(at.z - cloud.z[k]));
     });
+    return min(least, found);
 }
 
 }  // namespace cspace::collision::inline CSPACE_ISA

@@ -31,6 +31,12 @@ struct Touch {
 struct Workspace {
     // Frame, Rate per body and Place per body, link and sphere, with lanes of eight floats.
     void *frames, *rates, *body_places, *link_places, *sphere_places;
+    // Of one configuration (one.hpp): a FrameOf<float> per body; by columns the value, sine and cosine of
+    // each joint, the numbers of these frames, and the centres of the balls of bodies and of all spheres.
+    void* one_frames;
+    float *joint_columns, *frame_columns, *ball_columns, *sphere_columns;
+    int* near_chunks;  // a list for one descent, and the lanes of each
+    unsigned* near_lanes;
     // The number of the block in which each was placed last.
     unsigned *body_stamps, *link_stamps, *group_stamps, stamp;
     // Per body a list of the primitives that it may touch, of `near_stride` entries, and its length.

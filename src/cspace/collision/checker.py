@@ -9,13 +9,13 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from cspace._core import CollisionChecker, CollisionRobot, CollisionScene
+from cspace._core import CollisionChecker, CollisionRobot, CollisionScene, compile_solids
 from cspace.arrays import Array, bounded_number
-from cspace.collision.pack_scene import PackedScene, pack_scene
-from cspace.collision.robot_geometry import RobotGeometry, split_rows
+from cspace.collision.exact_solids import join_shapes, place_shape, split_shapes
+from cspace.collision.pack_scene import SOLIDS, PackedScene, pack_obstacles
+from cspace.collision.robot_geometry import NO_PAIRS, RobotGeometry
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError
-from cspace.shapes import cover_shape
 from cspace.tolerances import LARGEST_NUMBER
 
 KEPT_CHECKERS: Final = 8
@@ -79,24 +79,39 @@ def make_checker(geometry: RobotGeometry, scene: Scene, margin: float) -> Checke
     """As checker_of, made anew."""
     if not geometry:
         raise InputError(f"{geometry.robot} cannot be checked for collisions: {geometry.reason}")
-    scene.check_links({*geometry.links, *geometry.frames}, geometry.frames, geometry.robot)
+    scene.check_links((*geometry.links, *geometry.frames), geometry.frames, geometry.robot)
     robot = add_attached(geometry, scene)
-    packed = pack_scene(scene, geometry.T_world_base)
-    core = compile_scene(packed)
-    number = {name: k for k, name in enumerate(packed.names)}
-    links = {name: k for k, name in enumerate(robot.links)}
-    allowed = [
-        (links[a], number[b])
-        for pair in touching_pairs(scene)
+    obstacles = tuple([shape.name for shape in scene.obstacles])
+    core = compile_scene(scene, geometry.T_base_world)
+    allowed = number_pairs(touching_pairs(scene), robot.links, obstacles)
+    return Checker(CollisionChecker(robot.core, core, margin, allowed), robot, obstacles, margin)
+
+
+def number_pairs(
+    pairs: set[frozenset[str]], links: tuple[str, ...], obstacles: tuple[str, ...]
+) -> npt.NDArray[np.int64]:
+    """The pairs (k, 2) of a link and an obstacle among pairs of names, by number."""
+    if not pairs:
+        return NO_PAIRS
+    link_of = {name: k for k, name in enumerate(links)}
+    obstacle_of = {name: k for k, name in enumerate(obstacles)}
+    found = [
+        (link_of[a], obstacle_of[b])
+        for pair in pairs
         for a, b in permutations(pair)
-        if a in links and b in number
+        if a in link_of and b in obstacle_of
     ]
-    pairs = np.array(allowed, dtype=np.int64).reshape(-1, 2)
-    return Checker(CollisionChecker(robot.core, core, margin, pairs), robot, packed.names, margin)
+    return np.array(found, dtype=np.int64).reshape(-1, 2)
 
 
-def compile_scene(packed: PackedScene) -> CollisionScene:
-    """The compiled obstacles."""
+def compile_scene(scene: Scene, T_base_world: Array) -> CollisionScene:
+    """The compiled obstacles; solids of a few numbers need no arrays between."""
+    of_solids = compile_solids(scene.obstacles, SOLIDS, T_base_world)
+    return compile_packed(pack_obstacles(scene, T_base_world)) if of_solids is None else of_solids
+
+
+def compile_packed(packed: PackedScene) -> CollisionScene:
+    """The compiled obstacles, from their arrays."""
     owners = [
         packed.box_object,
         packed.capsule_object,
@@ -118,7 +133,7 @@ def compile_scene(packed: PackedScene) -> CollisionScene:
         points,
         cloud_sizes,
         np.array([radius for _, radius in packed.clouds], dtype=np.float64),
-        np.concatenate(owners).astype(np.int64),
+        np.concatenate(owners),
     )
 
 
@@ -126,7 +141,7 @@ def join_parts(parts: list[Array], width: int) -> tuple[Array, npt.NDArray[np.in
     """The rows (n, width) of all parts below each other, contiguous, and how many each part has."""
     rows = [np.ascontiguousarray(part).reshape(-1, width) for part in parts]
     sizes = np.array([len(part) for part in rows], dtype=np.int64)
-    return np.concatenate([np.empty((0, width)), *rows]), sizes
+    return np.concatenate(rows) if rows else np.empty((0, width)), sizes
 
 
 def touching_pairs(scene: Scene) -> set[frozenset[str]]:
@@ -138,7 +153,7 @@ def touching_pairs(scene: Scene) -> set[frozenset[str]]:
 
 
 def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
-    """The robot with the objects that it carries: their covers are spheres of the bodies that carry them.
+    """The robot with the objects that it carries: shapes of the bodies that carry them.
 
     An attached object is checked against all links of other bodies, and against other attached objects.
     """
@@ -146,16 +161,15 @@ def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
         return CheckedRobot(geometry.compiled, geometry.links)
     links = list(geometry.links)
     bodies = geometry.link_bodies.tolist()
-    parts = split_rows(geometry.spheres, geometry.sphere_links)
+    parts = split_shapes(geometry.shapes, geometry.sphere_links)
     checked = {frozenset((links[a], links[b])) for a, b in geometry.pairs.tolist()}
     for name, attachment in scene.attached.items():
         joint, T_joint_frame = geometry.frames[attachment.frame]
-        solid = scene[name].placed(T_joint_frame @ attachment.T_frame_object)
-        cover = cover_shape(solid, ATTACHED_COVER)
+        solid = scene[name].placed(attachment.T_frame_object)
         checked |= {frozenset((name, links[k])) for k in range(len(links)) if bodies[k] != joint + 1}
         links.append(name)
         bodies.append(joint + 1)
-        parts.append(cover.spheres)
+        parts.append(place_shape(solid, ATTACHED_COVER, T_joint_frame))
     checked -= touching_pairs(scene)
     order = sorted(range(len(links)), key=lambda k: bodies[k])
     names = tuple(links[k] for k in order)
@@ -163,8 +177,8 @@ def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
     pairs = sorted(tuple(sorted(number[name] for name in pair)) for pair in checked)
     core = geometry.compile(
         np.array([bodies[k] for k in order], dtype=np.int64),
-        np.concatenate([parts[k] for k in order]),
-        np.repeat(np.arange(len(order)), [len(parts[k]) for k in order]).astype(np.int64),
+        join_shapes([parts[k] for k in order]),
+        np.repeat(np.arange(len(order)), [len(parts[k].spheres) for k in order]).astype(np.int64),
         np.array(pairs, dtype=np.int64).reshape(-1, 2),
     )
     return CheckedRobot(core, names)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from cspace._core import pack_solids
 from cspace.arrays import Array
 from cspace.collision.scene import Scene
 from cspace.errors import InputTypeError
@@ -23,11 +24,11 @@ from cspace.shapes import (
     Shape,
     Sphere,
 )
-from cspace.shapes.shape import check_place
+from cspace.shapes.shape import IDENTITY, check_place
 from cspace.spatial.poses import invert_pose, transform_points
 from cspace.tables import show_fields
 
-Numbers = npt.NDArray[np.intp]
+Numbers = npt.NDArray[np.int64]
 
 
 @show_fields
@@ -59,61 +60,57 @@ class PackedScene:
     cloud_object: Numbers
 
 
-def pack_scene(scene: Scene, T_world_base: Any = None) -> PackedScene:
-    """The obstacles of a scene as arrays in the frame T_world_base (4, 4) of a robot's base, float64."""
-    T_base_world = (
-        np.eye(4) if T_world_base is None else invert_pose(check_place(T_world_base, "T_world_base"))
-    )
-    rows: dict[str, list[Any]] = {kind: [] for kind in WIDTHS}
-    owners: dict[str, list[int]] = {kind: [] for kind in WIDTHS}
-    obstacles = scene.obstacles
-    for number, shape in enumerate(obstacles):
-        kind, packed = pack_shape(shape, T_base_world @ shape.pose)
-        rows[kind] += packed
-        owners[kind] += [number] * len(packed)
-    arrays: dict[str, Any] = {
-        kind: np.array(rows[kind], dtype=np.float64).reshape(-1, width) if width else tuple(rows[kind])
-        for kind, width in WIDTHS.items()
-    }
-    numbers: dict[str, Any] = {OWNERS[kind]: np.array(found, dtype=np.intp) for kind, found in owners.items()}
-    return PackedScene(tuple(shape.name for shape in obstacles), scene.version, **arrays, **numbers)
+SOLIDS: Final = (Box, Sphere, Capsule, Cylinder, HalfSpace)
+"""The shapes of a few numbers, in the order in which the core takes them."""
 
-
-WIDTHS = {"boxes": 15, "capsules": 7, "cylinders": 8, "half_spaces": 4, "meshes": 0, "clouds": 0}
-"""The arrays, and the numbers of their rows; zero for lists of arrays."""
-
-PACKED = (Box, Sphere, Capsule, Cylinder, HalfSpace, Hull, Mesh, HeightField, PointCloud)
+PACKED: Final = (*SOLIDS, Hull, Mesh, HeightField, PointCloud)
 """The shapes that have arrays."""
 
-OWNERS = {
-    **{"boxes": "box_object", "capsules": "capsule_object", "cylinders": "cylinder_object"},
-    **{"half_spaces": "half_space_object", "meshes": "mesh_object", "clouds": "cloud_object"},
-}
-"""The array of owners beside each array."""
+
+def pack_scene(scene: Scene, T_world_base: Any = None) -> PackedScene:
+    """The obstacles of a scene as arrays in the frame T_world_base (4, 4) of a robot's base, float64."""
+    if T_world_base is None:
+        return pack_obstacles(scene, IDENTITY)
+    return pack_obstacles(scene, invert_pose(check_place(T_world_base, "T_world_base")))
 
 
-def pack_shape(shape: Shape, T: Array) -> tuple[str, list[Any]]:
-    """The array that a shape at a pose T (4, 4) belongs to, and its rows."""
-    R, p = T[:3, :3], T[:3, 3]
-    if isinstance(shape, Box):
-        return "boxes", [np.concatenate([p, R.ravel(), shape.size / 2.0])]
-    if isinstance(shape, Sphere):
-        return "capsules", [np.concatenate([p, p, [shape.radius]])]
-    if isinstance(shape, Capsule):
-        half = shape.length / 2.0 * R[:, 2]
-        return "capsules", [np.concatenate([p - half, p + half, [shape.radius]])]
-    if isinstance(shape, Cylinder):
-        return "cylinders", [np.concatenate([p, R[:, 2], [shape.length / 2.0, shape.radius]])]
-    if isinstance(shape, HalfSpace):
-        return "half_spaces", [shape.placed(T).plane]
+def pack_obstacles(scene: Scene, T_base_world: Array) -> PackedScene:
+    """As pack_scene, in a frame that is known to be a pose."""
+    obstacles = scene.obstacles
+    boxes, capsules, cylinders, half_spaces, others = pack_solids(obstacles, SOLIDS, T_base_world)
+    meshes, clouds = [], []
+    for number in others:
+        shape = obstacles[number]
+        T = T_base_world @ shape.pose
+        if isinstance(shape, PointCloud):
+            clouds.append((number, (transform_points(T, shape.points), shape.radius)))
+        else:
+            meshes.append((number, place_surface(shape, T)))
+    return PackedScene(
+        tuple([shape.name for shape in obstacles]),
+        scene.version,
+        *boxes,
+        *capsules,
+        *cylinders,
+        *half_spaces,
+        *split_owners(meshes),
+        *split_owners(clouds),
+    )
+
+
+def split_owners(found: list[tuple[int, Any]]) -> tuple[tuple[Any, ...], Numbers]:
+    """What was found, and the numbers of the obstacles."""
+    return tuple([part for _, part in found]), np.array([number for number, _ in found], dtype=np.int64)
+
+
+def place_surface(shape: Shape, T: Array) -> tuple[Array, bool]:
+    """The triangles (m, 3, 3) of a shape at a pose T (4, 4), and whether they enclose a solid."""
     if isinstance(shape, Hull):
-        return "meshes", [(transform_points(T, shape.vertices)[shape.facets], True)]
+        return transform_points(T, shape.vertices)[shape.facets], True
     if isinstance(shape, Mesh):
-        return "meshes", [(transform_points(T, shape.vertices)[shape.faces], shape.solid)]
+        return transform_points(T, shape.vertices)[shape.faces], shape.solid
     if isinstance(shape, HeightField):
-        return "meshes", [(shape.surface(T), True)]
-    if isinstance(shape, PointCloud):
-        return "clouds", [(transform_points(T, shape.points), shape.radius)]
+        return shape.surface(T), True
     known = ", ".join(kind.__name__ for kind in PACKED)
     raise InputTypeError(
         f"{shape.name!r} is a {type(shape).__name__}, which no check reads; use one of {known}"

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
-from cspace._core import CollisionRobot
+from cspace._core import CollisionChecker, CollisionRobot, compile_solids
 from cspace.arrays import Array, positive_number
+from cspace.collision.exact_solids import PlacedShapes, join_shapes, place_shape
 from cspace.collision.link_pairs import SAMPLES, Allowed, adjacent_pairs, always_touching
 from cspace.collision.link_shapes import Solids, described_solids, skeleton_solids
+from cspace.collision.pack_scene import SOLIDS
 from cspace.errors import InputError, suggest
 from cspace.kinematics import Assembly, KinematicModel, random_configurations
 from cspace.model import Description
-from cspace.shapes import cover_shape
 from cspace.spatial.poses import invert_pose, transform_points
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
@@ -30,16 +31,25 @@ FREE_TRAVEL: Final = 1.0
 
 Integers = npt.NDArray[np.int64]
 
+NO_PAIRS: Final[Integers] = np.empty((0, 2), dtype=np.int64)
+"""No links are checked against each other, or nothing may touch."""
+
+EMPTY_SCENE: Final = compile_solids((), SOLIDS, np.eye(4))
+"""No obstacles, compiled."""
+
 
 @dataclass(frozen=True, eq=False)
 class RobotGeometry:
-    """Spheres that stand for the links of a robot in collision checks; falsy, with a reason, without any.
+    """Spheres and solids that stand for the links of a robot in collision checks; falsy, with a reason,
+    without any.
 
     robot: the name. source: what the spheres are made from. reason: why there are none. links: names of the
     links with spheres; link_bodies (n,): what carries each, 0 the base and k + 1 joint k. spheres (m, 4):
-    centres and radii [m] in the frame of the body; sphere_links (m,): the link of each. excess [m]: no sphere
-    sticks out of the shapes of its link by more. pairs (k, 2): links that are checked against each other.
-    allowed: pairs of links that are not, with the reason.
+    centres and radii [m] in the frame of the body; sphere_links (m,): the link of each. solids (s, 16):
+    boxes, cylinders and capsules, which are taken exactly; sphere_solids (m,): the solid that a sphere only
+    helps to cover, −1 where the sphere itself counts. excess [m]: no sphere that counts sticks out of the
+    shapes of its link by more. pairs (k, 2): links that are checked against each other. allowed: pairs of
+    links that are not, with the reason.
 
     joints (j, 21): T_parent_joint by rows, parent, coordinate, ratio, offset, prismatic, the base at the
     origin. lower, upper (dof,): limits. joint_names. T_world_base (4, 4). frames: name → (joint that carries
@@ -53,6 +63,8 @@ class RobotGeometry:
     link_bodies: Integers
     spheres: Array
     sphere_links: Integers
+    solids: Array
+    sphere_solids: Integers
     excess: float
     pairs: Integers
     allowed: tuple[Allowed, ...]
@@ -88,14 +100,24 @@ class RobotGeometry:
         return tuple(sorted({int(row[17]) for row in self.joints if row[20]}))
 
     @cached_property
+    def T_base_world(self) -> Array:
+        """The inverse (4, 4) of T_world_base."""
+        return invert_pose(self.T_world_base)
+
+    @cached_property
     def compiled(self) -> CollisionRobot:
         """The compiled robot without attached objects."""
-        return self.compile(self.link_bodies, self.spheres, self.sphere_links, self.pairs)
+        return self.compile(self.link_bodies, self.shapes, self.sphere_links, self.pairs)
+
+    @property
+    def shapes(self) -> PlacedShapes:
+        """The spheres and solids of all links."""
+        return PlacedShapes(self.spheres, self.solids, self.sphere_solids, self.excess)
 
     def compile(
-        self, link_bodies: Integers, spheres: Array, sphere_links: Integers, pairs: Integers
+        self, link_bodies: Integers, shapes: PlacedShapes, sphere_links: Integers, pairs: Integers
     ) -> CollisionRobot:
-        """The compiled robot with these links, which follow their bodies.
+        """The compiled robot with these links, which follow their bodies. sphere_links: of the shapes.
 
         Raises InputError for a prismatic joint without limits.
         """
@@ -106,7 +128,16 @@ class RobotGeometry:
                     f"prismatic joint {self.joint_names[k]!r} of {self.robot} has no limits; collision checks"
                     " need them, since rounding grows with its travel"
                 )
-        return CollisionRobot(self.joints, bounds, link_bodies, spheres, sphere_links, pairs)
+        return CollisionRobot(
+            self.joints,
+            bounds,
+            link_bodies,
+            shapes.spheres,
+            sphere_links,
+            pairs,
+            shapes.solids,
+            shapes.sphere_solids,
+        )
 
     def __repr__(self) -> str:
         if not self:
@@ -145,9 +176,8 @@ def robot_geometry(
     frames = frames_on_base(assembly, mount)
     skeleton = geometry == "skeleton"
     solids = skeleton_solids(assembly) if skeleton else described_solids(description, frames)
-    links, link_bodies, spheres, sphere_links, most = place_spheres(
-        {} if robot.floating else solids, frames, excess
-    )
+    links, link_bodies, placed, sphere_links = place_links({} if robot.floating else solids, frames, excess)
+    spheres = placed.spheres
     samples = random_configurations(robot.limits, robot.joint_types, SAMPLES, rng=0, reach=FREE_TRAVEL)
     centers = [
         transform_points((robot.fk(samples, name) @ invert_pose(frames[name][1]))[:, None], own)
@@ -155,8 +185,7 @@ def robot_geometry(
     ]
     adjacent = adjacent_pairs(link_bodies.tolist(), assembly.parent.tolist())
     radii = split_rows(spheres[:, 3], sphere_links)
-    pairs, allowed = choose_pairs(description, links, link_bodies, adjacent, centers, radii)
-    return RobotGeometry(
+    without_pairs = RobotGeometry(
         robot=robot.name,
         source="capsules of the skeleton" if skeleton else "collision elements of the description",
         reason="" if len(spheres) else missing_reason(robot, description),
@@ -164,9 +193,11 @@ def robot_geometry(
         link_bodies=link_bodies,
         spheres=spheres,
         sphere_links=sphere_links,
-        excess=most,
-        pairs=np.array(pairs, dtype=np.int64).reshape(-1, 2),
-        allowed=tuple(allowed),
+        solids=placed.solids,
+        sphere_solids=placed.sphere_solids,
+        excess=placed.excess,
+        pairs=NO_PAIRS,
+        allowed=(),
         joints=joint_rows(assembly, mount),
         lower=np.array(robot.limits.lower),
         upper=np.array(robot.limits.upper),
@@ -174,6 +205,9 @@ def robot_geometry(
         T_world_base=mount,
         frames=frames,
     )
+    pairs, allowed = choose_pairs(description, without_pairs, adjacent, samples, centers, radii)
+    rows = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    return replace(without_pairs, pairs=rows, allowed=tuple(allowed), _kept={})
 
 
 def frames_on_base(assembly: Assembly, T_world_base: Array) -> dict[str, tuple[int, Array]]:
@@ -206,23 +240,19 @@ def missing_reason(robot: KinematicModel, description: Description) -> str:
     )
 
 
-def place_spheres(
+def place_links(
     solids: Solids, frames: Mapping[str, tuple[int, Array]], cover: float
-) -> tuple[tuple[str, ...], Integers, Array, Integers, float]:
-    """Links in the order of their bodies, the bodies, spheres in the frames of bodies, their links, the
-    excess."""
+) -> tuple[tuple[str, ...], Integers, PlacedShapes, Integers]:
+    """Links in the order of their bodies, the bodies, shapes in their frames, the links of the spheres."""
     order = sorted(solids, key=lambda name: frames[name][0])
-    rows, owners, most = [np.zeros((0, 4))], [], 0.0
+    parts: list[PlacedShapes] = []
+    owners: list[int] = []
     for number, name in enumerate(order):
         for solid in solids[name]:
-            found = cover_shape(solid, cover)
-            most = max(most, found.excess)
-            placed = found.spheres.copy()
-            placed[:, :3] = transform_points(frames[name][1], placed[:, :3])
-            rows.append(placed)
-            owners += [number] * len(placed)
+            parts.append(place_shape(solid, cover, frames[name][1]))
+            owners += [number] * len(parts[-1].spheres)
     bodies = np.array([frames[name][0] + 1 for name in order], dtype=np.int64)
-    return tuple(order), bodies, np.concatenate(rows), np.array(owners, dtype=np.int64), most
+    return tuple(order), bodies, join_shapes(parts), np.array(owners, dtype=np.int64)
 
 
 def split_rows(rows: Array, owners: Integers) -> list[Array]:
@@ -230,18 +260,32 @@ def split_rows(rows: Array, owners: Integers) -> list[Array]:
     return np.split(rows, np.flatnonzero(np.diff(owners)) + 1) if len(rows) else []
 
 
+def meets_always(geometry: RobotGeometry, pair: tuple[int, int], samples: Array) -> bool:
+    """Whether two links whose spheres touch in all samples do so as they are: solids are less than covers."""
+    if not len(geometry.solids):
+        return True
+    travel = geometry.lower + geometry.upper
+    if not np.isfinite(travel[list(geometry.prismatic)]).all():
+        return True  # no checks are made for such a robot
+    pairs = np.array([pair], dtype=np.int64)
+    core = geometry.compile(geometry.link_bodies, geometry.shapes, geometry.sphere_links, pairs)
+    checker = CollisionChecker(core, EMPTY_SCENE, 0.0, NO_PAIRS)
+    return bool(checker.check_rows(np.ascontiguousarray(samples), 1).all())
+
+
 def choose_pairs(
     description: Description,
-    links: Sequence[str],
-    bodies: Integers,
+    geometry: RobotGeometry,
     adjacent: Sequence[tuple[int, int]],
+    samples: Array,
     centers: Sequence[Array],
     radii: Sequence[Array],
 ) -> tuple[list[tuple[int, int]], list[Allowed]]:
     """The pairs of links that are checked, by number, and the others with their reasons.
 
-    centers: per link those of its spheres at samples (samples, n, 3) [m]; radii (n,).
+    centers: per link those of its spheres at the samples (samples, n, 3) [m]; radii (n,).
     """
+    links, bodies = geometry.links, geometry.link_bodies
     reasons = {pair: "adjacent" for pair in adjacent}
     number = {name: k for k, name in enumerate(links)}
     for a, b, why in description.allowed_pairs:
@@ -250,6 +294,7 @@ def choose_pairs(
     every = [(a, b) for a in range(len(links)) for b in range(a + 1, len(links)) if bodies[a] != bodies[b]]
     always = f"touch at each of {SAMPLES} random configurations"
     open_pairs = [pair for pair in every if pair not in reasons]
-    reasons |= dict.fromkeys(always_touching(open_pairs, centers, radii), always)
+    touching = always_touching(open_pairs, centers, radii)
+    reasons |= dict.fromkeys([pair for pair in touching if meets_always(geometry, pair, samples)], always)
     allowed = [(links[a], links[b], reasons[a, b]) for a, b in every if (a, b) in reasons]
     return [pair for pair in every if pair not in reasons], allowed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 from types import MappingProxyType
@@ -49,11 +49,14 @@ class Scene(Renamed):
     """
 
     def __init__(self, objects: Iterable[Shape] = (), *, allowed: Iterable[Sequence[str]] = ()) -> None:
-        self._objects: dict[str, Shape] = {}
         self._attached: dict[str, Attachment] = {}
         self.version = next(VERSIONS)
-        for shape in check_shapes(objects):
-            self._insert(shape)
+        shapes = check_shapes(objects)
+        self._objects: dict[str, Shape] = {shape.name: shape for shape in shapes}
+        if "" in self._objects or len(self._objects) < len(shapes):
+            self._objects = {}
+            for shape in shapes:
+                self._insert(shape)
         self._allowed = frozenset(check_pair(pair) for pair in allowed)
 
     @classmethod
@@ -85,6 +88,8 @@ class Scene(Renamed):
     @property
     def obstacles(self) -> tuple[Shape, ...]:
         """The objects that are not attached, in order."""
+        if not self._attached:
+            return tuple(self._objects.values())
         return tuple(shape for name, shape in self._objects.items() if name not in self._attached)
 
     @property
@@ -188,19 +193,21 @@ class Scene(Renamed):
         new._allowed = self._allowed - {pair}
         return new
 
-    def check_links(self, links: Iterable[str], frames: Iterable[str], robot: str) -> None:
+    def check_links(self, links: Iterable[str], frames: Collection[str], robot: str) -> None:
         """Check the names that belong to a robot: those of frames that carry objects, and of links.
 
         Raises UnknownNameError for a frame or link that the robot lacks, InputError for an object that has
         the name of a link.
         """
-        carriers, known = set(frames), {*links, *self._objects}
         for name in self._objects:
-            if name in carriers:
+            if name in frames:
                 raise InputError(f"object {name!r} has the name of a link of {robot}; give it another one")
+        if not self._attached and not self._allowed:
+            return
+        known = {*links, *self._objects}
         for name, attachment in self._attached.items():
-            if attachment.frame not in carriers:
-                raise suggest("frame", attachment.frame, carriers, owner=f"{robot} (it carries {name!r})")
+            if attachment.frame not in frames:
+                raise suggest("frame", attachment.frame, frames, owner=f"{robot} (it carries {name!r})")
             for touched in attachment.touch:
                 if touched not in known:
                     raise suggest("link or object", touched, known, owner=f"{robot} and its scene")

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
+from cspace._core import as_rows
 from cspace.arrays import Array, as_floats
 from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
@@ -63,8 +64,14 @@ class ArmSpace:
         """The least distance at q (..., dof); see collision.clearance."""
         return clearance(self.geometry, q, self.scene)
 
+    def plain_rows(self, q: object) -> Array | None:
+        """As as_rows for arrays of float64 and lists of numbers; None for anything else."""
+        return as_rows(q, self.dof, LARGEST_NUMBER)
+
     def as_rows(self, q: ArrayLike, subject: str) -> Array:
         """One configuration (dof,) or several (n, dof) as rows; InputError for another shape or NaN."""
+        if (plain := self.plain_rows(q)) is not None:
+            return plain
         rows = np.ascontiguousarray(as_floats(q, subject, last=(self.dof,), largest=LARGEST_NUMBER))
         if rows.ndim > 2 or (not rows.size and self.dof):
             raise InputError(

@@ -1,0 +1,83 @@
+"""Solids that checks take exactly: boxes, cylinders and capsules, whose spheres only tell where to look."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array
+from cspace.shapes import Box, Capsule, Cylinder, Shape, cover_shape
+from cspace.spatial.poses import transform_points
+
+SOLID_WIDTH: Final = 16
+"""Numbers of a solid: its kind, three sizes, the rotation by rows and the place of its frame."""
+
+NO_SOLIDS: Final = np.empty((0, SOLID_WIDTH))
+"""The solids of a robot of spheres and meshes."""
+
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedShapes:
+    """Shapes in the frame of a body. spheres (m, 4) [m] cover them; solids (k, 16): those that are exact;
+    sphere_solids (m,): the solid that a sphere helps to cover, −1 where the spheres themselves count. excess
+    [m]: no sphere that counts sticks out of its shape by more."""
+
+    spheres: Array
+    solids: Array
+    sphere_solids: Integers
+    excess: float
+
+
+def solid_row(shape: Shape) -> Array | None:
+    """The numbers (16,) of a solid that checks take exactly, None for other shapes; see SOLID_WIDTH."""
+    if isinstance(shape, Box):
+        head = [0.0, *(shape.size / 2.0)]
+    elif isinstance(shape, (Cylinder, Capsule)):
+        kind = 1.0 if isinstance(shape, Cylinder) else 2.0
+        head = [kind, shape.radius, shape.radius, shape.length / 2.0]
+    else:
+        return None
+    return np.array([*head, *shape.pose[:3, :3].ravel(), *shape.pose[:3, 3]])
+
+
+def place_shape(shape: Shape, cover: float, T_body_frame: Array) -> PlacedShapes:
+    """A shape, given in a frame of a body, as checks take it. cover [m]: how far spheres may stick out."""
+    found, row = cover_shape(shape, cover), solid_row(shape.moved(T_body_frame))
+    spheres = found.spheres.copy()
+    spheres[:, :3] = transform_points(T_body_frame, spheres[:, :3])
+    count = len(spheres)
+    if row is None:
+        return PlacedShapes(spheres, NO_SOLIDS, np.full(count, -1, dtype=np.int64), found.excess)
+    return PlacedShapes(spheres, row[None], np.zeros(count, dtype=np.int64), 0.0)
+
+
+def join_shapes(parts: list[PlacedShapes]) -> PlacedShapes:
+    """The shapes of all parts, their solids numbered anew."""
+    solids = np.concatenate([NO_SOLIDS, *(part.solids for part in parts)])
+    first = np.cumsum([0, *(len(part.solids) for part in parts)])
+    numbers = [
+        np.where(part.sphere_solids < 0, -1, part.sphere_solids + start)
+        for part, start in zip(parts, first[:-1].tolist(), strict=True)
+    ]
+    return PlacedShapes(
+        np.concatenate([np.zeros((0, 4)), *(part.spheres for part in parts)]),
+        solids,
+        np.concatenate([np.zeros(0, dtype=np.int64), *numbers]).astype(np.int64),
+        max((part.excess for part in parts), default=0.0),
+    )
+
+
+def split_shapes(shapes: PlacedShapes, owners: Integers) -> list[PlacedShapes]:
+    """The shapes of each owner of spheres (m,), whose numbers ascend."""
+    parts = []
+    for rows in np.split(np.arange(len(owners)), np.flatnonzero(np.diff(owners)) + 1):
+        numbers = shapes.sphere_solids[rows]
+        own = np.unique(numbers[numbers >= 0])
+        renumbered = np.where(numbers < 0, -1, np.searchsorted(own, numbers))
+        parts.append(PlacedShapes(shapes.spheres[rows], shapes.solids[own], renumbered, shapes.excess))
+    return parts
