@@ -145,12 +145,25 @@ Numbers keep_within(SolverArgument solver, const ConstDoubles& q, const ConstDou
     return Numbers({npy_intp(found.size())}, found.data());
 }
 
+// The rows within limits, the nearest to a seed first, and whether one is left out that may be on a limit.
+nb::tuple sort_rows_near(SolverArgument solver, const ConstDoubles& q, const ConstDoubles& lower,
+                         const ConstDoubles& upper, const ConstDoubles& seed, double close) {
+    const npy_intp n = solver.core().chain().n, rows = q.size / n;
+    require_sizes(q.size == rows * n && lower.size == n && upper.size == n && seed.size == n);
+    const ik::NearRows sorted = ik::sort_rows_near(
+        {std::size_t(rows), int(n), solver.core().chain().prismatic, lower.data, upper.data, q.data, seed.data},
+        close);
+    return nb::make_tuple(Doubles({npy_intp(sorted.q.size()) / n, n}, sorted.q.data()), sorted.is_doubtful);
+}
+
 }  // namespace
 
 void bind_ik_goals(nb::module_& m) {
     m.def("_ik_keep_within", &keep_within, "solver"_a, "q"_a, "lower"_a, "upper"_a, "kept"_a, "count"_a,
           "order"_a.none(), "same"_a, "close"_a,
           "Keeps the rows inside limits; returns the numbers of those that are close to them.");
+    m.def("_ik_sort_near", &sort_rows_near, "solver"_a, "q"_a, "lower"_a, "upper"_a, "seed"_a, "close"_a,
+          "The rows within limits, the nearest to a seed first; whether one may be on a limit.");
     m.def("_ik_answer", &answer_rows, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a,
           "is_partial"_a, "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a,
           "is_single"_a, "about"_a,

@@ -1,6 +1,9 @@
 #include "planning_arm.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -191,7 +194,6 @@ class ArmSearch {
           width_(std::size_t(space.checker.dof())),
           bounds_(space),
           edges_(space, options, bounds_),
-          trees_(edges_, table_of(int(width_)), options.seed, options.range),
           path_(width_) {}
 
     ArmPlan run() {
@@ -209,25 +211,51 @@ class ArmSearch {
     const std::size_t width_;
     const FloatBounds bounds_;
     ArmEdges edges_;
-    Trees trees_;
+    std::optional<Trees> trees_;
     std::vector<int> starts_, goals_;  // the given rows of the roots
+    bool has_more_goals_ = false;      // than the trees have
     Path path_;
     ArmPlan plan_;
 
     const double* start_row(int i) const { return &problem_.starts[std::size_t(i) * width_]; }
     const double* goal_row(int i) const { return &problem_.goals[std::size_t(i) * width_]; }
 
+    // Of more goals the nearest ones are tried alone first: a path to them is shorter.
+    static constexpr std::size_t first_goals = 3;
+    static constexpr std::int64_t first_edges = 2048;  // with them; about two milliseconds
+
     // Roots of the trees are the starts and goals that are free.
     bool check_ends() {
         plan_.starts = report_rows(problem_.starts, starts_);
         plan_.goals = report_rows(problem_.goals, goals_);
-        for (const int i : starts_) trees_.add_start(round_row(start_row(i)).data());
-        for (const int i : goals_) trees_.add_goal(round_row(goal_row(i)).data());
+        has_more_goals_ = goals_.size() > first_goals;
+        if (has_more_goals_) sort_goals();
+        plant_roots(has_more_goals_ ? first_goals : goals_.size());
         if (starts_.empty())
             plan_.status = PlanStatus::invalid_start;
         else if (goals_.empty())
             plan_.status = PlanStatus::invalid_goals;
         return !starts_.empty() && !goals_.empty();
+    }
+    void plant_roots(std::size_t goals) {
+        trees_.emplace(edges_, table_of(int(width_)), options_.seed, options_.range);
+        for (const int i : starts_) trees_->add_start(round_row(start_row(i)).data());
+        for (std::size_t k = 0; k < goals; ++k) trees_->add_goal(round_row(goal_row(goals_[k])).data());
+    }
+    // By their distance from the nearest start.
+    void sort_goals() {
+        std::vector<std::pair<float, int>> order;
+        for (const int g : goals_) {
+            const Trees::Row to = round_row(goal_row(g));
+            float least = std::numeric_limits<float>::infinity();
+            for (const int s : starts_) {
+                edges_.has_time();  // polls
+                least = std::min(least, edges_.box().distance(round_row(start_row(s)).data(), to.data()));
+            }
+            order.emplace_back(least, g);
+        }
+        std::sort(order.begin(), order.end());
+        for (std::size_t k = 0; k < order.size(); ++k) goals_[k] = order[k].second;
     }
     std::vector<RowReport> report_rows(std::span<const double> rows, std::vector<int>& free) {
         std::vector<RowReport> reports(rows.size() / width_);
@@ -263,9 +291,13 @@ class ArmSearch {
     PlanStatus search() {
         while (true) {
             const SearchEnd end = grow_trees();
+            if (end == SearchEnd::edge_budget && has_more_goals_) {
+                add_other_goals();
+                continue;
+            }
             if (end == SearchEnd::edge_budget) return give_up(PlanStatus::edge_budget);
             if (end == SearchEnd::no_time) return give_up(PlanStatus::time_limit);
-            write_raw_path(trees_);
+            write_raw_path(*trees_);
             plan_.raw_cost = path_.length();
             if (options_.simplify) simplify();
             const bool is_whole = options_.answer == EdgeTest::sampled || prove_rest();
@@ -278,7 +310,14 @@ class ArmSearch {
     }
     SearchEnd grow_trees() {
         const StageTimer timer(plan_.stats.search_seconds);
-        return trees_.run(options_.edges);
+        const std::int64_t left = options_.edges - plan_.stats.edges;
+        return trees_->run(has_more_goals_ ? std::min(first_edges, left) : left);
+    }
+    // Grows new trees from all roots.
+    void add_other_goals() {
+        count_edges();
+        has_more_goals_ = false;
+        plant_roots(goals_.size());
     }
 
     // The path of the trees, unwound: joints that wrap go on beyond ±π. Roots are the first nodes.
@@ -331,7 +370,7 @@ class ArmSearch {
             if (!edges_.has_time()) return false;
             ++plan_.stats.proofs;
             if (!edges_.is_free(path_.row(i), path_.row(i + 1))) {
-                trees_.remove_edge(std::size_t(path_.source(i)));
+                trees_->remove_edge(std::size_t(path_.source(i)));
                 edges_.prove_search();
                 ++plan_.stats.removed;
                 return false;
@@ -387,21 +426,26 @@ class ArmSearch {
         plan_.start = plan_.goal = -1;
         plan_.turns.clear();
         plan_.raw_cost = plan_.cost;
-        plan_.approach.distance = trees_.least_distance();
+        plan_.approach.distance = trees_->least_distance();
         const auto copy = [&](int t) {
-            const auto& row = trees_.nearest_row(t);
+            const auto& row = trees_->nearest_row(t);
             return std::vector<double>(row.begin(), row.begin() + std::ptrdiff_t(width_));
         };
         plan_.approach.from = copy(0), plan_.approach.to = copy(1);
         return status;
     }
-    void write_stats() {
-        const Trees::Counts& counts = trees_.counts();
+    // Adds what the trees did to the statistics.
+    void count_edges() {
+        const Trees::Counts& counts = trees_->counts();
         ArmStats& stats = plan_.stats;
-        stats.samples += counts.samples, stats.rejected = counts.rejected;
+        stats.samples += counts.samples, stats.rejected += counts.rejected;
         stats.edges += counts.edges, stats.blocked += counts.blocked;
+    }
+    void write_stats() {
+        count_edges();
+        ArmStats& stats = plan_.stats;
         stats.blocks = edges_.blocks();
-        stats.nodes = trees_.tree(0).size() + trees_.tree(1).size();
+        stats.nodes = trees_->tree(0).size() + trees_->tree(1).size();
         edges_.tally().write_most(plan_);
     }
 };
