@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <utility>
 
 #include "cspace/math/threads.hpp"
 #include "ik_arm.hpp"
@@ -84,28 +83,6 @@ std::vector<std::int64_t> keep_within(const RowsWithin& rows, double same, doubl
     });
     std::sort(doubtful.begin(), doubtful.end());
     return doubtful;
-}
-
-NearRows sort_rows_near(const RowsToSort& given, double close) {
-    const std::size_t n = std::size_t(given.n);
-    NearRows sorted;
-    std::vector<double> turned(given.q, given.q + given.rows * n);
-    std::vector<std::pair<double, std::size_t>> order;  // squared distance and row
-    for (std::size_t k = 0; k < given.rows; ++k) {
-        double* const q = &turned[k * n];
-        if (!std::isfinite(q[0])) continue;
-        const double excess =
-            turn_to_seed(given.prismatic, given.n, given.lower, given.upper, given.seed, q);
-        sorted.is_doubtful |= excess > 0 && excess <= close;
-        if (excess > 0) continue;
-        double square = 0;
-        for (std::size_t i = 0; i < n; ++i) square += (q[i] - given.seed[i]) * (q[i] - given.seed[i]);
-        order.emplace_back(square, k);
-    }
-    std::sort(order.begin(), order.end());
-    for (const auto& [square, k] : order)
-        sorted.q.insert(sorted.q.end(), &turned[k * n], &turned[k * n] + n);
-    return sorted;
 }
 
 }  // namespace cspace::ik

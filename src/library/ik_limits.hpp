@@ -22,19 +22,4 @@ struct RowsWithin {
 // `close` [rad, m]: those of double solutions, whose true place may be on the limit.
 std::vector<std::int64_t> keep_within(const RowsWithin& rows, double same, double close);
 
-// The rows (k, n) of q that keep the limits, each revolute joint by the multiple of 2π within them that is
-// nearest to a seed (n,), the nearest row first (L2 norm). is_doubtful: a row beyond a limit by at most
-// `close` is left out.
-struct NearRows {
-    std::vector<double> q;
-    bool is_doubtful = false;
-};
-struct RowsToSort {
-    std::size_t rows;
-    int n;
-    const bool* prismatic;
-    const double *lower, *upper, *q, *seed;
-};
-NearRows sort_rows_near(const RowsToSort& given, double close);
-
 }  // namespace cspace::ik

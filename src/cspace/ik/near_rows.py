@@ -9,6 +9,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.buffer_pool import pooled_array
+from cspace.ik.goals.given import checked_poses, too_far
 from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.solver import Solver
 from cspace.model import Limits
@@ -31,6 +32,19 @@ def sort_near(solver: Solver, q: Array, limits: Limits, seed: Array) -> Array:
         given = given[np.isfinite(given[:, 0])]
         settled = settle_on_limits(solver, given, limits, POSE_ROWS)
         rows, _ = _core._ik_sort_near(solver, np.ascontiguousarray(settled), *bounds)
+    return rows
+
+
+def solve_locked_near(solver: Solver, T: Array, values: Array, limits: Limits, seed: Array) -> Array:
+    """The solutions of a pose T (4, 4) with the redundant joints at values (n, r), sorted as by sort_near.
+
+    Raises InputError for what is not a pose.
+    """
+    bounds = np.ascontiguousarray(limits.lower), np.ascontiguousarray(limits.upper), seed
+    rows = _core._ik_locked_near(solver, T, values, *bounds)
+    if rows is None:
+        checked_poses(T)
+        raise too_far("goal", T[:3, 3])
     return rows
 
 

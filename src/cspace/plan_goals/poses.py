@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.goals.given import checked_poses, goal_array
-from cspace.ik.near_rows import solve_locked_redundant, sort_near
+from cspace.ik.goals.given import goal_array
+from cspace.ik.near_rows import solve_locked_near, sort_near
 from cspace.plan_goals.goals import Goals
 from cspace.planning import ArmSpace
 from cspace.search.halton import halton_points
@@ -33,7 +33,7 @@ def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
     """All IK solutions of a pose; of a redundant arm those at some values of its redundant joints."""
     if not robot.solver.is_redundant:
         return keep_solutions(robot, space, start, robot.ik(goal))
-    T = checked_poses(goal_array(goal))
+    T = goal_array(goal)
     rows = solve_redundant(robot, space, start, T, FEW_VALUES)
     if len(rows):
         return Goals(rows, is_whole=False, pose=T)
@@ -41,10 +41,12 @@ def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
 
 
 def solve_redundant(robot: Robot, space: ArmSpace, start: Array, T: Array, count: int) -> Array:
-    """The solutions of a pose T (4, 4) within limits at so many values of the redundant joints (k, dof)."""
-    poses = np.repeat(T[None], count, axis=0)
-    q, _ = solve_locked_redundant(robot.solver, poses, spread_redundant(robot, space, count))
-    return sort_near(robot.solver, q, robot.limits, start)
+    """The solutions of a pose T (4, 4) within limits at so many values of the redundant joints (k, dof), the
+    nearest to the start first."""
+    kept, name = space.geometry._kept, f"redundant values {count}"
+    if name not in kept:
+        kept[name] = spread_redundant(robot, space, count)
+    return solve_locked_near(robot.solver, T, kept[name], robot.limits, start)
 
 
 def spread_redundant(robot: Robot, space: ArmSpace, count: int) -> Array:
@@ -60,7 +62,7 @@ def spread_redundant(robot: Robot, space: ArmSpace, count: int) -> Array:
 def scale_redundant(robot: Robot, space: ArmSpace, u: Array) -> Array:
     """Values (n, r) of the redundant joints from points of the unit cube (n, r)."""
     low, high = space.bounds[:, list(robot.solver.redundant_joints)]
-    return np.asarray(low + (high - low) * u)
+    return np.ascontiguousarray(low + (high - low) * u)
 
 
 def solve_parts(robot: Robot, space: ArmSpace, start: Array, goal: Mapping[str, Any]) -> Goals:
