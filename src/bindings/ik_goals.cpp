@@ -175,7 +175,8 @@ std::optional<Doubles> solve_locked_near(SolverArgument solver, const ConstDoubl
     std::optional<ik::NearRows> found;
     {
         const nb::gil_scoped_release release;
-        found = ik::solve_locked_near(solver.core(), goal.data, {values.data, std::size_t(values.size)}, near);
+        found =
+            ik::solve_locked_near(solver.core(), goal.data, {values.data, std::size_t(values.size)}, near);
     }
     if (!found) return std::nullopt;
     return rows_of(solver, *found);

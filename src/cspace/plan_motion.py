@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, whole_number
 from cspace.collision import Scene
 from cspace.errors import InputError, InputTypeError
-from cspace.plan_goals import explain_goals, find_goals, find_more_goals
+from cspace.plan_goals import Goals, explain_goals, find_goals
 from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
 from cspace.robot import Robot
 from cspace.tables import html_table, one_line, shown
@@ -57,20 +56,13 @@ def plan(
     space = _make_space(robot, scene, margin)
     starts = space.as_rows(start, "start")
     goals = find_goals(robot, space, starts, goal)
-    if not len(goals.rows):
-        return _make_negative(space, chosen, goals.status, goals.reason)
-    found = chosen.plan(space, starts, goals.rows, rng=rng)
-    if found.status == "invalid_goal" and goals.pose is not None:
-        goals = find_more_goals(robot, space, starts, goals)
-        found = chosen.plan(space, starts, goals.rows, rng=rng)
+    found = _plan_to_goals(chosen, space, starts, goals, rng)
     if found.status == "invalid_start":
         raise InputError(
             f"{found.reason}; robot.escape leads away from there, or allow the pair in the scene"
         )
     if found.status == "invalid_goal":
-        if goals.is_given:
-            raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
-        return _make_negative(space, chosen, *explain_goals(space, goals))
+        raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
     return found
 
 
@@ -110,14 +102,27 @@ def plan_many(
     found = chosen.plan_each(space, problems, rng=rng, threads=count)
     plans = [_make_negative(space, chosen, each.status, each.reason) for each in sets]
     for k, each in zip(open_rows, found, strict=True):
-        if each.status == "invalid_goal" and sets[k].pose is not None:
-            sets[k] = find_more_goals(robot, space, rows[k][None], sets[k])
-            each = chosen.plan(space, rows[k], sets[k].rows, rng=rng)
-        if each.status == "invalid_goal" and not sets[k].is_given:
-            status, reason = explain_goals(space, sets[k])
-            each = replace(each, status=status, reason=reason)
         plans[k] = each
+        if each.status == "invalid_goal" and not sets[k].is_given:
+            plans[k] = _plan_to_more(chosen, space, rows[k][None], sets[k], rng)
     return Plans(plans)
+
+
+def _plan_to_goals(planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Goals, rng: Seed) -> Plan:
+    """A plan to the configurations of a goal; if none of them is free and others exist, to those."""
+    if not len(goals.rows):
+        return _make_negative(space, planner, goals.status, goals.reason)
+    found = planner.plan(space, starts, goals.rows, rng=rng)
+    if found.status == "invalid_goal" and not goals.is_given:
+        return _plan_to_more(planner, space, starts, goals, rng)
+    return found
+
+
+def _plan_to_more(planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Goals, rng: Seed) -> Plan:
+    """A plan where no configuration of a goal is free: to further ones, or the reason why there is none."""
+    if goals.find_more is not None:
+        return _plan_to_goals(planner, space, starts, goals.find_more(), rng)
+    return _make_negative(space, planner, *explain_goals(space, goals))
 
 
 class Plans(Sequence[Plan]):

@@ -17,8 +17,7 @@ NearRows sort_rows_near(const Chain& chain, std::span<const double> q, const Nea
     for (std::size_t k = 0; k < turned.size() / n; ++k) {
         double* const row = &turned[k * n];
         if (!std::isfinite(row[0])) continue;
-        const double excess =
-            turn_to_seed(chain.prismatic, chain.n, near.lower, near.upper, near.seed, row);
+        const double excess = turn_to_seed(chain.prismatic, chain.n, near.lower, near.upper, near.seed, row);
         sorted.is_doubtful |= excess > 0 && excess <= close;
         if (excess > 0) continue;
         double square = 0;
@@ -26,8 +25,7 @@ NearRows sort_rows_near(const Chain& chain, std::span<const double> q, const Nea
         order.emplace_back(square, k);
     }
     std::sort(order.begin(), order.end());
-    for (const auto& [square, k] : order)
-        sorted.q.insert(sorted.q.end(), &turned[k * n], &turned[k * n] + n);
+    for (const auto& [square, k] : order) sorted.q.insert(sorted.q.end(), &turned[k * n], &turned[k * n] + n);
     return sorted;
 }
 

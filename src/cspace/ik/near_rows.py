@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
@@ -18,9 +19,12 @@ from cspace.tolerances import DOUBLE_SOLUTION
 POSE_ROWS: Final = slice(6)
 """Of the Jacobian: all that a pose constrains."""
 
+NO_SEED: Final = np.empty(0)
+"""Joints that a singular pose leaves free take any value."""
+
 
 def sort_near(solver: Solver, q: Array, limits: Limits, seed: Array) -> Array:
-    """Of the solutions q (..., dof) of poses those within limits (k, dof), the nearest to a seed (dof,) first.
+    """Of solutions q (..., dof) of poses those within limits (k, dof), the nearest to a seed (dof,) first.
 
     Each revolute joint is moved by the multiple of 2π within its limits that is nearest to the seed. Rows
     of NaN are left out.
@@ -48,7 +52,7 @@ def solve_locked_near(solver: Solver, T: Array, values: Array, limits: Limits, s
     return rows
 
 
-def solve_locked_redundant(solver: Solver, T: Array, values: Array) -> tuple[Array, Array]:
+def solve_locked_redundant(solver: Solver, T: Array, values: Array) -> tuple[Array, npt.NDArray[np.int64]]:
     """Every solution of poses T (n, 4, 4) with the redundant joints of an arm locked at values (n, r).
 
     Returns q (n, room, dof) with NaN behind the solutions, and how many each pose has (n,). The poses are
@@ -64,7 +68,3 @@ def solve_locked_redundant(solver: Solver, T: Array, values: Array) -> tuple[Arr
     rows = q, branch, self_motion, count, status, 1
     _core._ik_locked_rows(solver, joints, at, np.ascontiguousarray(T), NO_SEED, *rows)
     return q, count
-
-
-NO_SEED: Final = np.empty(0)
-"""Joints that a singular pose leaves free take any value."""

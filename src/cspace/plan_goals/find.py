@@ -11,7 +11,8 @@ from cspace.arrays import Array
 from cspace.collision.checks import explain_contacts
 from cspace.errors import InputError, InputTypeError
 from cspace.plan_goals.goals import Goals
-from cspace.plan_goals.poses import MANY_VALUES, solve_parts, solve_pose, solve_redundant
+from cspace.plan_goals.parts import solve_parts
+from cspace.plan_goals.poses import solve_pose
 from cspace.plan_goals.regions import sample_region
 from cspace.planning import ArmSpace, Region
 from cspace.spatial import as_pose
@@ -24,8 +25,11 @@ POSE_ROWS: Final = 4
 
 
 def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals:
-    """The configurations of a goal as `plan` takes it; those of poses with the nearest to the first start
-    first, at its multiples of 2π."""
+    """The configurations (g, dof) of a goal as `plan` takes it.
+
+    Those of poses, partial goals and regions are sorted by their distance from the first of the starts
+    (s, dof), each revolute joint at the multiple of 2π that is nearest to it. Raises as `plan`.
+    """
     if isinstance(goal, Region):
         if not goal.is_exact:
             return sample_region(robot, space, starts[0], goal)
@@ -49,14 +53,6 @@ def is_pose(goal: Any) -> bool:
     except InputError:
         return False
     return True
-
-
-def find_more_goals(robot: Robot, space: ArmSpace, starts: Array, goals: Goals) -> Goals:
-    """The configurations of the same goal where none of those is free: more samples, if they were few."""
-    if goals.pose is None:
-        return goals
-    rows = solve_redundant(robot, space, starts[0], goals.pose, MANY_VALUES)
-    return Goals(np.concatenate([goals.rows, rows]), is_whole=False)
 
 
 def explain_goals(space: ArmSpace, goals: Goals) -> tuple[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from cspace.arrays import Array
@@ -12,15 +13,15 @@ class Goals:
     """The configurations of a goal.
 
     rows (g, dof) [rad or m]. reason: why there are none. is_given: they were given as configurations.
-    is_whole: they are all that reach the goal, not samples. pose (4, 4): that of a redundant arm, of whose
-    solutions few samples were tried; None otherwise.
+    is_whole: they are all that reach the goal, not samples. find_more: where they are few samples, a function
+    that takes many; None otherwise.
     """
 
     rows: Array
     reason: str = ""
     is_given: bool = False
     is_whole: bool = True
-    pose: Array | None = None
+    find_more: Callable[[], Goals] | None = None
 
     @property
     def status(self) -> str:

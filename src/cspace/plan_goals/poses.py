@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -19,14 +20,14 @@ if TYPE_CHECKING:
     from cspace.robot import Robot
 
 FEW_VALUES: Final = 9
-"""Values of the redundant joints at which a pose is solved: of the poses of 349 Panda problems three in a
+"""Values of each redundant joint at which a pose is solved: of the poses of 349 Panda problems three in a
 hundred have no free solution among them."""
 
 MANY_VALUES: Final = 256
-"""The same where none of these solutions is free: half a millisecond."""
+"""The same where none of these solutions is within limits and free: half a millisecond."""
 
-GOAL_SAMPLES: Final = 16
-"""Configurations that are looked for where a partial goal leaves freedom."""
+MOST_VALUES: Final = 4096
+"""Combinations of values of several redundant joints: ten milliseconds."""
 
 
 def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
@@ -36,47 +37,39 @@ def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
     T = goal_array(goal)
     rows = solve_redundant(robot, space, start, T, FEW_VALUES)
     if len(rows):
-        return Goals(rows, is_whole=False, pose=T)
-    return keep_solutions(robot, space, start, robot.ik(T))
+        more = partial(solve_pose_densely, robot, space, start, T)
+        return Goals(rows, is_whole=False, find_more=more)
+    return solve_pose_densely(robot, space, start, T)
 
 
-def solve_redundant(robot: Robot, space: ArmSpace, start: Array, T: Array, count: int) -> Array:
-    """The solutions of a pose T (4, 4) within limits at so many values of the redundant joints (k, dof), the
+def solve_pose_densely(robot: Robot, space: ArmSpace, start: Array, T: Array) -> Goals:
+    """The solutions of a pose T (4, 4) of a redundant arm at many values of its redundant joints, or those
+    that robot.ik lists."""
+    rows = solve_redundant(robot, space, start, T, MANY_VALUES)
+    return Goals(rows, is_whole=False) if len(rows) else keep_solutions(robot, space, start, robot.ik(T))
+
+
+def solve_redundant(robot: Robot, space: ArmSpace, start: Array, T: Array, each: int) -> Array:
+    """The solutions of a pose T (4, 4) within limits at so many values of each redundant joint (k, dof), the
     nearest to the start first."""
-    kept, name = space.geometry._kept, f"redundant values {count}"
+    kept, name = space.geometry._kept, f"redundant values {each}"
     if name not in kept:
-        kept[name] = spread_redundant(robot, space, count)
+        kept[name] = spread_redundant(robot, space, each)
     return solve_locked_near(robot.solver, T, kept[name], robot.limits, start)
 
 
-def spread_redundant(robot: Robot, space: ArmSpace, count: int) -> Array:
-    """Values (count, r) of the redundant joints, spread evenly between their bounds."""
-    joints = robot.solver.redundant_joints
-    if len(joints) == 1:
-        u = (np.arange(count)[:, None] + 0.5) / count
-    else:
-        u = halton_points(0, count, len(joints))
-    return scale_redundant(robot, space, u)
+def spread_redundant(robot: Robot, space: ArmSpace, each: int) -> Array:
+    """Values (n, r) of the redundant joints, spread evenly between their bounds."""
+    width = len(robot.solver.redundant_joints)
+    if width == 1:
+        return scale_redundant(robot, space, (np.arange(each)[:, None] + 0.5) / each)
+    return scale_redundant(robot, space, halton_points(0, min(each**width, MOST_VALUES), width))
 
 
 def scale_redundant(robot: Robot, space: ArmSpace, u: Array) -> Array:
     """Values (n, r) of the redundant joints from points of the unit cube (n, r)."""
     low, high = space.bounds[:, list(robot.solver.redundant_joints)]
     return np.ascontiguousarray(low + (high - low) * u)
-
-
-def solve_parts(robot: Robot, space: ArmSpace, start: Array, goal: Mapping[str, Any]) -> Goals:
-    """The solutions of a goal by keywords of robot.ik, and samples of what it leaves free."""
-    solutions = robot.ik(**goal)
-    more = sample_freedom(robot, goal) if solutions.freedom and "near" not in goal else ()
-    return keep_solutions(robot, space, start, solutions, more)
-
-
-def sample_freedom(robot: Robot, goal: Mapping[str, Any]) -> list[Array]:
-    """Configurations that reach a goal that leaves freedom, each the nearest to a random one."""
-    seeds = robot.random_configuration(GOAL_SAMPLES, rng=0, reach=1.0)
-    found = [robot.ik(**goal, near=q) for q in seeds]
-    return [solutions.q[0] for solutions in found if solutions]
 
 
 def keep_solutions(
@@ -87,7 +80,7 @@ def keep_solutions(
     if not solutions:
         return Goals(none, f"no IK solution: {solutions.reason}", is_whole=bool(solutions.complete))
     is_whole = solutions.status == "exact" and bool(solutions.complete) and not solutions.freedom
-    q = np.concatenate([solutions.q, *(row[None] for row in more)]) if more else solutions.q
+    q = np.concatenate([solutions.q, *more]) if more else solutions.q
     rows = sort_near(robot.solver, q, robot.limits, start)
     if not len(rows):
         sampled = "" if is_whole else " among those sampled"

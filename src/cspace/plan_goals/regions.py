@@ -65,9 +65,7 @@ def sample_region(robot: Robot, space: ArmSpace, start: Array, region: Region) -
     return Goals(np.ascontiguousarray(rows[order]), is_whole=False)
 
 
-def draw_poses(
-    robot: Robot, space: ArmSpace, start: Array, region: Region, drawn: Drawn, count: int
-) -> None:
+def draw_poses(robot: Robot, space: ArmSpace, start: Array, region: Region, drawn: Drawn, count: int) -> None:
     """Draw more poses of a region and sort their configurations into free and blocked ones."""
     q, found = solve_poses(robot, space, region, drawn.poses, count)
     kept, within = keep_within(robot.solver, q, robot.limits, slice(POSE_JOINTS))

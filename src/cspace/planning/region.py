@@ -15,7 +15,7 @@ from cspace.search.halton import halton_points
 from cspace.spatial import as_pose, as_rotation, exp_so3, pose, rotation_distance
 from cspace.spatial.checks import one_pose
 from cspace.spatial.poses import assemble, invert_pose, transform_points
-from cspace.spatial.vectors import axis_named, frame_along, length_and_direction
+from cspace.spatial.vectors import Z, axis_named, frame_along, length_and_direction
 from cspace.tables import one_line
 from cspace.tolerances import FARTHEST, IN_REGION, SMALL_TURN
 
@@ -117,8 +117,8 @@ class Region:
             return np.asarray(self.rotation @ turns)
         if self.direction is None:
             return rotations_within(u, np.pi)
-        tilted = directions_within(u[:, :2], self.direction, self.within)
-        return np.array([frame_along(d) for d in tilted]) @ turns_about_z(u[:, 2]) @ frame_along(self.axis).T
+        turned = tilts_within(u[:, :2], self.within) @ turns_about_z(u[:, 2])
+        return np.asarray(frame_along(self.direction) @ turned @ frame_along(self.axis).T)
 
     def __repr__(self) -> str:
         parts = []
@@ -168,22 +168,25 @@ def angle_between(a: Array, b: Array) -> Array:
     return np.asarray(2.0 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
 
 
-def directions_within(u: Array, middle: Array, angle: float) -> Array:
-    """Unit vectors (n, 3), uniform over the cone of an angle about one, from points of the square (n, 2)."""
-    height = 2.0 * np.sin(angle / 2.0) ** 2 * u[:, 0]  # 1 − cos of the tilt
-    radius, turn = np.sqrt(height * (2.0 - height)), 2.0 * np.pi * u[:, 1]
-    local = np.stack([radius * np.cos(turn), radius * np.sin(turn), 1.0 - height], axis=-1)
-    return np.asarray(local @ frame_along(middle).T)
+def tilts_within(u: Array, angle: float) -> Array:
+    """Rotations (n, 3, 3) about axes normal to z that tilt it, from points of the unit square (n, 2).
+
+    The tilted z is uniform over the cone of an angle about z.
+    """
+    height = np.sin(angle / 2.0) * np.sqrt(u[:, 0])  # sine of half the tilt
+    turn = 2.0 * np.pi * u[:, 1]
+    axes = np.stack([-np.sin(turn), np.cos(turn), np.zeros(len(u))], axis=-1)
+    return exp_so3(2.0 * np.arcsin(height)[:, None] * axes)
 
 
 def turns_about_z(u: Array) -> Array:
     """Rotations (n, 3, 3) about z, by whole circles times u (n,)."""
-    return exp_so3(2.0 * np.pi * u[:, None] * np.array([0.0, 0.0, 1.0]))
+    return exp_so3(2.0 * np.pi * u[:, None] * Z)
 
 
 def rotations_within(u: Array, angle: float) -> Array:
     """Rotations (n, 3, 3), uniform over turns of at most an angle, from points of the unit cube (n, 3)."""
-    axes = directions_within(u[:, :2], np.array([0.0, 0.0, 1.0]), np.pi)
+    axes = tilts_within(u[:, :2], np.pi) @ Z
     return exp_so3(axes * turn_angles(u[:, 2], angle)[:, None])
 
 
