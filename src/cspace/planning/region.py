@@ -15,7 +15,7 @@ from cspace.search.halton import halton_points
 from cspace.spatial import as_pose, as_rotation, exp_so3, pose, rotation_distance
 from cspace.spatial.checks import one_pose
 from cspace.spatial.poses import assemble, invert_pose, transform_points
-from cspace.spatial.vectors import Z, axis_named, frame_along, length_and_direction
+from cspace.spatial.vectors import AXES, Z, frame_along, length_and_direction
 from cspace.tables import one_line
 from cspace.tolerances import FARTHEST, IN_REGION, SMALL_TURN
 
@@ -151,7 +151,9 @@ def read_box(box: Any) -> tuple[Array, Array]:
 def read_direction(value: Any, subject: str) -> Array:
     """A unit vector (3,) as callers give it: a name such as "z" or "-x", or any length."""
     if isinstance(value, str):
-        return axis_named(value)
+        if value not in AXES:
+            raise InputError(f"{subject} is {value!r}; it must be x, y, z, -x, -y, -z or numbers (3,)")
+        return AXES[value]
     length, unit = length_and_direction(one_array(value, subject, (3,)))
     if length == 0.0:
         raise InputError(f"{subject} is zero and has no direction")

@@ -7,10 +7,9 @@ from functools import reduce
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError
 
 X, Y, Z = np.eye(3)
-AXES = {"x": X, "y": Y, "z": Z}
+AXES = {"x": X, "y": Y, "z": Z, "-x": -X, "-y": -Y, "-z": -Z}
 
 
 def length_and_direction(v: Array) -> tuple[Array, Array]:
@@ -29,14 +28,6 @@ def length_and_direction(v: Array) -> tuple[Array, Array]:
         direction[..., k] = part / safe
     with np.errstate(over="ignore"):
         return np.asarray(scale * length), direction
-
-
-def axis_named(name: str) -> Array:
-    """The unit vector (3,) of a name such as "z" or "-x"."""
-    sign = -1.0 if name.startswith("-") else 1.0
-    if name.removeprefix("-") not in AXES:
-        raise InputError(f"axis {name!r} is unknown, expected x, y, z, -x, -y, -z or a direction (3,)")
-    return np.asarray(sign * AXES[name.removeprefix("-")])
 
 
 def cross(a: Array, b: Array) -> Array:

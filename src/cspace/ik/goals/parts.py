@@ -12,7 +12,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.given import is_open
 from cspace.ik.goals.partial import ANY, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
-from cspace.spatial.vectors import axis_named, length_and_direction
+from cspace.spatial.vectors import AXES, length_and_direction
 from cspace.tolerances import FARTHEST
 
 POINTED = ("direction", "look_at", "ray", "angle_to")
@@ -121,6 +121,12 @@ def pair_of(value: Any, name: str, words: str) -> Any:
     if isinstance(value, (tuple, list)) and len(value) == 2:
         return value
     raise InputTypeError(f"{name} must be a pair: {words}")
+
+
+def axis_named(name: str) -> Array:
+    if name not in AXES:
+        raise InputError(f"axis {name!r} is unknown, expected x, y, z, -x, -y, -z or a direction (3,)")
+    return AXES[name]
 
 
 def assemble_goal(kind: str, values: dict[str, Any]) -> PartialGoal:
