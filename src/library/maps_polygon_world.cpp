@@ -37,6 +37,18 @@ Outlines outlines_from(const BitGrid& grid, double side, Point origin) {
     return world;
 }
 
+// So many zeros; polls, as the first touch of memory takes long.
+std::vector<std::uint8_t> zero_bytes(std::size_t count) {
+    constexpr std::size_t part = std::size_t(1) << 20;
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(count);
+    while (bytes.size() < count) {
+        bytes.resize(std::min(count, bytes.size() + part));
+        poll_interrupts();
+    }
+    return bytes;
+}
+
 }  // namespace
 
 PolygonCore::State::State(Outlines outlines, double t) : world(std::move(outlines)), tolerance(t) {}
@@ -130,8 +142,7 @@ double PolygonCore::path_clearance(std::span<const Point> path) const {
 
 Table<std::uint8_t> PolygonCore::rasterize(double side, int rows, int columns) const {
     const PolygonWorld& world = state_->world;
-    Table<std::uint8_t> blocked{std::vector<std::uint8_t>(std::size_t(rows) * std::size_t(columns)),
-                                std::size_t(columns)};
+    Table<std::uint8_t> blocked{zero_bytes(std::size_t(rows) * std::size_t(columns)), std::size_t(columns)};
     maps::rasterize(world.space, world.outlines.low, side, rows, columns, state_->tolerance,
                     blocked.values.data());
     return blocked;

@@ -26,4 +26,4 @@ class AORRTC(RRTConnect):
 
     def _core_options(self, rng: Seed) -> ArmOptions:
         """See RRTConnect."""
-        return self._make_options(rng, self.improve)
+        return self._make_options(rng, self.range, self.improve)

@@ -1,0 +1,146 @@
+"""EdgePlanner: what the planners share that check motions in the core."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from cspace._core import ArmOptions, ArmPlan
+from cspace.arrays import Array
+from cspace.planning.arm_planner import ArmPlanner, Seed
+from cspace.planning.plan_result import Plan
+from cspace.planning.space import ArmSpace
+from cspace.search import draw_seed, option
+from cspace.tables import join_words, shown
+
+ENDS = ("found", "edge budget", "time limit", "invalid start", "invalid goals")
+"""How the core ends, in its order."""
+
+
+@dataclass(frozen=True, eq=False)
+class EdgePlanner(ArmPlanner):
+    """A planner that searches in the core by checks of motions.
+
+    Its path is simplified by shortcuts, which are proved, then what is left of the motions of the search. A
+    motion whose proof fails is removed, and the search goes on.
+    A subclass defines `_plan_rows` and `_plan_each_rows`.
+    """
+
+    search: str = option(
+        "proved", "how the search checks motions", choices=("proved", "sampled"), subject="kind of check"
+    )
+    resolution: float = option(1.0 / 32.0, "distance of samples", unit="rad or m", above=0.0, maximum=1e3)
+    certify: bool = option(True, "prove every motion of the answer; False samples them as the search does")
+    simplify: bool = option(True, "shorten the path")
+    edges: int = option(1 << 20, "motions that the search may check", minimum=0, maximum=1 << 40)
+    time_limit: float = option(
+        inf,
+        "time per problem; it decides only whether there is a path",
+        unit="s",
+        minimum=0.0,
+        may_be_infinite=True,
+    )
+
+    def plan(self, space: ArmSpace, starts: ArrayLike, goals: ArrayLike, *, rng: Seed = 0) -> Plan:
+        """From starts (dof,) or (s, dof) to goals (dof,) or (g, dof); see ArmPlanner.plan.
+
+        Raises InputError for configurations of another shape, or with NaN.
+        """
+        rows = space.as_rows(starts, "start"), space.as_rows(goals, "goal")
+        return self._name_plan(space, rows, self._plan_rows(space, rows, rng))
+
+    def plan_each(
+        self, space: ArmSpace, problems: Sequence[tuple[Any, Any]], *, rng: Seed = 0, threads: int = 0
+    ) -> list[Plan]:
+        """See ArmPlanner.plan_each. threads: 0 for all."""
+        rows = [
+            (space.as_rows(starts, f"start {k}"), space.as_rows(goals, f"goal {k}"))
+            for k, (starts, goals) in enumerate(problems)
+        ]
+        found = self._plan_each_rows(space, rows, rng, threads)
+        return [self._name_plan(space, ends, plan) for ends, plan in zip(rows, found, strict=True)]
+
+    def _plan_rows(self, space: ArmSpace, rows: tuple[Array, Array], rng: Seed) -> ArmPlan:
+        """The core's plan from rows of starts (s, dof) to rows of goals (g, dof)."""
+        raise NotImplementedError(f"{type(self).__name__} defines no _plan_rows")
+
+    def _plan_each_rows(
+        self, space: ArmSpace, rows: list[tuple[Array, Array]], rng: Seed, threads: int
+    ) -> list[ArmPlan]:
+        """The core's plan of each problem."""
+        raise NotImplementedError(f"{type(self).__name__} defines no _plan_each_rows")
+
+    def _make_options(self, rng: Seed, range: float = 1.0, improve: int = 0) -> ArmOptions:
+        """The options as the core takes them. range: longest motion of a tree [rad or m]; improve: motions
+        that may be checked for shorter paths."""
+        return ArmOptions(
+            self.search == "proved",
+            self.certify,
+            self.simplify,
+            draw_seed(rng),
+            self.edges,
+            improve,
+            self.time_limit,
+            range,
+            self.resolution,
+        )
+
+    def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> Plan:
+        """The Plan of what the core found."""
+        status, reason = explain_end(space, rows, found)
+        path = found.path
+        return Plan(
+            status=status,
+            reason=reason,
+            path=path,
+            cost=found.cost,
+            start=found.start,
+            goal=found.goal,
+            certified=found.certified,
+            stats=found.stats,
+            space=space,
+            planner=self,
+        )
+
+
+def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> tuple[str, str]:
+    """The status of a plan, and its reason in words."""
+    end = ENDS[found.status]
+    if end == "found":
+        corners = len(found.path)
+        return "found", f"found a path of length {shown(found.cost)} with {corners} corners"
+    if end == "invalid start":
+        return "invalid_start", explain_rows(space, rows[0], found.starts, "start")
+    if end == "invalid goals":
+        return "invalid_goal", explain_rows(space, rows[1], found.goals, "goal")
+    return "undetermined", explain_budget(space, found, end)
+
+
+def explain_rows(space: ArmSpace, rows: Array, reports: Sequence[Any], subject: str) -> str:
+    """Why none of these configurations may be taken: the first, and how many."""
+    causes = [
+        space.describe_contact(row, contact) or space.describe_violation(row)
+        for row, (_, contact) in zip(rows[:1], reports, strict=False)
+    ]
+    return (
+        f"{subject}: {causes[0]}"
+        if len(rows) == 1
+        else f"none of {len(rows)} {subject}s is free; of the first, {causes[0]}"
+    )
+
+
+def explain_budget(space: ArmSpace, found: ArmPlan, end: str) -> str:
+    """Why a search gave up: the budget, the closest approach, and what was most in the way."""
+    stats = found.stats
+    parts = [f"the {end} was used up after {stats['edges']} motions"]
+    distance, near, _ = found.approach
+    if len(near):
+        parts.append(f"the trees came within {shown(distance)} of each other")
+    contact, count = found.blocker
+    if contact is not None:
+        parts.append(f"{' and '.join(space.checker.name_pair(contact))} blocked {count} motions")
+    return join_words(parts)
