@@ -192,7 +192,8 @@ void bind_ik_goals(nb::module_& m) {
           "The rows within limits, the nearest to a seed first; whether one may be on a limit.");
     m.def("_ik_locked_near", &solve_locked_near, "solver"_a, "goal"_a, "values"_a, "lower"_a, "upper"_a,
           "seed"_a,
-          "The same of the solutions of a pose at values of the redundant joints; None if it is no pose.");
+          "The same of the solutions of a pose at values of the redundant joints; None for what is not a "
+          "pose.");
     m.def("_ik_answer", &answer_rows, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a,
           "is_partial"_a, "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a,
           "is_single"_a, "about"_a,

@@ -24,8 +24,7 @@ struct NearRows {
 // Those of the rows q (k, n) that keep the limits; rows of NaN are left out.
 NearRows sort_rows_near(const Chain& chain, std::span<const double> q, const NearSeed& near, double close);
 
-// The solutions of one pose with the redundant joints at each of the values (k, r). None for a goal that is
-// no pose, or too far away.
+// The solutions of one pose with the redundant joints at each of the values (k, r). None for an invalid goal.
 std::optional<NearRows> solve_locked_near(Solver& solver, const double* goal, std::span<const double> values,
                                           const NearSeed& near);
 

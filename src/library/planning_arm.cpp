@@ -20,8 +20,7 @@ const search::HaltonTable& table_of(int width) {
 class ConnectSearch {
   public:
     ConnectSearch(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options)
-        : query_(space, problem, options),
-          options_(options) {}
+        : query_(space, problem, options), options_(options) {}
 
     ArmPlan run() {
         if (query_.check_ends()) {

@@ -23,7 +23,7 @@ TIERS: list[set[str]] = [
     {"kinematics", "maps", "mobile"},
     {"dynamics", "collision", "search"},
     {"ik", "planning", "trajectory", "navigation", "localization"},
-    {"export", "move", "plan_goals"},
+    {"export", "move"},
     {"robot"},
     {"robots", "reach", "plan_motion"},
     {"plot", "lab"},

@@ -120,7 +120,7 @@ def test_a_region_without_a_free_configuration_is_undetermined_with_counts():
     start = np.radians([-60, -80, 90, -100, -90, 0])
     far = cs.plan(robot, start, Region(([0.1, 0.1, 0.1], [3.0, 0, 0])))
     assert far.status == "undetermined"
-    assert "of 4096 poses 4096 have no IK solution, 0 none within limits" in far.reason
+    assert "of 4096 poses that meet the goal 4096 have no IK solution, 0 none within limits" in far.reason
     wall = cs.Box([0.3, 0.3, 0.3], [0.5, 0.3, 0.5], name="wall")
     inside = cs.plan(robot, start, Region(([0.1, 0.1, 0.1], wall.pose)), cs.Scene([wall]))
     assert inside.status == "undetermined"

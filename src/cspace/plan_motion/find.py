@@ -10,10 +10,10 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.collision.checks import explain_contacts
 from cspace.errors import InputError, InputTypeError
-from cspace.plan_goals.goals import Goals
-from cspace.plan_goals.parts import solve_parts
-from cspace.plan_goals.poses import solve_pose
-from cspace.plan_goals.regions import sample_region
+from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.parts import solve_parts
+from cspace.plan_motion.poses import solve_pose
+from cspace.plan_motion.regions import sample_region
 from cspace.planning import ArmSpace, Region
 from cspace.spatial import as_pose
 

@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.goals.given import goal_array
 from cspace.ik.near_rows import solve_locked_near, sort_near
-from cspace.plan_goals.goals import Goals
+from cspace.plan_motion.goals import Goals
 from cspace.planning import ArmSpace
 from cspace.search.halton import halton_points
 

@@ -12,8 +12,8 @@ from cspace.arrays import Array
 from cspace.collision.checks import explain_contacts
 from cspace.ik.near_rows import solve_locked_redundant, sort_near
 from cspace.ik.on_limits import keep_within
-from cspace.plan_goals.goals import Goals
-from cspace.plan_goals.poses import scale_redundant
+from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.poses import scale_redundant
 from cspace.planning import ArmSpace, Region
 from cspace.planning.region import DIMENSIONS
 from cspace.search.halton import halton_points
@@ -118,8 +118,8 @@ def describe_drawn(robot: Robot, space: ArmSpace, drawn: Drawn) -> str:
     names = [robot.joint_names[k] for k in robot.solver.redundant_joints] if robot.solver.is_redundant else ()
     locked = f" at the value of {', '.join(names)} drawn for them" if names else ""
     text = (
-        f"no free configuration of the region was found: of {drawn.poses} poses {drawn.unreached} have no IK"
-        f" solution{locked}, {drawn.outside} none within limits"
+        f"no free configuration was found: of {drawn.poses} poses that meet the goal {drawn.unreached} have"
+        f" no IK solution{locked}, {drawn.outside} none within limits"
     )
     if not len(rows):
         return text

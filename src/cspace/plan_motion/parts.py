@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.plan_goals.goals import Goals
-from cspace.plan_goals.poses import keep_solutions
-from cspace.plan_goals.regions import FIRST_POSES, POSE_JOINTS, sample_region, solve_poses
+from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.poses import keep_solutions
+from cspace.plan_motion.regions import FIRST_POSES, POSE_JOINTS, sample_region, solve_poses
 from cspace.planning import ArmSpace, Region
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ import pytest
 
 import cspace as cs
 from cspace.ik.near_rows import sort_near
-from cspace.plan_goals import find_goals
+from cspace.plan_motion.find import find_goals
 from cspace.planning import ArmSpace
 
 SEEDS = range(8)
@@ -83,7 +83,7 @@ def test_the_nearest_goals_are_preferred():
 
 def test_a_pose_that_few_samples_miss_is_sampled_densely():
     robot = arm("panda")
-    balls = np.random.default_rng(3).uniform(-0.7, 0.7, (60, 3)) + [0.0, 0.0, 0.5]
+    balls = np.random.default_rng(3).uniform([-0.7, -0.7, -0.2], [0.7, 0.7, 1.2], (60, 3))
     scene = cs.Scene([cs.Sphere(0.03, p) for p in balls if np.linalg.norm(p[:2]) > 0.3])
     q = robot.random_configuration(3000, rng=5)
     start, *free = q[~robot.collides(q, scene)]

@@ -1,4 +1,4 @@
-"""Plans of a robot to configurations, poses and partial goals: planning to all their IK solutions."""
+"""Plans of a robot, one or many."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, whole_number
 from cspace.collision import Scene
 from cspace.errors import InputError, InputTypeError
-from cspace.plan_goals import Goals, explain_goals, find_goals
+from cspace.plan_motion.find import explain_goals, find_goals
+from cspace.plan_motion.goals import Goals
 from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
 from cspace.robot import Robot
 from cspace.tables import html_table, one_line, shown
-
-__all__ = ["Plans", "plan", "plan_many"]
 
 Seed = int | np.random.Generator | None
 
