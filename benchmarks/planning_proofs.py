@@ -1,12 +1,13 @@
 """What plans and proofs are worth, judged from outside: benchmarks/results/planning_proofs.json.
 
-Usage: python benchmarks/planning_proofs.py [--edges 100000] [--judged 20] [--vamp FOLDER] [--robots panda ur5 fetch]. Needs
-the shared data folder ($CSPACE_DATA, default ../shared/data); FOLDER as of planning.py, with rows/NAME_rows.bin:
-float32 configurations, as many for each problem.
+Usage: python benchmarks/planning_proofs.py [--edges 100000] [--judged 20] [--vamp FOLDER]
+[--robots panda ur5 fetch]. Needs the shared data folder ($CSPACE_DATA, default ../shared/data); FOLDER as of
+planning.py, with rows/NAME_rows.bin: float32 configurations, as many for each problem.
 
-Paths: every path of cs.plan and AORRTC on the valid problems, judged at a hundred times the planner's
-resolution. Edges: random ones of one radian, proved free, blocked or undecided; of those that are proved the
-first ones of each problem (--judged) are judged in the same way. Verdicts: of configurations, beside those of VAMP on the same spheres.
+Paths: every path of the planners on the valid problems, judged at a hundred times the resolution. Edges:
+random ones of one radian, proved free, blocked or undecided; of those that are proved the first ones of each
+problem (--judged) are judged in the same way. Verdicts: of configurations, beside those of VAMP on the same
+spheres.
 """
 
 from __future__ import annotations

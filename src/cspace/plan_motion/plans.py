@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, whole_number
-from cspace.collision import Scene
-from cspace.errors import InputError, InputTypeError
+from cspace.collision import MeshJudge, Scene
+from cspace.errors import InputError, InputTypeError, suggest
 from cspace.plan_motion.find import explain_goals, find_goals
 from cspace.plan_motion.goals import Goals
 from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
@@ -19,6 +20,9 @@ from cspace.robot import Robot
 from cspace.tables import html_table, one_line, shown
 
 Seed = int | np.random.Generator | None
+
+VERIFICATIONS: Final = ("mesh",)
+"""What a path can be checked with once more."""
 
 MOST_THREADS: Final = 1024
 """Threads that are believed."""
@@ -33,6 +37,7 @@ def plan(
     planner: str | ArmPlanner = "rrt_connect",
     margin: float = 0.0,
     rng: Seed = 0,
+    verify: str | MeshJudge | None = None,
     **options: Any,
 ) -> Plan:
     """A free way of a robot from a start to a goal, every motion of it proved.
@@ -44,15 +49,19 @@ def plan(
     self-motion. scene: None without obstacles. planner: a name of
     `cs.planning.PLANNERS`, or an ArmPlanner. margin [m]: everything keeps so far away from everything else.
     rng: seed or generator; the same seed gives the same plan on every machine. options: those of the planner.
+    verify: "mesh" checks the path once more, at samples, with the exact shapes of the links in place of their
+    spheres (needs the extra `mesh`); a path that fails is not returned. A collision.MeshJudge of a robot with
+    the same joints may be given instead, such as the one with meshes where this one has given spheres.
 
     The Plan is truthy if a way was found, and says why where not: "unreachable" if no IK solution exists or
-    all of them touch something, "undetermined" if the planner's budget was used up, or if only samples of
-    infinitely many IK solutions were tried.
+    all of them touch something, "undetermined" if the planner's budget was used up, if only samples of
+    infinitely many IK solutions were tried, or if the meshes touch something on the path.
     Raises InputError for a start or a given goal that touches something or is outside the limits,
     UnknownNameError for an unknown planner, InputTypeError for an unknown option.
     """
     chosen = find_planner(planner, options)
     space = _make_space(robot, scene, margin)
+    judge = None if verify is None else _find_judge(robot, space, verify)
     starts = space.as_rows(start, "start")
     goals = find_goals(robot, space, starts, goal)
     found = _plan_to_goals(chosen, space, starts, goals, rng)
@@ -62,7 +71,7 @@ def plan(
         )
     if found.status == "invalid_goal":
         raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
-    return found
+    return found if judge is None or not found else _verify_plan(found, chosen, judge)
 
 
 def plan_many(
@@ -105,6 +114,33 @@ def plan_many(
         if each.status == "invalid_goal" and not sets[k].is_given:
             plans[k] = _plan_to_more(chosen, space, rows[k][None], sets[k], rng)
     return Plans(plans)
+
+
+def _find_judge(robot: Robot, space: ArmSpace, verify: str | MeshJudge) -> MeshJudge:
+    """The judge of a path, as given or of the robot itself."""
+    if not isinstance(verify, MeshJudge):
+        if verify not in VERIFICATIONS:
+            raise suggest("verification", verify, VERIFICATIONS)
+        return MeshJudge(robot, space.scene, space.margin)
+    if verify.joint_names != robot.joint_names:
+        raise InputError(
+            f"verify is a judge of the joints {', '.join(verify.joint_names)}; it must have those of"
+            f" {robot.name}: {', '.join(robot.joint_names)}"
+        )
+    return verify
+
+
+def _verify_plan(found: Plan, planner: ArmPlanner, judge: MeshJudge) -> Plan:
+    """The plan if the exact shapes of the links touch nothing on its path; else why not, without a path."""
+    verdict = judge.judge_path(found.path)
+    stats = {**found.stats, "mesh_samples": verdict.samples, "mesh_step": verdict.step}
+    if verdict:
+        return replace(found, reason=f"{found.reason}; with meshes {verdict.reason}", stats=stats)
+    reason = (
+        f"a path of length {shown(found.cost)} is free for the spheres of the robot, but not for its meshes:"
+        f" {verdict.reason}; plan with a larger margin, or cover the meshes more closely"
+    )
+    return replace(_make_negative(found.space, planner, "undetermined", reason), stats=stats)
 
 
 def _plan_to_goals(planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Goals, rng: Seed) -> Plan:
