@@ -34,7 +34,8 @@ def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
     """All IK solutions of a pose; of a redundant arm those at some values of its redundant joints."""
     if not robot.solver.is_redundant:
         return keep_solutions(robot, space, start, robot.ik(goal))
-    T = goal_array(goal)
+    is_plain = type(goal) is np.ndarray and goal.dtype == np.float64 and goal.flags.carray
+    T = goal if is_plain else goal_array(goal)  # the core checks that it is a pose
     rows = solve_redundant(robot, space, start, T, FEW_VALUES)
     if len(rows):
         more = partial(solve_pose_densely, robot, space, start, T)
