@@ -1,11 +1,12 @@
-"""Poses as goals beside given configurations, and many problems on threads: benchmarks/results/planning_goals.json.
+"""Poses as goals, and many problems on threads: benchmarks/results/planning_goals.json.
 
-Usage: python benchmarks/planning_goals.py [--repeat 5] [--problems 10000] [--robots panda ur5 fetch]. Needs the
-shared data folder ($CSPACE_DATA, default ../shared/data).
+Usage: python benchmarks/planning_goals.py [--repeat 5] [--problems 10000] [--robots panda ur5 fetch]. Needs
+the shared data folder ($CSPACE_DATA, default ../shared/data).
 
-Goals: cs.plan to the configuration that a problem gives, and to its pose, inverse kinematics included; both in
-turn, processor time of the thread, the median of the rounds per problem. Threads: cs.plan_many of random pairs
-of free configurations in one scene, wall time on one and on two threads in turn, with the load of the machine.
+Goals: cs.plan to the configuration that a problem gives, and to its pose, inverse kinematics included; both
+in turn, processor time of the thread, the median of the rounds per problem. Threads: cs.plan_many of random
+pairs of free configurations in one scene, wall time on one and on two threads in turn, with the load of the
+machine.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """A judge of paths and edges that shares no code with the package: numpy in double, from the shared data.
 
 Robots are the published spheres, scenes the MotionBenchMaker problems. A motion is looked at in intervals:
-the clearance of the middle is compared with a bound on how far any sphere moves within the interval (levers of
-joints times their travel; Schwarzer, Saha & Latombe 2005). What could touch is halved, down to intervals
+the clearance of the middle is compared with a bound on how far any sphere moves within the interval (levers
+of joints times their travel; Schwarzer, Saha & Latombe 2005). What could touch is halved, down to intervals
 shorter than FINE, whose middles are then samples at a hundred times the resolution of the planner.
 """
 

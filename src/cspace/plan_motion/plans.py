@@ -104,15 +104,21 @@ def plan_many(
     if len(rows) not in (1, len(wanted)):
         raise InputError(f"there are {len(rows)} starts and {len(wanted)} goals; give one start, or as many")
     rows = np.broadcast_to(rows, (len(wanted), space.dof)) if len(rows) == 1 else rows
-    sets = [find_goals(robot, space, row[None], goal) for row, goal in zip(rows, wanted, strict=True)]
-    open_rows = [k for k, each in enumerate(sets) if len(each.rows)]
-    problems = [(rows[k], sets[k].rows) for k in open_rows]
-    found = chosen.plan_each(space, problems, rng=rng, threads=count)
-    plans = [_make_negative(space, chosen, each.status, each.reason) for each in sets]
-    for k, each in zip(open_rows, found, strict=True):
-        plans[k] = each
-        if each.status == "invalid_goal" and not sets[k].is_given:
-            plans[k] = _plan_to_more(chosen, space, rows[k][None], sets[k], rng)
+    rows = np.ascontiguousarray(rows)
+    if isinstance(goals, np.ndarray) and goals.shape == rows.shape:  # one configuration each
+        ends = space.as_rows(goals, "goals")
+        problems = [(rows[k : k + 1], ends[k : k + 1]) for k in range(len(rows))]
+        return Plans(chosen.plan_each(space, problems, rng=rng, threads=count))
+    sets = [find_goals(robot, space, rows[k : k + 1], goal) for k, goal in enumerate(wanted)]
+    problems = [(rows[k : k + 1], each.rows) for k, each in enumerate(sets) if len(each.rows)]
+    found = iter(chosen.plan_each(space, problems, rng=rng, threads=count))
+    plans = [
+        next(found) if len(each.rows) else _make_negative(space, chosen, each.status, each.reason)
+        for each in sets
+    ]
+    for k, each in enumerate(sets):
+        if plans[k].status == "invalid_goal" and not each.is_given:
+            plans[k] = _plan_to_more(chosen, space, rows[k : k + 1], each, rng)
     return Plans(plans)
 
 
