@@ -232,9 +232,10 @@ def goal_wanted(args: argparse.Namespace, goal: Array | Goal) -> Any:
 
     if args.box is None and args.within is None:
         return goal.keywords if isinstance(goal, Goal) else goal
+    if not isinstance(goal, Goal):
+        raise UsageError("--box and --within are about goals of the tip: give --xyz in place of --to")
     parts: dict[str, Any] = {"position": None, "rotation": None, "direction": None}
-    if isinstance(goal, Goal):
-        parts |= goal.parts if goal.T is None else {"position": goal.T[:3, 3], "rotation": goal.T[:3, :3]}
+    parts |= goal.parts if goal.T is None else {"position": goal.T[:3, 3], "rotation": goal.T[:3, :3]}
     others = [name for name in parts if name not in ("position", "rotation", "direction")]
     has_place = parts["position"] is not None and None not in list(parts["position"])
     if others or (args.box is not None and not has_place):
