@@ -1,7 +1,8 @@
 """What plans and proofs are worth, judged from outside: benchmarks/results/planning_proofs.json.
 
 Usage: python benchmarks/planning_proofs.py [--edges 100000] [--judged 20] [--vamp FOLDER]
-[--robots panda ur5 fetch]. Needs the shared data folder ($CSPACE_DATA, default ../shared/data); FOLDER as of
+[--robots panda ur5 fetch] [--stages edges verdicts paths] [--planners plan aorrtc sampled]. Results are added
+to those of earlier runs. Needs the shared data folder ($CSPACE_DATA, default ../shared/data); FOLDER as of
 planning.py, with rows/NAME_rows.bin: float32 configurations, as many for each problem.
 
 Paths: every path of the planners on the valid problems, judged at a hundred times the resolution. Edges:
@@ -43,22 +44,22 @@ LENGTH = 1.0
 """Of the random edges [rad or m, L2 norm of the joints]."""
 
 
-def judge_paths(name: str, judge: Judge) -> dict[str, Any]:
+def judge_paths(name: str, judge: Judge, planners: list[str]) -> dict[str, Any]:
     """Per planner the paths found, the paths that touch something, and the deepest contact [m]."""
     robot, _ = published_robot(name)
     found: Counter[str] = Counter()
     bad: Counter[str] = Counter()
-    depth = dict.fromkeys(PLANNERS, 0.0)
+    depth = dict.fromkeys(planners, 0.0)
     for problem, (_, _, scene, start, goals) in enumerate(problems(name)):
         space = ArmSpace(robot, scene)
-        for key, planner in PLANNERS.items():
-            plan = planner.plan(space, start, goals)
+        for key in planners:
+            plan = PLANNERS[key].plan(space, start, goals)
             if plan:
                 contacts = judge.judge_path(problem, plan.path)
                 found[key] += 1
                 bad[key] += bool(contacts)
                 depth[key] = max([depth[key], *(-gap for _, _, gap in contacts)])
-    return {key: {"paths": found[key], "touch": bad[key], "deepest": depth[key]} for key in PLANNERS}
+    return {key: {"paths": found[key], "touch": bad[key], "deepest": depth[key]} for key in planners}
 
 
 def judge_edges(name: str, judge: Judge, count: int, most: int) -> dict[str, Any]:
@@ -116,6 +117,8 @@ def main() -> None:
     parser.add_argument("--edges", type=int, default=100_000)
     parser.add_argument("--judged", type=int, default=20)
     parser.add_argument("--vamp", type=Path)
+    parser.add_argument("--stages", nargs="+", default=["edges", "verdicts", "paths"])
+    parser.add_argument("--planners", nargs="+", default=list(PLANNERS))
     parser.add_argument("--robots", nargs="+", default=list(ROBOTS))
     given = parser.parse_args()
     data = Path(os.environ.setdefault("CSPACE_DATA", str(HERE.parents[1] / "shared" / "data")))
@@ -124,12 +127,16 @@ def main() -> None:
     results |= {"version": cs.__version__, "band": BAND}
     for name in given.robots:
         judge = Judge(name, data / "planning")
-        results[name] = {"edges": judge_edges(name, judge, given.edges, given.judged)}
-        if given.vamp is not None:
-            results[name]["verdicts"] = compare_verdicts(name, judge, given.vamp)
-        results[name]["paths"] = judge_paths(name, judge)
-        print(name, json.dumps(results[name], indent=1), flush=True)
-        file.write_text(json.dumps(results, indent=1) + "\n")
+        stages = {
+            "edges": lambda: judge_edges(name, judge, given.edges, given.judged),  # noqa: B023
+            "verdicts": lambda: compare_verdicts(name, judge, given.vamp),  # noqa: B023
+            "paths": lambda: judge_paths(name, judge, given.planners),  # noqa: B023
+        }
+        for stage in given.stages:
+            found = stages[stage]()
+            print(name, stage, json.dumps(found), flush=True)
+            results.setdefault(name, {}).setdefault(stage, {}).update(found)
+            file.write_text(json.dumps(results, indent=1) + "\n")
 
 
 if __name__ == "__main__":
