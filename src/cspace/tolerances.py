@@ -481,4 +481,8 @@ SMALL_TURN: Final = 1e-3
 """Angle (rad) below which a − sin a counts as a³ / 6: the share that is left out, a² / 20, is below 1e-7, and
 the difference would lose its digits."""
 
+POINT_RADIUS: Final = 1e-6
+"""Radius [m] of the points of a cloud without one, where a check takes spheres: below the rounding of floats
+that other checks carry."""
+
 __all__ = [name for name in globals() if name.isupper()]

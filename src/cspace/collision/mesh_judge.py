@@ -26,16 +26,13 @@ from cspace.model import Description
 from cspace.shapes import Box, Capsule, Cylinder, HalfSpace, PointCloud, Shape, Sphere
 from cspace.shapes.shape import IDENTITY
 from cspace.tables import one_line, shown
-from cspace.tolerances import LARGEST_NUMBER
+from cspace.tolerances import LARGEST_NUMBER, POINT_RADIUS
 
 VERIFY_STEP: Final = 0.005
 """Between two samples of a path no point of the robot moves by more [m]."""
 
 CHUNK: Final = 1024
 """Configurations whose distances are held at once."""
-
-POINT_RADIUS: Final = 1e-6
-"""Radius [m] of the points of a cloud that has none."""
 
 SOLIDS: Final = (Box, Capsule, Cylinder, HalfSpace, Sphere)
 """What coal knows as solids."""
