@@ -13,6 +13,7 @@
 #include "bindings.hpp"
 #include "ik.hpp"
 #include "library/ik_limits.hpp"
+#include "library/ik_near_rows.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -145,12 +146,54 @@ Numbers keep_within(SolverArgument solver, const ConstDoubles& q, const ConstDou
     return Numbers({npy_intp(found.size())}, found.data());
 }
 
+// Limits and a seed, as many numbers each as the arm has joints.
+ik::NearSeed read_near(SolverArgument solver, const ConstDoubles& lower, const ConstDoubles& upper,
+                       const ConstDoubles& seed) {
+    const npy_intp n = solver.core().chain().n;
+    require_sizes(lower.size == n && upper.size == n && seed.size == n);
+    return {lower.data, upper.data, seed.data};
+}
+Doubles rows_of(SolverArgument solver, const ik::NearRows& sorted) {
+    const npy_intp n = solver.core().chain().n;
+    return Doubles({npy_intp(sorted.q.size()) / n, n}, sorted.q.data());
+}
+// The rows within limits, the nearest to a seed first, and whether one is left out that may be on a limit.
+nb::tuple sort_near(SolverArgument solver, const ConstDoubles& q, const ConstDoubles& lower,
+                    const ConstDoubles& upper, const ConstDoubles& seed, double close) {
+    const ik::NearSeed near = read_near(solver, lower, upper, seed);
+    require_sizes(q.size % solver.core().chain().n == 0);
+    const ik::NearRows sorted =
+        ik::sort_rows_near(solver.core().chain(), {q.data, std::size_t(q.size)}, near, close);
+    return nb::make_tuple(rows_of(solver, sorted), sorted.is_doubtful);
+}
+std::optional<Doubles> solve_locked_near(SolverArgument solver, const ConstDoubles& goal,
+                                         const ConstDoubles& values, const ConstDoubles& lower,
+                                         const ConstDoubles& upper, const ConstDoubles& seed) {
+    const ik::NearSeed near = read_near(solver, lower, upper, seed);
+    const npy_intp width = npy_intp(solver.core().redundant().default_locked().size());
+    require_sizes(goal.size == 16 && width > 0 && values.size % width == 0);
+    std::optional<ik::NearRows> found;
+    {
+        const nb::gil_scoped_release release;
+        found =
+            ik::solve_locked_near(solver.core(), goal.data, {values.data, std::size_t(values.size)}, near);
+    }
+    if (!found) return std::nullopt;
+    return rows_of(solver, *found);
+}
+
 }  // namespace
 
 void bind_ik_goals(nb::module_& m) {
     m.def("_ik_keep_within", &keep_within, "solver"_a, "q"_a, "lower"_a, "upper"_a, "kept"_a, "count"_a,
           "order"_a.none(), "same"_a, "close"_a,
           "Keeps the rows inside limits; returns the numbers of those that are close to them.");
+    m.def("_ik_sort_near", &sort_near, "solver"_a, "q"_a, "lower"_a, "upper"_a, "seed"_a, "close"_a,
+          "The rows within limits, the nearest to a seed first; whether one may be on a limit.");
+    m.def("_ik_locked_near", &solve_locked_near, "solver"_a, "goal"_a, "values"_a, "lower"_a, "upper"_a,
+          "seed"_a,
+          "The same of the solutions of a pose at values of the redundant joints; None for what is not a "
+          "pose.");
     m.def("_ik_answer", &answer_rows, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a,
           "is_partial"_a, "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a,
           "is_single"_a, "about"_a,

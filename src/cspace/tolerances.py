@@ -473,4 +473,16 @@ BEYOND_MARGIN: Final = 1e-4
 FLAT_CLEARANCE: Final = 1e-9
 """Gradient of a clearance [m/rad or 1] at which no direction leads out of a collision."""
 
+IN_REGION: Final = 1e-9
+"""How far outside a region of poses (m, rad) a pose still counts as inside: solutions of inverse kinematics
+reach their pose up to about 1e-12 on arms of some metres, and a region may be a single pose."""
+
+SMALL_TURN: Final = 1e-3
+"""Angle (rad) below which a − sin a counts as a³ / 6: the share that is left out, a² / 20, is below 1e-7, and
+the difference would lose its digits."""
+
+POINT_RADIUS: Final = 1e-6
+"""Radius [m] of the points of a cloud without one, where a check takes spheres: below the rounding of floats
+that other checks carry."""
+
 __all__ = [name for name in globals() if name.isupper()]

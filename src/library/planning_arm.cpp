@@ -1,5 +1,8 @@
 #include "planning_arm.hpp"
 
+#include <algorithm>
+#include <optional>
+
 #include "cspace/math/made_once.hpp"
 #include "cspace/planning/aorrtc.hpp"
 #include "cspace/planning/rrt_connect.hpp"
@@ -17,37 +20,56 @@ const search::HaltonTable& table_of(int width) {
 class ConnectSearch {
   public:
     ConnectSearch(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options)
-        : query_(space, problem, options),
-          options_(options),
-          trees_(query_.edges(), table_of(int(query_.width())), options.seed, options.range) {}
+        : query_(space, problem, options), options_(options) {}
 
     ArmPlan run() {
         if (query_.check_ends()) {
-            query_.each_start([&](const float* q) { trees_.add_start(q); });
-            query_.each_goal([&](const float* q) { trees_.add_goal(q); });
+            has_more_goals_ = query_.free_goals() > first_goals;
+            if (has_more_goals_) query_.sort_goals();
+            plant_roots(has_more_goals_ ? first_goals : query_.free_goals());
             query_.plan().status = search();
+            write_stats();
         }
-        write_stats();
         return query_.take_plan();
     }
 
   private:
     using Trees = RrtConnect<ArmEdges>;
+    // Of more goals the nearest ones are tried alone first: a path to them is shorter.
+    static constexpr std::size_t first_goals = 3;
+    static constexpr std::int64_t first_edges = 2048;  // with them; about two milliseconds
 
     ArmQuery query_;
     const ArmOptions& options_;
-    Trees trees_;
+    std::optional<Trees> trees_;
+    bool has_more_goals_ = false;  // than the trees have
 
     ArmStats& stats() { return query_.plan().stats; }
+
+    void plant_roots(std::size_t goals) {
+        trees_.emplace(query_.edges(), table_of(int(query_.width())), options_.seed, options_.range);
+        query_.each_start([&](const float* q) { trees_->add_start(q); });
+        query_.each_of_first_goals(goals, [&](const float* q) { trees_->add_goal(q); });
+    }
+    // Grows new trees from all roots.
+    void add_other_goals() {
+        count_edges();
+        has_more_goals_ = false;
+        plant_roots(query_.free_goals());
+    }
 
     PlanStatus search() {
         using Finish = ArmQuery::Finish;
         while (true) {
             const SearchEnd end = grow_trees();
+            if (end == SearchEnd::edge_budget && has_more_goals_) {
+                add_other_goals();
+                continue;
+            }
             if (end == SearchEnd::edge_budget) return give_up(PlanStatus::edge_budget);
             if (end == SearchEnd::no_time) return give_up(PlanStatus::time_limit);
-            write_path(trees_);
-            const Finish finish = query_.finish_path([&](std::size_t i) { trees_.remove_edge(i); });
+            write_path(*trees_);
+            const Finish finish = query_.finish_path([&](std::size_t i) { trees_->remove_edge(i); });
             if (finish == Finish::late) return give_up(PlanStatus::time_limit);
             if (finish == Finish::edge_removed) continue;
             if (options_.improve > 0) improve();
@@ -56,7 +78,8 @@ class ConnectSearch {
     }
     SearchEnd grow_trees() {
         const StageTimer timer(stats().search_seconds);
-        return trees_.run(options_.edges);
+        const std::int64_t left = options_.edges - stats().edges;
+        return trees_->run(has_more_goals_ ? std::min(first_edges, left) : left);
     }
     // Roots are the first nodes.
     template <class AnyTrees>
@@ -88,14 +111,18 @@ class ConnectSearch {
         }
     }
     PlanStatus give_up(PlanStatus status) {
-        return query_.give_up(status, trees_.least_distance(), trees_.nearest_row(0).data(),
-                              trees_.nearest_row(1).data());
+        return query_.give_up(status, trees_->least_distance(), trees_->nearest_row(0).data(),
+                              trees_->nearest_row(1).data());
+    }
+    // Adds what the trees did to the statistics.
+    void count_edges() {
+        const Trees::Counts& counts = trees_->counts();
+        stats().samples += counts.samples, stats().rejected += counts.rejected;
+        stats().edges += counts.edges, stats().blocked += counts.blocked;
     }
     void write_stats() {
-        const Trees::Counts& counts = trees_.counts();
-        stats().samples += counts.samples, stats().rejected = counts.rejected;
-        stats().edges += counts.edges, stats().blocked += counts.blocked;
-        stats().nodes = trees_.tree(0).size() + trees_.tree(1).size();
+        count_edges();
+        stats().nodes = trees_->tree(0).size() + trees_->tree(1).size();
     }
 };
 

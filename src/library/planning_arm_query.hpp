@@ -1,8 +1,10 @@
 // What every planner of arms does around its search: it checks the ends, and simplifies and proves the path.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -66,7 +68,27 @@ class ArmQuery {
     }
     template <class Add>
     void each_goal(const Add& add) const {
-        for (const int i : goals_) add(round_row(goal_row(i)).data());
+        each_of_first_goals(goals_.size(), add);
+    }
+    template <class Add>
+    void each_of_first_goals(std::size_t count, const Add& add) const {
+        for (std::size_t k = 0; k < count; ++k) add(round_row(goal_row(goals_[k])).data());
+    }
+    std::size_t free_goals() const { return goals_.size(); }
+    // Orders the roots of the goals by their distance from the nearest start.
+    void sort_goals() {
+        std::vector<std::pair<float, int>> order;
+        for (const int g : goals_) {
+            const Row to = round_row(goal_row(g));
+            float least = std::numeric_limits<float>::infinity();
+            for (const int s : starts_) {
+                edges_.has_time();  // polls
+                least = std::min(least, edges_.box().distance(round_row(start_row(s)).data(), to.data()));
+            }
+            order.emplace_back(least, g);
+        }
+        std::sort(order.begin(), order.end());
+        for (std::size_t k = 0; k < order.size(); ++k) goals_[k] = order[k].second;
     }
 
     // The path of a search, unwound: joints that wrap go on beyond ±π. Between a root of the starts and one

@@ -130,6 +130,8 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "ray": LIST_OR_NULL,
             "angle_to": LIST_OR_NULL,
             "tool_axis": (list, str, type(None)),
+            "box": LIST_OR_NULL,
+            "within": NUMBER_OR_NULL,
         },
         "scene": TEXT_OR_NULL,
         "margin": NUMBER,

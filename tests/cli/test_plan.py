@@ -76,6 +76,22 @@ def test_goals_of_the_tip_are_reached(robot, goal):
     assert found.json["goal"]["configurations"] is None
 
 
+def test_boxes_and_angles_make_regions(robot):
+    start = " ".join(map(str, START))
+    goal = "--xyz 0.4 0.3 0.3 --box 0.2 0.2 10cm --direction 0 0 -1 --within 20 --deg"
+    found = cspace(f"{LINE} --from {start} {goal} --json")
+    assert found.code == Exit.DONE, found.err
+    T = robot.fk(found.json["path"][-1])
+    assert (np.abs(T[:3, 3] - [0.4, 0.3, 0.3]) <= [0.1 + 1e-9, 0.1 + 1e-9, 0.05 + 1e-9]).all()
+    assert T[2, 2] <= -np.cos(np.radians(20)) + 1e-9
+    assert found.json["goal"]["box"] == [0.2, 0.2, 0.1]
+    assert found.json["goal"]["within"] == pytest.approx(np.radians(20))
+    turned = cspace(f"{LINE} --from {start} --xyz 0.4 0.3 0.3 --rpy 0 180 0 --within 5 --deg --json")
+    T = robot.fk(turned.json["path"][-1])
+    np.testing.assert_allclose(T[:3, 3], [0.4, 0.3, 0.3], atol=1e-9)
+    assert cs.rotation_distance(T[:3, :3], DOWN[:3, :3]) <= np.radians(5) + 1e-9
+
+
 def test_options_seed_and_margin(robot):
     line = f"{LINE} {ENDS} --json --margin 2mm --seed 3 --option range=0.5 --option edges=100000"
     found = cspace(line).json
@@ -168,6 +184,9 @@ FAULTS = [
     ("plan ur5e --geometry skeleton --to up --plot way.bmp", ["way.bmp", ".png"]),
     (f"{LINE} --from 0 -30 60 -30 90 0 --to up", ["start", "wall", "move it away"]),
     ("plan ur5e --geometry skeleton --to 9 0 0 0 0 0", ["goal", "outside its limits"]),
+    ("plan ur5e --geometry skeleton --from up --to up --box 1 1 1", ["--box", "--xyz"]),
+    ("plan ur5e --geometry skeleton --from up --direction 0 0 1 --box 1 1 1", ["--box", "--xyz"]),
+    ("plan ur5e --geometry skeleton --from up --xyz 0 0 1 --within 0.1", ["--within", "--direction"]),
     ("plan ur5e --geometry skeleton --xyz 0.4 0.1 0.3 --rpy 0 0 0 --tool-axis x", ["--tool-axis"]),
 ]  # fmt: skip
 

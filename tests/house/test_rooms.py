@@ -18,7 +18,7 @@ PYTHON_ALONE = {"ik/explain", "ik/goals", "model/mjcf"}
 """Packages of words: files, names and sentences, with no loop of their own."""
 NO_ROOM = {"module", "bindings", "arrays", "numpy_api", "dispatch", "once"}
 """What all bindings or all kernels share."""
-PAGES = {"model": "robots"}
+PAGES = {"model": "robots", "plan_motion": "planning"}
 """Pages that speak of two rooms."""
 NO_PAGE = {"math", "search"}
 """What the rooms above are made of."""

@@ -34,6 +34,7 @@ RANK = {room: rank for rank, tier in enumerate(TIERS) for room in tier}
 
 # What a room may import besides numpy and the standard library, and only inside its functions.
 OPTIONAL_IMPORTS = {
+    "collision": {"coal"},
     "model": {"tomli", "tomllib", "xacro"},  # the latter is in the standard library from Python 3.11 on
     "cli": {"rich"},
     "maps": {"PIL"},

@@ -137,7 +137,8 @@ def test_what_cannot_be_reached_says_why():
     deep = cs.Scene([cs.Box([0.8, 0.8, 0.8], [0.6, 0.0, 0.6], name="block")])
     open_goal = cs.plan(six, np.radians([180, -90, 90, -90, -90, 0]), {"position": [0.6, 0.0, 0.6]}, deep)
     assert open_goal.status == "undetermined"
-    assert "sampled IK solutions touch something, though others exist" in open_goal.reason
+    assert "no free configuration was found: of 4096 poses that meet the goal" in open_goal.reason
+    assert "touches block" in open_goal.reason
     hard = cs.plan(
         robot, start, [2.5, 0.3], cs.Scene([cs.Box([0.05, 1.0, 1.0], [0.0, 1.3, 0.0], name="bar")]), edges=50
     )

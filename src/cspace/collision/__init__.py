@@ -2,6 +2,7 @@
 
 from cspace.collision.checks import Clearance, Edge, clearance, collides, contact, edge
 from cspace.collision.escape import Escape, escape
+from cspace.collision.mesh_judge import MeshJudge, MeshVerdict
 from cspace.collision.pack_scene import PackedScene, pack_scene
 from cspace.collision.robot_geometry import RobotGeometry, robot_geometry
 from cspace.collision.scene import Attachment, Scene
@@ -12,6 +13,8 @@ __all__ = [
     "Clearance",
     "Edge",
     "Escape",
+    "MeshJudge",
+    "MeshVerdict",
     "PackedScene",
     "RobotGeometry",
     "Scene",

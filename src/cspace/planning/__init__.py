@@ -4,6 +4,7 @@ from cspace.planning.aorrtc import AORRTC
 from cspace.planning.arm_planner import ArmPlanner
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
+from cspace.planning.region import Region
 from cspace.planning.rrt_connect import RRTConnect
 from cspace.planning.space import ArmSpace
 from cspace.planning.two_joints.answers import BoundaryCurve, Connection, FreeComponent
@@ -21,6 +22,7 @@ __all__ = [
     "FreeComponent",
     "Plan",
     "RRTConnect",
+    "Region",
     "configuration_space",
     "find_planner",
 ]

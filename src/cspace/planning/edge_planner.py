@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace._core import ArmOptions, ArmPlan
@@ -16,6 +17,7 @@ from cspace.planning.plan_result import Plan
 from cspace.planning.space import ArmSpace
 from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
+from cspace.tolerances import LARGEST_NUMBER
 
 ENDS = ("found", "edge budget", "time limit", "invalid start", "invalid goals")
 """How the core ends, in its order."""
@@ -57,10 +59,7 @@ class EdgePlanner(ArmPlanner):
         self, space: ArmSpace, problems: Sequence[tuple[Any, Any]], *, rng: Seed = 0, threads: int = 0
     ) -> list[Plan]:
         """See ArmPlanner.plan_each. threads: 0 for all."""
-        rows = [
-            (space.as_rows(starts, f"start {k}"), space.as_rows(goals, f"goal {k}"))
-            for k, (starts, goals) in enumerate(problems)
-        ]
+        rows = list(problems) if are_rows(space, problems) else check_problems(space, problems)
         found = self._plan_each_rows(space, rows, rng, threads)
         return [self._name_plan(space, ends, plan) for ends, plan in zip(rows, found, strict=True)]
 
@@ -105,6 +104,29 @@ class EdgePlanner(ArmPlanner):
             space=space,
             planner=self,
         )
+
+
+def are_rows(space: ArmSpace, problems: Sequence[tuple[Any, Any]]) -> bool:
+    """Whether all starts and goals are rows (n, dof) already, as the core takes them: checked in one go."""
+    ends = [rows for problem in problems for rows in problem]
+    are_plain = all(
+        type(rows) is np.ndarray
+        and rows.dtype == np.float64
+        and rows.ndim == 2
+        and rows.shape[1] == space.dof
+        and rows.flags.carray
+        and len(rows)
+        for rows in ends
+    )
+    return are_plain and bool(np.abs(np.concatenate(ends)).max(initial=0.0) <= LARGEST_NUMBER)
+
+
+def check_problems(space: ArmSpace, problems: Sequence[tuple[Any, Any]]) -> list[tuple[Array, Array]]:
+    """Starts and goals as rows (n, dof); InputError, with its number, for a problem that is not valid."""
+    return [
+        (space.as_rows(starts, f"start {k}"), space.as_rows(goals, f"goal {k}"))
+        for k, (starts, goals) in enumerate(problems)
+    ]
 
 
 def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> tuple[str, str]:

@@ -8,6 +8,9 @@ import numpy as np
 
 from cspace.arrays import Array
 
+X, Y, Z = np.eye(3)
+AXES = {"x": X, "y": Y, "z": Z, "-x": -X, "-y": -Y, "-z": -Z}
+
 
 def length_and_direction(v: Array) -> tuple[Array, Array]:
     """(..., k) → length (...) and unit direction (..., k); the direction of a zero vector is zero.

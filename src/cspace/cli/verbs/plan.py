@@ -18,6 +18,8 @@ from cspace.cli.arguments import (
     add_robot,
     named_value,
     read_length,
+    read_number,
+    read_radians,
     read_seed,
     split_numbers,
 )
@@ -50,6 +52,7 @@ cspace plan ur5e --geometry skeleton --to up --scene cell.toml --plot way.png
 cspace plan ur5e --geometry skeleton --from up --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
 cspace plan panda --spheres spheres.json --from ready --to 0 0 0 -pi/2 0 pi/2 0 --scene cell.toml -o way.yaml
 cspace plan ur5e --geometry skeleton --xyz 0.4 0.2 0.4 --direction 0 0 -1 --margin 5mm --json
+cspace plan ur5e --geometry skeleton --xyz 0.4 0.2 0.4 --box 0.1 0.1 0 --direction 0 0 -1 --within 0.2
 cspace plan arm.urdf --from 0 0 0 0 0 0 --to 1 0 0 0 0 0 --to -1 0 0 0 0 0 --scene cell.toml --seed 7
 """
 HOME: Final = "home"
@@ -65,8 +68,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     text = "goal: a value per joint, or a named pose; may be repeated, any will do"
     add_option(parser, "--to Q…", text, str, action="append")
     add_goal(parser)
+    add_region(parser)
     add_surroundings(parser)
     add_planner(parser)
+    text = "check the path once more with the exact shapes of the links: mesh"
+    add_option(parser, "--verify", text, choices=("mesh",))
     add_option(parser, "--details", "all corners of a long path, and the statistics of the search")
     add_option(parser, "-o --output FILE", "write the path (.yaml, .json, .csv)", Path)
     add_option(parser, "--plot FILE", "draw the motion in its scene (.png, .svg, .pdf)", Path)
@@ -83,6 +89,15 @@ def add_surroundings(parser: argparse.ArgumentParser) -> None:
     add_option(group, "--spheres FILE", "spheres for the links (.json, .toml, .urdf) instead", Path)
     text = "everything keeps so far away from everything else: 0.005, or 5mm (default: 0)"
     add_option(group, "--margin LENGTH", text, read_length, default=0.0)
+
+
+def add_region(parser: argparse.ArgumentParser) -> None:
+    """The words that make a goal of the tip a region."""
+    group = parser.add_argument_group("region")
+    text = "with --xyz: the tip may be anywhere in a box with these edges around it: 0.1, or 10cm"
+    add_option(group, "--box SX SY SZ", text, read_length)
+    text = "with --direction or an orientation: by what angle it may deviate"
+    add_option(group, "--within ANGLE", text, read_number)
 
 
 def add_planner(parser: argparse.ArgumentParser) -> None:
@@ -203,12 +218,37 @@ def find_plan(
     """The plan of the library, and how long it took [s]."""
     from cspace.plan_motion import plan
 
-    wanted = goal.keywords if isinstance(goal, Goal) else goal
-    fixed = {"planner": args.planner, "margin": args.margin, "rng": args.seed}
+    wanted = goal_wanted(args, goal)
+    fixed = {"planner": args.planner, "margin": args.margin, "rng": args.seed, "verify": args.verify}
     with show_progress(f"planning with {args.planner}"):
         began = time.perf_counter()
         found = plan(robot, start, wanted, scene, **fixed, **options)
         return found, time.perf_counter() - began
+
+
+def goal_wanted(args: argparse.Namespace, goal: Array | Goal) -> Any:
+    """The goal of `cs.plan`: configurations, keywords of robot.ik, or with --box or --within a Region."""
+    from cspace.planning import Region
+
+    if args.box is None and args.within is None:
+        return goal.keywords if isinstance(goal, Goal) else goal
+    if not isinstance(goal, Goal):
+        raise UsageError("--box and --within are about goals of the tip: give --xyz in place of --to")
+    parts: dict[str, Any] = {"position": None, "rotation": None, "direction": None}
+    parts |= goal.parts if goal.T is None else {"position": goal.T[:3, 3], "rotation": goal.T[:3, :3]}
+    others = [name for name in parts if name not in ("position", "rotation", "direction")]
+    has_place = parts["position"] is not None and None not in list(parts["position"])
+    if others or (args.box is not None and not has_place):
+        raise UsageError("--box is around a place of the tip: give --xyz with three numbers, no other place")
+    if args.within is not None and parts["rotation"] is None and parts["direction"] is None:
+        raise UsageError("--within is about a direction or an orientation: give --direction or --rpy too")
+    return Region(
+        None if not has_place else (args.box or np.zeros(3), parts["position"]),
+        axis="z" if parts["direction"] is None else goal.tool_axis,
+        direction=parts["direction"],
+        rotation=parts["rotation"],
+        within=0.0 if args.within is None else read_radians(args.within, degrees=args.deg),
+    )
 
 
 def write_files(args: argparse.Namespace, robot: Robot, plan: Plan, scene: Scene | None) -> list[str]:
@@ -242,7 +282,12 @@ def plan_document(
         "tip": robot.tip,
         "joints": list(robot.joint_names),
         "start": start,
-        "goal": {"configurations": configurations, **tip_goal.document()},
+        "goal": {
+            "configurations": configurations,
+            **tip_goal.document(),
+            "box": args.box,
+            "within": None if args.within is None else read_radians(args.within, degrees=args.deg),
+        },
         "scene": None if args.scene is None else str(args.scene),
         "margin": args.margin,
         "planner": plan.planner.name,

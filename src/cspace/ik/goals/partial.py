@@ -15,16 +15,14 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.model import Chain
 from cspace.spatial import exp_so3
-from cspace.spatial.vectors import perpendicular
+from cspace.spatial.vectors import AXES, X, Y, Z, perpendicular
 
 KEYWORDS = ("position", "rotation", "direction", "look_at", "ray", "angle_to")
-X, Y, Z = np.eye(3)
 BALL = (("R", X), ("R", Y), ("R", Z))
 ANY = np.array([[0, -0.6, 0.8], [0.8, -0.48, -0.36], [0.6, 0.64, 0.48]])
 """The orientation to which BALL turns the tip back: in line with no arm, so that no two of its axes become
 one."""
 CROSS = (("P", X), ("P", Y), ("P", Z))
-AXES = {"x": X, "y": Y, "z": Z}
 
 
 @dataclass(frozen=True, eq=False)

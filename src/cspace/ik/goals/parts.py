@@ -10,9 +10,9 @@ import numpy as np
 from cspace.arrays import Array, as_arrays, leading_axes, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.given import is_open
-from cspace.ik.goals.partial import ANY, AXES, BALL, CROSS, KEYWORDS, PartialGoal
+from cspace.ik.goals.partial import ANY, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
-from cspace.spatial.vectors import length_and_direction
+from cspace.spatial.vectors import AXES, length_and_direction
 from cspace.tolerances import FARTHEST
 
 POINTED = ("direction", "look_at", "ray", "angle_to")
@@ -124,10 +124,9 @@ def pair_of(value: Any, name: str, words: str) -> Any:
 
 
 def axis_named(name: str) -> Array:
-    sign = -1.0 if name.startswith("-") else 1.0
-    if name.removeprefix("-") not in AXES:
+    if name not in AXES:
         raise InputError(f"axis {name!r} is unknown, expected x, y, z, -x, -y, -z or a direction (3,)")
-    return np.asarray(sign * AXES[name.removeprefix("-")])
+    return AXES[name]
 
 
 def assemble_goal(kind: str, values: dict[str, Any]) -> PartialGoal:

@@ -1,34 +1,28 @@
-"""Plans of a robot to configurations, poses and partial goals: planning to all their IK solutions."""
+"""Plans of a robot, one or many."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, whole_number
-from cspace.collision import Scene
-from cspace.collision.checks import explain_contacts
-from cspace.errors import InputError, InputTypeError
-from cspace.ik.wrapping import nearest_winding
+from cspace.collision import MeshJudge, Scene
+from cspace.errors import InputError, InputTypeError, suggest
+from cspace.plan_motion.find import explain_goals, find_goals
+from cspace.plan_motion.goals import Goals
 from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
 from cspace.robot import Robot
-from cspace.spatial import as_pose
 from cspace.tables import html_table, one_line, shown
-
-__all__ = ["Plans", "plan", "plan_many"]
 
 Seed = int | np.random.Generator | None
 
-GOAL_SAMPLES: Final = 16
-"""Configurations that are looked for where a goal leaves freedom."""
-
-POSE_SIZE: Final = 4
-"""Rows and columns of a pose: as many configurations of an arm with four joints look like one."""
+VERIFICATIONS: Final = ("mesh",)
+"""What a path can be checked with once more."""
 
 MOST_THREADS: Final = 1024
 """Threads that are believed."""
@@ -43,39 +37,41 @@ def plan(
     planner: str | ArmPlanner = "rrt_connect",
     margin: float = 0.0,
     rng: Seed = 0,
+    verify: str | MeshJudge | None = None,
     **options: Any,
 ) -> Plan:
     """A free way of a robot from a start to a goal, every motion of it proved.
 
     start: a configuration (dof,) [rad or m], or several (s, dof) to choose from. goal: a configuration (dof,)
     or several (g, dof); a pose (4, 4) of the tip, reached by whichever of its IK solutions within the limits
-    is easiest; or the keywords of `robot.ik` as a dict, such as {"position": p}. Of redundant arms the
-    solutions are samples over the self-motion. scene: None without obstacles. planner: a name of
+    is easiest; the keywords of `robot.ik` as a dict, such as {"position": p}; or a `planning.Region` of
+    poses, of which free configurations are sampled. Of redundant arms the solutions are samples over the
+    self-motion. scene: None without obstacles. planner: a name of
     `cs.planning.PLANNERS`, or an ArmPlanner. margin [m]: everything keeps so far away from everything else.
     rng: seed or generator; the same seed gives the same plan on every machine. options: those of the planner.
+    verify: "mesh" checks the path once more, at samples, with the exact shapes of the links in place of their
+    spheres (needs the extra `mesh`); a path that fails is not returned. A collision.MeshJudge of a robot with
+    the same joints may be given instead, such as the one with meshes where this one has given spheres.
 
     The Plan is truthy if a way was found, and says why where not: "unreachable" if no IK solution exists or
-    all of them touch something, "undetermined" if the planner's budget was used up, or if only samples of
-    infinitely many IK solutions were tried.
+    all of them touch something, "undetermined" if the planner's budget was used up, if only samples of
+    infinitely many IK solutions were tried, or if the meshes touch something on the path.
     Raises InputError for a start or a given goal that touches something or is outside the limits,
     UnknownNameError for an unknown planner, InputTypeError for an unknown option.
     """
     chosen = find_planner(planner, options)
     space = _make_space(robot, scene, margin)
+    judge = None if verify is None else _find_judge(robot, space, verify)
     starts = space.as_rows(start, "start")
-    goals = _find_goals(robot, space, starts, goal)
-    if not len(goals.rows):
-        return _make_negative(space, chosen, goals.status, goals.reason)
-    found = chosen.plan(space, starts, goals.rows, rng=rng)
+    goals = find_goals(robot, space, starts, goal)
+    found = _plan_to_goals(chosen, space, starts, goals, rng)
     if found.status == "invalid_start":
         raise InputError(
             f"{found.reason}; robot.escape leads away from there, or allow the pair in the scene"
         )
     if found.status == "invalid_goal":
-        if goals.is_given:
-            raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
-        return _make_negative(space, chosen, *_explain_goals(space, goals))
-    return found
+        raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
+    return found if judge is None or not found else _verify_plan(found, chosen, judge)
 
 
 def plan_many(
@@ -108,17 +104,66 @@ def plan_many(
     if len(rows) not in (1, len(wanted)):
         raise InputError(f"there are {len(rows)} starts and {len(wanted)} goals; give one start, or as many")
     rows = np.broadcast_to(rows, (len(wanted), space.dof)) if len(rows) == 1 else rows
-    sets = [_find_goals(robot, space, row[None], goal) for row, goal in zip(rows, wanted, strict=True)]
-    open_rows = [k for k, each in enumerate(sets) if len(each.rows)]
-    problems = [(rows[k], sets[k].rows) for k in open_rows]
-    found = chosen.plan_each(space, problems, rng=rng, threads=count)
-    plans = [_make_negative(space, chosen, each.status, each.reason) for each in sets]
-    for k, each in zip(open_rows, found, strict=True):
-        if each.status == "invalid_goal" and not sets[k].is_given:
-            status, reason = _explain_goals(space, sets[k])
-            each = replace(each, status=status, reason=reason)
-        plans[k] = each
+    rows = np.ascontiguousarray(rows)
+    if isinstance(goals, np.ndarray) and goals.shape == rows.shape:  # one configuration each
+        ends = space.as_rows(goals, "goals")
+        problems = [(rows[k : k + 1], ends[k : k + 1]) for k in range(len(rows))]
+        return Plans(chosen.plan_each(space, problems, rng=rng, threads=count))
+    sets = [find_goals(robot, space, rows[k : k + 1], goal) for k, goal in enumerate(wanted)]
+    problems = [(rows[k : k + 1], each.rows) for k, each in enumerate(sets) if len(each.rows)]
+    found = iter(chosen.plan_each(space, problems, rng=rng, threads=count))
+    plans = [
+        next(found) if len(each.rows) else _make_negative(space, chosen, each.status, each.reason)
+        for each in sets
+    ]
+    for k, each in enumerate(sets):
+        if plans[k].status == "invalid_goal" and not each.is_given:
+            plans[k] = _plan_to_more(chosen, space, rows[k : k + 1], each, rng)
     return Plans(plans)
+
+
+def _find_judge(robot: Robot, space: ArmSpace, verify: str | MeshJudge) -> MeshJudge:
+    """The judge of a path, as given or of the robot itself."""
+    if not isinstance(verify, MeshJudge):
+        if verify not in VERIFICATIONS:
+            raise suggest("verification", verify, VERIFICATIONS)
+        return MeshJudge(robot, space.scene, space.margin)
+    if verify.joint_names != robot.joint_names:
+        raise InputError(
+            f"verify is a judge of the joints {', '.join(verify.joint_names)}; it must have those of"
+            f" {robot.name}: {', '.join(robot.joint_names)}"
+        )
+    return verify
+
+
+def _verify_plan(found: Plan, planner: ArmPlanner, judge: MeshJudge) -> Plan:
+    """The plan if the exact shapes of the links touch nothing on its path; else why not, without a path."""
+    verdict = judge.judge_path(found.path)
+    stats = {**found.stats, "mesh_samples": verdict.samples, "mesh_step": verdict.step}
+    if verdict:
+        return replace(found, reason=f"{found.reason}; with meshes {verdict.reason}", stats=stats)
+    reason = (
+        f"a path of length {shown(found.cost)} is free for the spheres of the robot, but not for its meshes:"
+        f" {verdict.reason}; plan with a larger margin, or cover the meshes more closely"
+    )
+    return replace(_make_negative(found.space, planner, "undetermined", reason), stats=stats)
+
+
+def _plan_to_goals(planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Goals, rng: Seed) -> Plan:
+    """A plan to the configurations of a goal; if none of them is free and others exist, to those."""
+    if not len(goals.rows):
+        return _make_negative(space, planner, goals.status, goals.reason)
+    found = planner.plan(space, starts, goals.rows, rng=rng)
+    if found.status == "invalid_goal" and not goals.is_given:
+        return _plan_to_more(planner, space, starts, goals, rng)
+    return found
+
+
+def _plan_to_more(planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Goals, rng: Seed) -> Plan:
+    """A plan where no configuration of a goal is free: to further ones, or the reason why there is none."""
+    if goals.find_more is not None:
+        return _plan_to_goals(planner, space, starts, goals.find_more(), rng)
+    return _make_negative(space, planner, *explain_goals(space, goals))
 
 
 class Plans(Sequence[Plan]):
@@ -160,84 +205,12 @@ class Plans(Sequence[Plan]):
         return html_table(repr(self)[1:-1], ("problem", "status", "corners", "cost"), rows)
 
 
-@dataclass(frozen=True, eq=False)
-class _Goals:
-    """The configurations of a goal: rows (g, dof); reason: why there are none; is_given: by the caller;
-    is_whole: they are all that reach it, not samples of a self-motion."""
-
-    rows: Array
-    reason: str
-    is_given: bool
-    is_whole: bool = True
-
-    @property
-    def status(self) -> str:
-        """Of a plan to it if none of its rows can be reached."""
-        return "unreachable" if self.is_whole else "undetermined"
-
-
-def _find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> _Goals:
-    """The configurations of a goal as `plan` takes it, IK solutions at the turns nearest to the start."""
-    if space.dof != POSE_SIZE and (plain := space.plain_rows(goal)) is not None:
-        return _Goals(plain, "", True)
-    if isinstance(goal, Mapping):
-        solutions = robot.ik(**goal)
-    elif np.shape(goal) == (4, 4) and (space.dof != POSE_SIZE or _is_pose(goal)):
-        solutions = robot.ik(goal)
-    else:
-        if isinstance(goal, str) or np.ndim(goal) not in (1, 2):
-            raise InputTypeError(
-                f"goal is a {type(goal).__name__}; it must be configurations (dof,) or (g, dof), a pose"
-                " (4, 4), or a dict of keywords of robot.ik"
-            )
-        return _Goals(space.as_rows(goal, "goal"), "", True)
-    none = np.empty((0, space.dof))
-    if not solutions:
-        return _Goals(none, f"no IK solution: {solutions.reason}", False, bool(solutions.complete))
-    is_whole = bool(solutions.complete) and not solutions.freedom and not solutions.self_motions
-    inside = solutions.within(robot.limits)
-    found = list(inside.q)
-    if solutions.freedom and isinstance(goal, Mapping) and "near" not in goal:
-        found += _sample_goal(robot, goal)
-    if not found:
-        sampled = "" if is_whole else " among those sampled"
-        return _Goals(none, f"no IK solution within limits{sampled}: {inside.reason}", False, is_whole)
-    lower, upper = robot.limits.lower, robot.limits.upper
-    rows = [nearest_winding(q, starts[0], robot.joint_types, lower, upper) for q in found]
-    return _Goals(np.ascontiguousarray(rows), "", False, is_whole)
-
-
 def _make_space(robot: Robot, scene: Scene | None, margin: float) -> ArmSpace:
     """The space of a robot; InputTypeError for what is not one."""
     if not isinstance(robot, Robot):
         kind = type(robot).__name__
         raise InputTypeError(f"robot is a {kind}; it must be a cspace.Robot, such as cs.load_robot('panda')")
     return ArmSpace(robot, scene, margin)
-
-
-def _is_pose(goal: Any) -> bool:
-    """Whether (4, 4) numbers are a pose rather than four configurations of four joints."""
-    try:
-        as_pose(goal)
-    except InputError:
-        return False
-    return True
-
-
-def _sample_goal(robot: Robot, goal: Mapping[str, Any]) -> list[Array]:
-    """Configurations that reach a goal that leaves freedom, each the nearest to a random one."""
-    seeds = robot.random_configuration(GOAL_SAMPLES, rng=0, reach=1.0)
-    found = [robot.ik(**goal, near=q) for q in seeds]
-    return [solutions.q[0] for solutions in found if solutions]
-
-
-def _explain_goals(space: ArmSpace, goals: _Goals) -> tuple[str, str]:
-    """The status where no IK solution is free, and what they touch: a proof if they are all there are."""
-    named = explain_contacts(space.geometry, goals.rows, space.scene, space.margin)
-    if goals.is_whole:
-        return "unreachable", f"all {len(goals.rows)} IK solutions within limits touch something: {named}"
-    text = f"all {len(goals.rows)} sampled IK solutions touch something, though others exist: {named}"
-    return "undetermined", text
 
 
 def _make_negative(space: ArmSpace, planner: ArmPlanner, status: str, reason: str) -> Plan:

@@ -1,0 +1,66 @@
+"""The configurations of a goal, whatever its kind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.collision.checks import explain_contacts
+from cspace.errors import InputError, InputTypeError
+from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.parts import solve_parts
+from cspace.plan_motion.poses import solve_pose
+from cspace.plan_motion.regions import sample_region
+from cspace.planning import ArmSpace, Region
+from cspace.spatial import as_pose
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
+
+POSE_ROWS: Final = 4
+"""Rows of a pose: as many configurations of four joints have its shape."""
+
+
+def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals:
+    """The configurations (g, dof) of a goal as `plan` takes it.
+
+    Those of poses, partial goals and regions are sorted by their distance from the first of the starts
+    (s, dof), each revolute joint at the multiple of 2π that is nearest to it. Raises as `plan`.
+    """
+    if space.dof != POSE_ROWS and (plain := space.plain_rows(goal)) is not None:
+        return Goals(plain, is_given=True)
+    if isinstance(goal, Region):
+        if not goal.is_exact:
+            return sample_region(robot, space, starts[0], goal)
+        goal = goal.goal
+    if isinstance(goal, Mapping):
+        return solve_parts(robot, space, starts[0], goal)
+    if np.shape(goal) == (4, 4) and (space.dof != POSE_ROWS or is_pose(goal)):
+        return solve_pose(robot, space, starts[0], goal)
+    if isinstance(goal, str) or np.ndim(goal) not in (1, 2):
+        raise InputTypeError(
+            f"goal is a {type(goal).__name__}; it must be configurations (dof,) or (g, dof), a pose (4, 4), a"
+            " dict of keywords of robot.ik, or a cs.planning.Region"
+        )
+    return Goals(space.as_rows(goal, "goal"), is_given=True)
+
+
+def is_pose(goal: Any) -> bool:
+    """Whether (4, 4) numbers are a pose rather than four configurations of four joints."""
+    try:
+        as_pose(goal)
+    except InputError:
+        return False
+    return True
+
+
+def explain_goals(space: ArmSpace, goals: Goals) -> tuple[str, str]:
+    """The status where no IK solution is free, and what they touch: a proof if they are all there are."""
+    named = explain_contacts(space.geometry, goals.rows, space.scene, space.margin)
+    if goals.is_whole:
+        return "unreachable", f"all {len(goals.rows)} IK solutions within limits touch something: {named}"
+    text = f"all {len(goals.rows)} sampled IK solutions touch something, though others exist: {named}"
+    return "undetermined", text

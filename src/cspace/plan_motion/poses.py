@@ -1,0 +1,90 @@
+"""Configurations of poses and partial goals: all IK solutions, or samples where the arm is redundant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.ik.goals.given import goal_array
+from cspace.ik.near_rows import solve_locked_near, sort_near
+from cspace.plan_motion.goals import Goals
+from cspace.planning import ArmSpace
+from cspace.search.halton import halton_points
+
+if TYPE_CHECKING:
+    from cspace.ik import Solutions
+    from cspace.robot import Robot
+
+FEW_VALUES: Final = 9
+"""Values of each redundant joint at which a pose is solved: of the poses of 349 Panda problems three in a
+hundred have no free solution among them."""
+
+MANY_VALUES: Final = 256
+"""The same where none of these solutions is within limits and free: half a millisecond."""
+
+MOST_VALUES: Final = 4096
+"""Combinations of values of several redundant joints: ten milliseconds."""
+
+
+def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
+    """All IK solutions of a pose; of a redundant arm those at some values of its redundant joints."""
+    if not robot.solver.is_redundant:
+        return keep_solutions(robot, space, start, robot.ik(goal))
+    is_plain = type(goal) is np.ndarray and goal.dtype == np.float64 and goal.flags.carray
+    T = goal if is_plain else goal_array(goal)  # the core checks that it is a pose
+    rows = solve_redundant(robot, space, start, T, FEW_VALUES)
+    if len(rows):
+        more = partial(solve_pose_densely, robot, space, start, T)
+        return Goals(rows, is_whole=False, find_more=more)
+    return solve_pose_densely(robot, space, start, T)
+
+
+def solve_pose_densely(robot: Robot, space: ArmSpace, start: Array, T: Array) -> Goals:
+    """The solutions of a pose T (4, 4) of a redundant arm at many values of its redundant joints, or those
+    that robot.ik lists."""
+    rows = solve_redundant(robot, space, start, T, MANY_VALUES)
+    return Goals(rows, is_whole=False) if len(rows) else keep_solutions(robot, space, start, robot.ik(T))
+
+
+def solve_redundant(robot: Robot, space: ArmSpace, start: Array, T: Array, each: int) -> Array:
+    """The solutions of a pose T (4, 4) within limits at so many values of each redundant joint (k, dof), the
+    nearest to the start first."""
+    kept, name = space.geometry._kept, f"redundant values {each}"
+    if name not in kept:
+        kept[name] = spread_redundant(robot, space, each)
+    return solve_locked_near(robot.solver, T, kept[name], robot.limits, start)
+
+
+def spread_redundant(robot: Robot, space: ArmSpace, each: int) -> Array:
+    """Values (n, r) of the redundant joints, spread evenly between their bounds."""
+    width = len(robot.solver.redundant_joints)
+    if width == 1:
+        return scale_redundant(robot, space, (np.arange(each)[:, None] + 0.5) / each)
+    return scale_redundant(robot, space, halton_points(0, min(each**width, MOST_VALUES), width))
+
+
+def scale_redundant(robot: Robot, space: ArmSpace, u: Array) -> Array:
+    """Values (n, r) of the redundant joints from points of the unit cube (n, r)."""
+    low, high = space.bounds[:, list(robot.solver.redundant_joints)]
+    return np.ascontiguousarray(low + (high - low) * u)
+
+
+def keep_solutions(
+    robot: Robot, space: ArmSpace, start: Array, solutions: Solutions, more: Sequence[Array] = ()
+) -> Goals:
+    """Of solutions and further configurations those within limits, or the reason why there are none."""
+    none = np.empty((0, space.dof))
+    if not solutions:
+        return Goals(none, f"no IK solution: {solutions.reason}", is_whole=bool(solutions.complete))
+    is_whole = solutions.status == "exact" and bool(solutions.complete) and not solutions.freedom
+    q = np.concatenate([solutions.q, *more]) if more else solutions.q
+    rows = sort_near(robot.solver, q, robot.limits, start)
+    if not len(rows):
+        sampled = "" if is_whole else " among those sampled"
+        reason = solutions.within(robot.limits).reason
+        return Goals(none, f"no IK solution within limits{sampled}: {reason}", is_whole=is_whole)
+    return Goals(rows, is_whole=is_whole)

@@ -1,0 +1,101 @@
+"""The configurations of goals: every IK solution within limits, the nearest multiples of 2π, samples."""
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.ik.near_rows import sort_near
+from cspace.plan_motion.find import find_goals
+from cspace.planning import ArmSpace
+
+SEEDS = range(8)
+
+
+def arm(name):
+    return cs.load_robot(name, geometry="skeleton")
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_rows_of_a_pose_are_all_solutions_at_their_nearest_multiples(seed):
+    robot = arm("ur5e")
+    start, q = robot.random_configuration(2, rng=seed)
+    T = robot.fk(q)
+    goals = find_goals(robot, ArmSpace(robot), start[None], T)
+    assert goals.is_whole
+    distances = np.linalg.norm(goals.rows - start, axis=1)
+    assert (np.diff(distances) >= 0).all()
+    np.testing.assert_allclose(robot.fk(goals.rows), np.broadcast_to(T, (len(goals.rows), 4, 4)), atol=1e-9)
+    every = robot.ik(T).within(robot.limits, windings=True).q  # all copies within limits, one by one
+    groups = np.round(np.mod(every, 2 * np.pi), 6) % round(2 * np.pi, 6)
+    nearest = {}
+    for key, row in zip(map(tuple, groups), every, strict=True):
+        nearest[key] = min(nearest.get(key, np.inf), np.linalg.norm(row - start))
+    np.testing.assert_allclose(distances, np.sort(list(nearest.values())), atol=1e-5)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("name", ["panda", "fetch"])
+def test_rows_of_a_redundant_arm_reach_the_pose_within_limits(name, seed):
+    robot = arm(name)
+    start, q = robot.random_configuration(2, rng=seed)
+    T = robot.fk(q)
+    goals = find_goals(robot, ArmSpace(robot), start[None], T)
+    assert not goals.is_whole
+    assert len(goals.rows)
+    np.testing.assert_allclose(robot.fk(goals.rows), np.broadcast_to(T, (len(goals.rows), 4, 4)), atol=1e-9)
+    assert ((goals.rows >= robot.limits.lower) & (goals.rows <= robot.limits.upper)).all()
+    assert (np.diff(np.linalg.norm(goals.rows - start, axis=1)) >= 0).all()
+    if goals.find_more is not None:
+        assert len(goals.find_more().rows) > len(goals.rows)
+
+
+def test_rows_outside_limits_and_rows_of_nan_are_left_out():
+    robot = arm("ur5e")
+    rows = np.array([[0.1] * 6, [np.nan] * 6, [7.0, 0, 0, 0, 0, 0], [0, 0, 2 * np.pi + 0.1, 0, 0, 0]])
+    kept = sort_near(robot.solver, rows, robot.limits, np.zeros(6))
+    expected = np.array([[0.0, 0, 0.1, 0, 0, 0], [0.1] * 6, [7.0 - 2 * np.pi, 0, 0, 0, 0, 0]])
+    np.testing.assert_allclose(kept, expected, atol=1e-12)
+    narrow = cs.Limits(lower=np.full(6, -0.05), upper=np.full(6, 0.2))
+    np.testing.assert_allclose(sort_near(robot.solver, rows, narrow, np.zeros(6)), expected[:2], atol=1e-12)
+
+
+def test_farther_goals_are_reached_where_the_nearest_ones_are_walled_in():
+    rows = [[x, 0, 0, 0.05] for x in np.linspace(0, 1, 21)]
+    robot = cs.load_robot("planar_2r").with_spheres({"link_1": rows, "link_2": rows})
+    cage = cs.Scene([cs.Sphere(0.02, [0.5 * np.cos(t), 0.5 * np.sin(t), 0]) for t in (0.5, 1.5)])
+    near = [[0.2, 0.0], [1.8, 0.0], [0.1, 0.0], [1.9, 0.1]]
+    plan = cs.plan(robot, [1.0, 0.0], [*near, [1.1, 1.9]], cage)
+    assert plan
+    assert plan.goal == 4
+    assert plan.stats["edges"] > 2048
+    np.testing.assert_array_equal(plan.path[-1], [1.1, 1.9])
+    shut = cs.plan(robot, [1.0, 0.0], near, cage, edges=4000)
+    assert shut.status == "undetermined"
+    assert shut.stats["edges"] == 4000
+
+
+def test_the_nearest_goals_are_preferred():
+    robot = arm("ur5e")
+    start = np.radians([-60, -80, 90, -100, -90, 0])
+    goals = start + np.linspace(0.1, 1.0, 20)[:, None] * np.ones(6)
+    assert cs.plan(robot, start, goals[::-1].copy()).goal == 19
+
+
+def test_a_pose_that_few_samples_miss_is_sampled_densely():
+    robot = arm("panda")
+    balls = np.random.default_rng(3).uniform([-0.7, -0.7, -0.2], [0.7, 0.7, 1.2], (60, 3))
+    scene = cs.Scene([cs.Sphere(0.03, p) for p in balls if np.linalg.norm(p[:2]) > 0.3])
+    q = robot.random_configuration(3000, rng=5)
+    start, *free = q[~robot.collides(q, scene)]
+    space = ArmSpace(robot, scene)
+    missed = found = 0
+    for row in free[:400]:
+        few = find_goals(robot, space, start[None], robot.fk(row))
+        if few.find_more is not None and robot.collides(few.rows, scene).all():
+            missed += 1
+            more = few.find_more()
+            found += not robot.collides(more.rows, scene).all()
+            plan = cs.plan(robot, start, robot.fk(row), scene, edges=1)
+            assert plan or "sampled IK solutions touch" in plan.reason or "used up" in plan.reason
+    assert 0 < missed < 20
+    assert found > 0.5 * missed
