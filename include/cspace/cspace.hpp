@@ -9,6 +9,7 @@
 #pragma once
 
 #include "cspace/collision/edge.hpp"
+#include "cspace/collision/cells.hpp"
 #include "cspace/collision/rows.hpp"
 #include "cspace/ik/numeric/resolved_rate.hpp"
 #include "cspace/ik/numeric/search.hpp"

@@ -67,6 +67,10 @@ class Checker {
     bool is_free(const double* q, WorkspaceMemory& memory) const;
     // Rows of configurations (n, dof): collides[i] is 1 where something touches. On so many threads (0: all).
     void check_rows(const double* q, std::size_t n, std::uint8_t* collides, int threads) const;
+    // Cells q ± half of configurations: rows q (n, dof), half (dof,). verdicts[i] is 1 where the middle of a
+    // cell touches something, and 2 more where all of the cell is so.
+    void check_cells(const double* q, std::size_t n, const double* half, std::uint8_t* verdicts,
+                     int threads) const;
     // In double: the exact distance of the spheres. Margins do not count.
     Clearance clearance(const double* q) const;
     Verdict prove_edge(const double* from, const double* to, WorkspaceMemory& memory) const;
@@ -91,6 +95,9 @@ class Checker {
     mutable std::vector<std::unique_ptr<WorkspaceMemory>> spare_;
 
     void check_base();
+    // Calls check(memory, columns, count, row) for eight rows after the other, rounded to float.
+    template <class Check>
+    void over_blocks(const double* q, std::size_t n, int threads, const Check& check) const;
 };
 
 }  // namespace cspace::collision

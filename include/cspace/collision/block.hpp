@@ -85,7 +85,7 @@ class Block {
         int n = 0;
         for (int k = 0; k < from.count; ++k) {
             const int i = from.begin[k];
-            if (find_touching(scene, i, at, Mover{r, growth, wanted})) into[n++] = i;
+            if (find_touching(scene, i, at, Mover{r, search_growth(growth), wanted})) into[n++] = i;
         }
         return {into, n};
     }
@@ -225,7 +225,8 @@ class Block {
     }
     template <class Growth>
     CSPACE_INLINE bool may_meet(const Place& one, const Place& other, float r, Growth growth) {
-        return bits_of(square_distance(one, other) < square_of(growth, r + scene.pair_margin)) & wanted;
+        const Floats reach = square_of(search_growth(growth), r + scene.pair_margin);
+        return bits_of(square_distance(one, other) < reach) & wanted;
     }
 
   private:
@@ -239,6 +240,14 @@ class Block {
 
         CSPACE_INLINE explicit Marks(decltype(Motion::no_growth()) growth) : growth(growth) {}
     };
+    // Below this square two balls touch. A cell has no middle of its own: its growth counts.
+    template <class Motion>
+    static CSPACE_INLINE Floats touching_square(const Marks<Motion>& marks, float r) {
+        if constexpr (Motion::is_moving)
+            return fill_floats(r * r);
+        else
+            return square_of(marks.growth, r);
+    }
     // A sphere against a primitive. The growth bounds the motion first; where it does not suffice, the part
     // of the motion that brings them nearer.
     template <class Motion>
@@ -247,7 +256,7 @@ class Block {
         float radius;
         const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
-        marks.touching = marks.touching | (gap < fill_floats(sum * sum));
+        marks.touching = marks.touching | (gap < touching_square(marks, sum));
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
             if (bits_of(near) & wanted)
@@ -260,7 +269,7 @@ class Block {
     CSPACE_INLINE void compare_balls(int p, const Place& at, const Place& other, float r,
                                      const Motion& motion, Marks<Motion>& marks) {
         const Floats gap = square_distance(at, other);
-        marks.touching = marks.touching | (gap < fill_floats(r * r));
+        marks.touching = marks.touching | (gap < touching_square(marks, r));
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
             if (bits_of(near) & wanted)
