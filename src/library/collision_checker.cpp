@@ -176,6 +176,7 @@ void Checker::over_blocks(const double* q, std::size_t n, int threads, const Che
                 for (std::size_t k = 0; k < width; ++k) columns[8 * k + i] = a[k];
             }
             check(memory->w, columns, int(count), row);
+            poll_interrupts();
         }
         return true;
     });
