@@ -190,6 +190,23 @@ void Checker::check_rows(const double* q, std::size_t n, std::uint8_t* collides,
     });
 }
 
+void Checker::find_objects(const double* q, std::size_t n, std::int32_t* objects, int threads) const {
+    constexpr std::size_t least_rows = 512;
+    over_rows(n, threads, 1, least_rows, [&](std::size_t begin, std::size_t end) {
+        const Borrowed memory = borrow_workspace();
+        for (std::size_t row = begin; row < end; ++row) {
+            reset_workspace(*memory);
+            const bool free = is_free(q + row * std::size_t(dof()), *memory);
+            const Contact& found = memory->w.contact;
+            objects[row] = free            ? nothing
+                           : found.is_pair ? itself
+                                           : std::int32_t(data_->owner(found.other));
+            poll_interrupts();
+        }
+        return true;
+    });
+}
+
 void Checker::check_cells(const double* q, std::size_t n, const double* half, std::uint8_t* verdicts,
                           int threads) const {
     if (base_contact_.other >= 0) return void(std::fill_n(verdicts, n, std::uint8_t(3)));

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
+from cspace.planning.joint_space.cells import Grid
 from cspace.planning.joint_space.shares import find_standard_error, find_wilson_interval
 from cspace.tables import one_line
 
@@ -16,7 +17,8 @@ from cspace.tables import one_line
 class Projection:
     """For each cell of two joints, whether the others can be set so that the robot is free.
 
-    joints: the two, by number; joint_names: their names. lower, upper (2,): their range [rad or m].
+    joints: the two, by number; joint_names, units: their names, "rad" or "m". lower, upper (2,): their range;
+    wraps (2,): whether both ends are the same place.
     is_free (n1, n2): bool, True where a configuration was found whose two joints are at the centre of the
     cell, and which is free. share (n1, n2): the share of samples of the other joints that are free there.
     samples: how many there were. complete: whether it was as many as asked for, before the time was up.
@@ -24,12 +26,20 @@ class Projection:
 
     joints: tuple[int, int]
     joint_names: tuple[str, str]
+    units: tuple[str, str]
     lower: Array
     upper: Array
+    wraps: npt.NDArray[np.bool_]
     is_free: npt.NDArray[np.bool_]
     share: Array
     samples: int
     complete: bool
+
+    @property
+    def cells(self) -> tuple[Array, Array]:
+        """The coordinates (n1,) and (n2,) [rad or m] of the centres of the cells."""
+        n1, n2 = self.share.shape
+        return Grid(self.lower, self.joints, self.lower, self.upper, (n1, n2)).centers()
 
     @property
     def standard_error(self) -> Array:

@@ -22,8 +22,8 @@ SELF = "self"
 class Slice:
     """Where a robot is free while two joints move and the others are held.
 
-    at (dof,) [rad or m]: where they are held; joints: the two, by number; joint_names: their names. lower,
-    upper (2,): their range. bitmap (n1, n2): bool, True where the robot touches something at the centre of a
+    at (dof,) [rad or m]: where they are held; joints: the two, by number; joint_names, units: their names,
+    "rad" or "m". lower, upper (2,): their range; wraps (2,): whether both ends are the same place. bitmap (n1, n2): bool, True where the robot touches something at the centre of a
     cell; row i belongs to the first joint, column j to the second, in ascending order. is_proved (n1, n2):
     bool, True where the whole cell is as its centre; the others are decided at their centres alone.
     obstacles: the names that `obstacle_map` counts, the last is "self".
@@ -32,8 +32,10 @@ class Slice:
     at: Array
     joints: tuple[int, int]
     joint_names: tuple[str, str]
+    units: tuple[str, str]
     lower: Array
     upper: Array
+    wraps: npt.NDArray[np.bool_]
     bitmap: npt.NDArray[np.bool_]
     is_proved: npt.NDArray[np.bool_]
     obstacles: tuple[str, ...]
@@ -71,7 +73,7 @@ class Slice:
     def obstacle_map(self) -> npt.NDArray[np.int32]:
         """What blocks each cell: int32 (n1, n2), its place in `obstacles`, −1 where the centre is free.
 
-        Where the robot touches several things it is one of them.
+        Where the robot touches several things it is one of them, the same in every call.
         """
         found = np.full(self.bitmap.shape, -1, dtype=np.int32)
         i, j = np.nonzero(self.bitmap)
@@ -96,14 +98,3 @@ class Slice:
 def name_obstacles(obstacles: tuple[str, ...]) -> tuple[str, ...]:
     """The names of what may block a configuration."""
     return (*obstacles, SELF)
-
-
-def find_obstacles(checker: Any, count: int, rows: Array) -> npt.NDArray[np.int32]:
-    """What blocks configurations (k, dof), of `count` obstacles: its number, `count` for the robot itself,
-    −1 for nothing."""
-    found = np.full(len(rows), -1, dtype=np.int32)
-    for k, row in enumerate(rows):
-        contact = checker.find_contact(row)
-        if contact is not None:
-            found[k] = count if contact[0] else contact[2]
-    return found

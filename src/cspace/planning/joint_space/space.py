@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cached_property
 from math import inf, prod
 from time import perf_counter
 from typing import Any, Final
@@ -23,13 +23,16 @@ from cspace.kinematics.batch import thread_count
 from cspace.math.wrapping import TURN
 from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid, settle_grid
 from cspace.planning.joint_space.projections import Projection
-from cspace.planning.joint_space.slices import Slice, find_obstacles, name_obstacles
+from cspace.planning.joint_space.slices import Slice, name_obstacles
 from cspace.planning.joint_space.volumes import Volume
 from cspace.planning.space import ArmSpace
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
 
 Seed = int | np.random.Generator | None
+
+ITSELF: Final = -2
+"""What the core answers where a robot touches itself."""
 
 MOST_CELLS: Final = 8192
 """Cells of a slice or a projection along one joint: with 67 million of them a picture takes a minute."""
@@ -125,9 +128,7 @@ class JointSpace(Renamed):
         return Slice(
             grid.q,
             grid.joints,
-            self._name_pair(grid.joints),
-            grid.lower,
-            grid.upper,
+            *self._describe_pair(grid),
             blocked,
             proved,
             self.obstacles,
@@ -167,10 +168,13 @@ class JointSpace(Renamed):
             free += here
             done += 1
         is_free |= free > 0
-        pair = self._name_pair(grid.joints)
-        share = free / done
         return Projection(
-            grid.joints, pair, grid.lower, grid.upper, is_free, share, done, complete=done == count
+            grid.joints,
+            *self._describe_pair(grid),
+            is_free,
+            free / done,
+            done,
+            complete=done == count,
         )
 
     def volume(
@@ -232,8 +236,12 @@ class JointSpace(Renamed):
             )
         return first, second
 
-    def _name_pair(self, joints: tuple[int, int]) -> tuple[str, str]:
-        return self.joint_names[joints[0]], self.joint_names[joints[1]]
+    def _describe_pair(self, grid: Grid) -> tuple[tuple[str, str], tuple[str, str], Array, Array, Any]:
+        """The names of the joints of a grid, their units, their range, and whether they wrap."""
+        first, second = grid.joints
+        unit = ["m" if k in self._arm.geometry.prismatic else "rad" for k in grid.joints]
+        names = self.joint_names[first], self.joint_names[second]
+        return names, (unit[0], unit[1]), grid.lower, grid.upper, self.wraps[[first, second]]
 
     def _check_rows_within(self, q: ArrayLike | None, subject: str) -> Array:
         """One configuration (dof,) or several as rows (k, dof), none for None; InputError outside limits."""
@@ -262,10 +270,10 @@ class JointSpace(Renamed):
         """The checks of the robot, with what it carries, against itself."""
         return checker_of(self._arm.geometry, without_obstacles(self.scene), self.margin).core
 
-    @property
-    def _find_obstacles(self) -> Any:
-        """Configurations (k, dof) → what blocks them, by number."""
-        return partial(find_obstacles, self._core, len(self.obstacles) - 1)
+    def _find_obstacles(self, rows: Array) -> npt.NDArray[np.int32]:
+        """What blocks configurations (k, dof), as its place in `obstacles`; −1 for nothing."""
+        found: npt.NDArray[np.int32] = self._core.find_objects(rows, 0)
+        return np.where(found == ITSELF, np.int32(len(self.obstacles) - 1), found)
 
     def _is_within(self, rows: Array) -> npt.NDArray[np.bool_]:
         """Whether configurations (n, dof) lie within the limits: (n,) of bool."""
