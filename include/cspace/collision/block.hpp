@@ -256,7 +256,11 @@ class Block {
         float radius;
         const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
-        marks.touching = marks.touching | (gap < touching_square(marks, sum));
+        FloatMask touching = gap < touching_square(marks, sum);
+        if constexpr (Motion::is_cell)
+            if ((bits_of(touching) & wanted) && is_convex(scene, i))
+                touching = touching & motion.may_reach(x, i, at, gap, sum);
+        marks.touching = marks.touching | touching;
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
             if (bits_of(near) & wanted)
@@ -269,7 +273,10 @@ class Block {
     CSPACE_INLINE void compare_balls(int p, const Place& at, const Place& other, float r,
                                      const Motion& motion, Marks<Motion>& marks) {
         const Floats gap = square_distance(at, other);
-        marks.touching = marks.touching | (gap < touching_square(marks, r));
+        FloatMask touching = gap < touching_square(marks, r);
+        if constexpr (Motion::is_cell)
+            if (bits_of(touching) & wanted) touching = touching & motion.may_meet(p, at, other, gap, r);
+        marks.touching = marks.touching | touching;
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
             if (bits_of(near) & wanted)

@@ -1,11 +1,14 @@
 // Cells, eight at a time: boxes q ± half of configurations, which touch nothing or touch something all over.
 //
 // Let joint k turn by at most h_k, from the body of a place p towards the base. If the joints before it have
-// moved p by at most D, then p is at most r_k + D from its axis, where r_k is the distance at q, and it moves
-// by at most D + h_k (r_k + D) in all; a prismatic joint adds h_k. The motion of one body against another is
+// moved p by at most D, then p is at most ρ_k = r_k + D from its axis, where r_k is the distance at q, and it
+// moves by at most D + ρ_k h_k in all; a prismatic joint has ρ = 1. The motion of one body against another is
 // bounded by the sum of what the joints of either side do, those that carry both left out. A ball that is
 // grown by this bound and touches nothing is free in the whole cell; one that is smaller by it and touches
 // does so in the whole cell.
+// Where a grown ball touches something convex, at a distance d along the unit vector n from there to its
+// centre, it still keeps d − Σ |n · v_k| h_k − ½ κ from the plane across n, where v_k is its velocity by joint k
+// and κ = Σ ρ_k h_k (h_k + 2 Σ_{i towards the base} h_i), as in edge.hpp.
 #pragma once
 
 #include "cspace/collision/rows.hpp"
@@ -19,38 +22,84 @@ class CellMotion {
     CellMotion(const Block& block, const float* half, float rounding)
         : block_(block), half_(half), rounding_(rounding) {}
 
-    // Of a place on body b against body a.
+    // An upper bound on the motion of a place on body b against body a.
     CSPACE_INLINE Floats bound(int a, int b, const Place& at) const {
-        constexpr float round_up = 1 + 1e-5f;
         Floats one = fill_floats(0.0f), other = one;
         while (a != b) {
             int& body = b > a ? b : a;
             Floats& moved = b > a ? one : other;
             const Joint& joint = block_.robot.joints[body - 1];
-            const float h = std::fabs(joint.ratio) * half_[joint.coordinate];
-            if (h > 0) moved = moved + (joint.is_prismatic ? fill_floats(h) : turned(body, at, moved) * h);
+            if (const float h = half_of(joint); h > 0) moved = moved + lever(joint, body, at, moved) * h;
             body = joint.parent;
         }
         return (one + other) * round_up + 2 * rounding_;
     }
 
+    // Where a ball of body b may come as near as r to something convex on body a, from a distance whose square
+    // is `gap`. rate_of(v) is δ · v, where δ leads from there to the centre of the ball.
+    template <class RateOf>
+    CSPACE_INLINE FloatMask may_approach(int a, int b, const Place& at, Floats gap, float r,
+                                         const RateOf& rate_of) const {
+        const Floats zero = fill_floats(0.0f);
+        float before;  // what the joints towards the base turn
+        if (!sum_turns(a, b, before)) return zero < fill_floats(1.0f);
+        Floats moved = zero, approach = zero, bend = zero;
+        for (int body = b; body != a; body = block_.robot.joints[body - 1].parent) {
+            const Joint& joint = block_.robot.joints[body - 1];
+            const float h = half_of(joint);
+            if (h == 0) continue;
+            if (!joint.is_prismatic) before -= h;
+            const Floats way = lever(joint, body, at, moved) * h;
+            bend = bend + way * ((joint.is_prismatic ? 0.0f : 0.5f * h) + (before > 0 ? before : 0.0f));
+            moved = moved + way;
+            approach = approach + abs(rate_of(velocity(joint, body, at))) * h;
+        }
+        const Floats distance = sqrt(gap);
+        const Floats left = distance - r - bend * round_up - (moved * (round_up - 1) + 2 * rounding_);
+        return (left < zero) | (distance * left < approach);
+    }
+
   private:
+    static constexpr float round_up = 1 + 1e-5f;
     const Block& block_;
     const float* half_;
     float rounding_;
 
-    // How far a place that has moved may be from the axis of the joint that carries a body.
-    CSPACE_INLINE Floats turned(int body, const Place& at, Floats moved) const {
+    CSPACE_INLINE float half_of(const Joint& joint) const {
+        return std::fabs(joint.ratio) * half_[joint.coordinate];
+    }
+    CSPACE_INLINE Place from_origin(int body, const Place& at) const {
         const Frame& frame = block_.frames[body];
-        const Floats x = at.x - frame.p[0], y = at.y - frame.p[1], z = at.z - frame.p[2];
+        return {at.x - frame.p[0], at.y - frame.p[1], at.z - frame.p[2]};
+    }
+    // The velocity of a place per unit of the joint that carries a body.
+    CSPACE_INLINE Velocity velocity(const Joint& joint, int body, const Place& at) const {
+        const Frame& frame = block_.frames[body];
         const Floats a = frame.R[2], b = frame.R[5], c = frame.R[8];
-        return norm({y * c - z * b, z * a - x * c, x * b - y * a}) + moved;
+        if (joint.is_prismatic) return {a, b, c};
+        const Place d = from_origin(body, at);
+        return {b * d.z - c * d.y, c * d.x - a * d.z, a * d.y - b * d.x};
+    }
+    // An upper bound on its speed once the place has moved.
+    CSPACE_INLINE Floats lever(const Joint& joint, int body, const Place& at, Floats moved) const {
+        if (joint.is_prismatic) return fill_floats(1.0f);
+        return norm(velocity(joint, body, at)) + moved;
+    }
+    // What the joints between body b and body a turn in all; false where a does not carry b.
+    CSPACE_INLINE bool sum_turns(int a, int b, float& sum) const {
+        sum = 0;
+        for (; b > a; b = block_.robot.joints[b - 1].parent) {
+            const Joint& joint = block_.robot.joints[b - 1];
+            if (!joint.is_prismatic) sum += half_of(joint);
+        }
+        return a == b;
     }
 };
 
 // Balls grown by their motion: a lane in which none touches is free in its whole cell.
 struct GrownCells : Apart {
-    explicit GrownCells(const Block& block, const CellMotion& motion) : block(block), motion(motion) {}
+    static constexpr bool is_cell = true;
+    GrownCells(const Block& block, const CellMotion& motion) : block(block), motion(motion) {}
     const Block& block;
     const CellMotion& motion;
     static Floats no_growth() { return fill_floats(0.0f); }
@@ -58,9 +107,21 @@ struct GrownCells : Apart {
     CSPACE_INLINE Floats pair_growth(int p, const Place& at) const {
         return motion.bound(block.robot.pairs[p].a, block.robot.pairs[p].b, at);
     }
+    CSPACE_INLINE FloatMask may_reach(int x, int primitive, const Place& at, Floats gap, float r) const {
+        return motion.may_approach(0, x, at, gap, r, [&](const Velocity& v) {
+            return gap_rate(block.scene, primitive, at, v);
+        });
+    }
+    CSPACE_INLINE FloatMask may_meet(int p, const Place& at, const Place& other, Floats gap, float r) const {
+        const BodyPair& pair = block.robot.pairs[p];
+        return motion.may_approach(pair.a, pair.b, at, gap, r, [&](const Velocity& v) {
+            return (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
+        });
+    }
 };
 // Balls smaller by their motion: a lane in which one touches is blocked in its whole cell.
 struct ShrunkCells : GrownCells {
+    static constexpr bool is_cell = false;
     using GrownCells::GrownCells;
     static Shrink no_growth() { return {fill_floats(0.0f)}; }
     CSPACE_INLINE Shrink growth(int x, const Place& at) const { return {GrownCells::growth(x, at)}; }

@@ -7,7 +7,7 @@ namespace cspace::collision::inline CSPACE_ISA {
 
 // Lanes are configurations of their own: one that touches something is done.
 struct Apart {
-    static constexpr bool is_moving = false;
+    static constexpr bool is_moving = false, is_cell = false;
     static NoMotion no_growth() { return {}; }
     CSPACE_INLINE NoMotion growth(int, const Place&) const { return {}; }
     CSPACE_INLINE NoMotion pair_growth(int, const Place&) const { return {}; }

@@ -44,19 +44,17 @@ class Slice:
     @property
     def proved(self) -> float:
         """The share of cells that are proved."""
-        return float(self.is_proved.mean())
+        return share_of(self.is_proved)
 
     @property
     def free_share(self) -> float:
         """The share of cells whose centre is free."""
-        return float(1.0 - self.bitmap.mean())
+        return share_of(~self.bitmap)
 
     @property
     def free_bounds(self) -> tuple[float, float]:
         """Two numbers between which the free share of the whole range is proved to lie."""
-        return float((self.is_proved & ~self.bitmap).mean()), float(
-            1.0 - (self.is_proved & self.bitmap).mean()
-        )
+        return share_of(self.is_proved & ~self.bitmap), share_of(~(self.is_proved & self.bitmap))
 
     @property
     def cells(self) -> tuple[Array, Array]:
@@ -86,6 +84,10 @@ class Slice:
         n1, n2 = self.bitmap.shape
         return Grid(self.at, self.joints, self.lower, self.upper, (n1, n2))
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What pickle stores: the obstacles in place of the robot that finds them."""
+        return self.__dict__ | {"obstacle_map": self.obstacle_map, "_find_obstacles": None}
+
     def __repr__(self) -> str:
         n1, n2 = self.bitmap.shape
         first, second = self.joint_names
@@ -93,6 +95,11 @@ class Slice:
             "Slice",
             f"of {first} and {second}, {n1} x {n2} cells: {self.free_share:.1%} free, {self.proved:.1%} proved",
         )
+
+
+def share_of(cells: npt.NDArray[np.bool_]) -> float:
+    """The share of cells that are True; a larger set never has the smaller share."""
+    return int(np.count_nonzero(cells)) / cells.size
 
 
 def name_obstacles(obstacles: tuple[str, ...]) -> tuple[str, ...]:

@@ -70,7 +70,7 @@ class JointSpace(Renamed):
             )
         if not isinstance(limits, (bool, np.bool_)):
             raise InputTypeError(f"limits is a {type(limits).__name__}; it must be True or False")
-        self.robot = robot
+        self.robot, self._limits = robot, bool(limits)
         geometry = robot.collision if limits else without_limits(robot.collision)
         self._arm = ArmSpace(geometry, scene, margin)
         self.scene, self.margin, self.dof = scene, self._arm.margin, self._arm.dof
@@ -280,10 +280,19 @@ class JointSpace(Renamed):
         within: npt.NDArray[np.bool_] = ((rows >= self.lower) & (rows <= self.upper) | self.wraps).all(axis=1)
         return within
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle makes it from again: the compiled checks cannot be pickled."""
+        return make_again, (self.robot, self.scene, self.margin, self._limits)
+
     def __repr__(self) -> str:
         objects = len(self.obstacles) - 1
         text = f"of {self._arm.geometry.robot}, {self.dof} joints, {objects} obstacle{'s' * (objects != 1)}"
         return one_line("JointSpace", text)
+
+
+def make_again(robot: HasGeometry, scene: Scene | None, margin: float, limits: bool) -> JointSpace:
+    """The same space."""
+    return JointSpace(robot, scene, margin=margin, limits=limits)
 
 
 def find_joint(key: Any, names: tuple[str, ...], robot: str) -> int:

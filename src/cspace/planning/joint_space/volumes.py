@@ -8,7 +8,7 @@ from cspace.planning.joint_space.shares import find_standard_error, find_wilson_
 from cspace.tables import one_line
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Volume:
     """The free share of the configurations within the limits, and what blocks the others.
 

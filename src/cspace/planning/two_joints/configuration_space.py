@@ -36,7 +36,7 @@ class ConfigurationSpace(Renamed):
     comes from these arcs, nothing from samples. `cs.configuration_space` makes it.
 
     arm: the links and their plane. obstacles: the names. sections: name → convex pieces (corners, radius) in
-    the plane. link_radius [m]. lower, upper (2,): the range of both joints [rad], −π and π where a joint has
+    the plane. link_radius [m]. dof, joint_names: the joints. lower, upper (2,): the range of both joints [rad], −π and π where a joint has
     no limits; wraps (2,): there both ends are the same place.
 
     Lozano-Pérez 1983.
@@ -45,6 +45,7 @@ class ConfigurationSpace(Renamed):
     def __init__(self, arm: PlanarArm, sections: dict[str, list[Piece]], link_radius: float) -> None:
         self.arm, self.sections, self.link_radius = arm, sections, link_radius
         self.obstacles = tuple(sections)
+        self.dof, self.joint_names = 2, arm.joint_names
         self.lower, self.upper, self.wraps = arm.lower, arm.upper, arm.wraps
         self._core = make_core(arm, sections, link_radius)
 
