@@ -163,8 +163,8 @@ class Block {
                 const Place& at = places[s];
                 const float r = robot.spheres[group.first + s].r + scene.pair_margin;
                 Marks<Motion> marks(motion.pair_growth(p, at));
-                if (!(bits_of(square_distance(at, at_a) < square_of(marks.growth, r + a.ball.r)) & wanted))
-                    continue;
+                const Floats reach = square_of(search_growth(marks.growth), r + a.ball.r);
+                if (!(bits_of(square_distance(at, at_a) < reach) & wanted)) continue;
                 const Place* all = static_cast<Place*>(w.sphere_places);
                 for (int k = 0; k < count; ++k) {
                     const int other = w.near_spheres[k];
@@ -258,8 +258,7 @@ class Block {
         const float sum = r + radius;
         FloatMask touching = gap < touching_square(marks, sum);
         if constexpr (Motion::is_cell)
-            if ((bits_of(touching) & wanted) && is_convex(scene, i))
-                touching = touching & motion.may_reach(x, i, at, gap, sum);
+            if (is_convex(scene, i)) touching = motion.refine_primitive(touching, x, i, at, gap, sum);
         marks.touching = marks.touching | touching;
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
@@ -274,8 +273,7 @@ class Block {
                                      const Motion& motion, Marks<Motion>& marks) {
         const Floats gap = square_distance(at, other);
         FloatMask touching = gap < touching_square(marks, r);
-        if constexpr (Motion::is_cell)
-            if (bits_of(touching) & wanted) touching = touching & motion.may_meet(p, at, other, gap, r);
+        if constexpr (Motion::is_cell) touching = motion.refine_pair(touching, p, at, other, gap, r);
         marks.touching = marks.touching | touching;
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);

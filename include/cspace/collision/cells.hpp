@@ -6,9 +6,12 @@
 // bounded by the sum of what the joints of either side do, those that carry both left out. A ball that is
 // grown by this bound and touches nothing is free in the whole cell; one that is smaller by it and touches
 // does so in the whole cell.
-// Where a grown ball touches something convex, at a distance d along the unit vector n from there to its
-// centre, it still keeps d − Σ |n · v_k| h_k − ½ κ from the plane across n, where v_k is its velocity by joint k
-// and κ = Σ ρ_k h_k (h_k + 2 Σ_{i towards the base} h_i), as in edge.hpp.
+// Both are refined by the direction. Let n be the unit vector from the nearest point x of an obstacle to the
+// centre of a ball of radius r, at a distance d. Within the cell the centre moves by at most
+//     a = Σ |n · v_k| h_k + ½ κ,  κ = Σ ρ_k h_k (h_k + 2 Σ_{i towards the base} h_i)
+// along n, where v_k is its velocity by joint k (see edge.hpp). If the obstacle is convex it lies behind the
+// plane across n in x, and d − a > r proves the cell free. Any obstacle contains x, and (d + a)² + D² < r²
+// proves it blocked.
 #pragma once
 
 #include "cspace/collision/rows.hpp"
@@ -35,15 +38,18 @@ class CellMotion {
         return (one + other) * round_up + 2 * rounding_;
     }
 
-    // Where a ball of body b may come as near as r to something convex on body a, from a distance whose square
-    // is `gap`. rate_of(v) is δ · v, where δ leads from there to the centre of the ball.
+    // How far a place on body b may move in all, and along the line to something on body a.
+    struct Approach {
+        Floats moved, along;
+        bool is_known;  // a carries b
+    };
+    // gap: the square of the distance to it. rate_of(v) is δ · v, where δ leads from there to the place.
     template <class RateOf>
-    CSPACE_INLINE FloatMask may_approach(int a, int b, const Place& at, Floats gap, float r,
-                                         const RateOf& rate_of) const {
+    CSPACE_INLINE Approach approach(int a, int b, const Place& at, Floats gap, const RateOf& rate_of) const {
         const Floats zero = fill_floats(0.0f);
         float before;  // what the joints towards the base turn
-        if (!sum_turns(a, b, before)) return zero < fill_floats(1.0f);
-        Floats moved = zero, approach = zero, bend = zero;
+        if (!sum_turns(a, b, before)) return {zero, zero, false};
+        Floats moved = zero, rate = zero, bend = zero;
         for (int body = b; body != a; body = block_.robot.joints[body - 1].parent) {
             const Joint& joint = block_.robot.joints[body - 1];
             const float h = half_of(joint);
@@ -52,12 +58,15 @@ class CellMotion {
             const Floats way = lever(joint, body, at, moved) * h;
             bend = bend + way * ((joint.is_prismatic ? 0.0f : 0.5f * h) + (before > 0 ? before : 0.0f));
             moved = moved + way;
-            approach = approach + abs(rate_of(velocity(joint, body, at))) * h;
+            rate = rate + abs(rate_of(velocity(joint, body, at))) * h;
         }
+        constexpr float nonzero = 1e-30f;  // where the distance is zero the whole motion counts
         const Floats distance = sqrt(gap);
-        const Floats left = distance - r - bend * round_up - (moved * (round_up - 1) + 2 * rounding_);
-        return (left < zero) | (distance * left < approach);
+        rate = rate + moved * rounding_;  // n is off by the rounding of places over the distance
+        const Floats along = select(distance > nonzero, rate / max(distance, fill_floats(nonzero)), moved);
+        return {moved * round_up, along + bend * round_up + moved * (round_up - 1) + 2 * rounding_, true};
     }
+    float rounding() const { return rounding_; }
 
   private:
     static constexpr float round_up = 1 + 1e-5f;
@@ -107,26 +116,58 @@ struct GrownCells : Apart {
     CSPACE_INLINE Floats pair_growth(int p, const Place& at) const {
         return motion.bound(block.robot.pairs[p].a, block.robot.pairs[p].b, at);
     }
-    CSPACE_INLINE FloatMask may_reach(int x, int primitive, const Place& at, Floats gap, float r) const {
-        return motion.may_approach(0, x, at, gap, r, [&](const Velocity& v) {
-            return gap_rate(block.scene, primitive, at, v);
+    CSPACE_INLINE CellMotion::Approach to_primitive(int x, int i, const Place& at, Floats gap) const {
+        return motion.approach(0, x, at, gap, [&](const Velocity& v) {
+            return gap_rate(block.scene, i, at, v);
         });
     }
-    CSPACE_INLINE FloatMask may_meet(int p, const Place& at, const Place& other, Floats gap, float r) const {
+    CSPACE_INLINE CellMotion::Approach to_ball(int p, const Place& at, const Place& other,
+                                               Floats gap) const {
         const BodyPair& pair = block.robot.pairs[p];
-        return motion.may_approach(pair.a, pair.b, at, gap, r, [&](const Velocity& v) {
+        return motion.approach(pair.a, pair.b, at, gap, [&](const Velocity& v) {
             return (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;
         });
+    }
+    CSPACE_INLINE bool is_wanted(FloatMask lanes) const { return bits_of(lanes) & block.wanted; }
+    CSPACE_INLINE FloatMask refine_primitive(FloatMask touching, int x, int i, const Place& at, Floats gap,
+                                             float r) const {
+        return is_wanted(touching) ? touching & may_touch(to_primitive(x, i, at, gap), gap, r) : touching;
+    }
+    CSPACE_INLINE FloatMask refine_pair(FloatMask touching, int p, const Place& at, const Place& other,
+                                        Floats gap, float r) const {
+        return is_wanted(touching) ? touching & may_touch(to_ball(p, at, other, gap), gap, r) : touching;
+    }
+    static CSPACE_INLINE FloatMask may_touch(const CellMotion::Approach& to, Floats gap, float r) {
+        if (!to.is_known) return fill_floats(0.0f) < fill_floats(1.0f);
+        return sqrt(gap) - to.along < fill_floats(r);
     }
 };
 // Balls smaller by their motion: a lane in which one touches is blocked in its whole cell.
 struct ShrunkCells : GrownCells {
-    static constexpr bool is_cell = false;
     using GrownCells::GrownCells;
     static Shrink no_growth() { return {fill_floats(0.0f)}; }
     CSPACE_INLINE Shrink growth(int x, const Place& at) const { return {GrownCells::growth(x, at)}; }
     CSPACE_INLINE Shrink pair_growth(int p, const Place& at) const {
         return {GrownCells::pair_growth(p, at)};
+    }
+    CSPACE_INLINE FloatMask refine_primitive(FloatMask touching, int x, int i, const Place& at, Floats gap,
+                                             float r) const {
+        return is_open(touching, gap, r) ? touching | must_touch(to_primitive(x, i, at, gap), gap, r)
+                                         : touching;
+    }
+    CSPACE_INLINE FloatMask refine_pair(FloatMask touching, int p, const Place& at, const Place& other,
+                                        Floats gap, float r) const {
+        return is_open(touching, gap, r) ? touching | must_touch(to_ball(p, at, other, gap), gap, r)
+                                         : touching;
+    }
+    // Whether a ball touches in a lane where its smaller one does not.
+    CSPACE_INLINE bool is_open(FloatMask touching, Floats gap, float r) const {
+        return bits_of(gap < fill_floats(r * r)) & ~bits_of(touching) & block.wanted;
+    }
+    CSPACE_INLINE FloatMask must_touch(const CellMotion::Approach& to, Floats gap, float r) const {
+        if (!to.is_known) return fill_floats(1.0f) < fill_floats(0.0f);
+        const float least = r - 2 * motion.rounding();
+        return square(sqrt(gap) + to.along) + square(to.moved) < fill_floats(least > 0 ? least * least : 0);
     }
 };
 

@@ -171,8 +171,8 @@ def test_what_is_carried_counts_as_the_robot():
     robot = cs.load_robot("ur5e", geometry="skeleton")
     long = cs.Capsule(0.03, 0.8, [0, 0, 5.0], name="rod")
     scene = cs.Scene([long, cs.Sphere(0.1, [5, 0, 0], "far")]).attach("rod", "tool0", cs.pose([0, 0, 0.5]), touch=WRIST)
-    at = np.radians([0, -90, 90, -90, -90, 0])
-    bare, carrying = (cs.configuration_space(robot, s).slice((1, 2), at=at, size=64) for s in (None, scene))
+    at = [-0.65, 3.95, 2.57, 5.39, -1.72, -1.62]
+    bare, carrying = (cs.configuration_space(robot, s).slice((2, 4), at=at, size=64) for s in (None, scene))
     assert carrying.bitmap.sum() > bare.bitmap.sum()
     assert carrying.obstacles == ("far", "self")
     assert set(np.unique(carrying.obstacle_map)) == {-1, 1}
