@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -64,6 +65,8 @@ def test_finer_cells_are_proved_more(seed):
 
 def test_obstacles_are_named_that_touch_alone():
     robot, scene, space, *_ = draw_case(3)
+    no_pairs = np.empty((0, 2), dtype=np.int64)
+    among = replace(robot.collision, pairs=no_pairs, _kept={})  # touches obstacles alone
     named = 0
     for seed in range(6):
         rng = np.random.default_rng(seed)
@@ -72,11 +75,14 @@ def test_obstacles_are_named_that_touch_alone():
         found, q = part.obstacle_map, part.configurations()
         np.testing.assert_array_equal(found >= 0, part.bitmap)
         for k, name in enumerate(part.obstacles):
-            alone = cs.Scene() if name == "self" else cs.Scene([scene[name]])
+            who, alone = (robot, None) if name == "self" else (among, cs.Scene([scene[name]]))
             if (here := found == k).any():
-                assert robot.collides(q[here], alone, margin=space.margin).all()
+                assert cs.collision.collides(who, q[here], alone, margin=space.margin).all()
                 assert space.blocked_by(q[here][0]) == name
                 named += 1
+        q = q[part.bitmap]
+        by_obstacles = cs.collision.collides(among, q, scene, margin=space.margin)
+        np.testing.assert_array_equal(found[part.bitmap] < len(part.obstacles) - 1, by_obstacles)
     assert named > 6
 
 

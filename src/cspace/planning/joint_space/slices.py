@@ -71,7 +71,8 @@ class Slice:
     def obstacle_map(self) -> npt.NDArray[np.int32]:
         """What blocks each cell: int32 (n1, n2), its place in `obstacles`, −1 where the centre is free.
 
-        Where the robot touches several things it is one of them, the same in every call.
+        Where the robot touches several things it is one of them, the same in every call, and an obstacle
+        rather than the robot itself.
         """
         found = np.full(self.bitmap.shape, -1, dtype=np.int32)
         i, j = np.nonzero(self.bitmap)
