@@ -62,7 +62,9 @@ def main() -> None:
     parser.add_argument("--robots", default="panda,ur5e,fetch")
     parser.add_argument("--slices", type=int, default=50)
     args = parser.parse_args()
-    print("| robot | cells | slice, median (p95) [ms] | brute force [ms] | names [ms] | proved | all proved |")
+    print(
+        "| robot | cells | slice, median (p95) [ms] | brute force [ms] | names [ms] | proved | all proved |"
+    )
     print("|---|---|---|---|---|---|---|")
     for name in args.robots.split(","):
         robot = cs.load_robot(name)

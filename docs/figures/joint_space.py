@@ -1,4 +1,4 @@
-"""Draws the figures of the page on the C-space of any robot: `python docs/figures/joint_space.py [FOLDER]`."""
+"""Draws the figures of the page on the C-space of any robot: python docs/figures/joint_space.py [FOLDER]."""
 
 from __future__ import annotations
 

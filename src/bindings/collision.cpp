@@ -177,7 +177,8 @@ void bind_collision(nb::module_& m) {
              "What touches at configurations (n, dof): the number of an obstacle, -1 for nothing, -2 for the "
              "robot itself.")
         .def("check_cells", &check_cells, "q"_a, "half"_a, "threads"_a,
-             "A byte per cell q ± half, q (n, dof): 1 where its middle touches something, and 2 more where all "
+             "A byte per cell q ± half, q (n, dof): 1 where its middle touches something, and 2 more where "
+             "all "
              "of it is so.")
         .def("check_edge", &check_edge, "start"_a, "end"_a, "resolution"_a, "Verdict, contact and its place.")
         .def("find_clearance", &find_clearance, "q"_a,

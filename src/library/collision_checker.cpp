@@ -198,9 +198,7 @@ void Checker::find_objects(const double* q, std::size_t n, std::int32_t* objects
             reset_workspace(*memory);
             const bool free = is_free(q + row * std::size_t(dof()), *memory);
             const Contact& found = memory->w.contact;
-            objects[row] = free            ? nothing
-                           : found.is_pair ? itself
-                                           : std::int32_t(data_->owner(found.other));
+            objects[row] = free ? nothing : found.is_pair ? itself : std::int32_t(data_->owner(found.other));
             poll_interrupts();
         }
         return true;

@@ -13,7 +13,9 @@ from cli.schema import check
 @pytest.fixture
 def scene(tmp_path):
     path = tmp_path / "cell.toml"
-    cs.Scene([cs.Box([0.1, 0.6, 0.5], [0.55, 0.0, 0.35], "wall"), cs.HalfSpace(offset=-0.1, name="floor")]).save(path)
+    cs.Scene(
+        [cs.Box([0.1, 0.6, 0.5], [0.55, 0.0, 0.35], "wall"), cs.HalfSpace(offset=-0.1, name="floor")]
+    ).save(path)
     return path
 
 

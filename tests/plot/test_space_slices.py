@@ -10,7 +10,9 @@ from cspace.errors import InputError, InputTypeError
 
 plt = pytest.importorskip("matplotlib.pyplot")
 
-SCENE = cs.Scene([cs.Box([0.1, 0.6, 0.5], [0.55, 0.0, 0.35], "wall"), cs.HalfSpace(offset=-0.1, name="floor")])
+SCENE = cs.Scene(
+    [cs.Box([0.1, 0.6, 0.5], [0.55, 0.0, 0.35], "wall"), cs.HalfSpace(offset=-0.1, name="floor")]
+)
 
 
 @pytest.fixture(autouse=True)

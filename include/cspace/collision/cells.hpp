@@ -117,12 +117,10 @@ struct GrownCells : Apart {
         return motion.bound(block.robot.pairs[p].a, block.robot.pairs[p].b, at);
     }
     CSPACE_INLINE CellMotion::Approach to_primitive(int x, int i, const Place& at, Floats gap) const {
-        return motion.approach(0, x, at, gap, [&](const Velocity& v) {
-            return gap_rate(block.scene, i, at, v);
-        });
+        return motion.approach(0, x, at, gap,
+                               [&](const Velocity& v) { return gap_rate(block.scene, i, at, v); });
     }
-    CSPACE_INLINE CellMotion::Approach to_ball(int p, const Place& at, const Place& other,
-                                               Floats gap) const {
+    CSPACE_INLINE CellMotion::Approach to_ball(int p, const Place& at, const Place& other, Floats gap) const {
         const BodyPair& pair = block.robot.pairs[p];
         return motion.approach(pair.a, pair.b, at, gap, [&](const Velocity& v) {
             return (at.x - other.x) * v.x + (at.y - other.y) * v.y + (at.z - other.z) * v.z;

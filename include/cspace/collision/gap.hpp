@@ -67,7 +67,8 @@ struct Mover {
     unsigned wanted;
     CSPACE_INLINE Floats reach(float radius) const { return square_of(growth, r + radius); }
     CSPACE_INLINE Sought seek(float radius, bool any) const {
-        return {reach(radius), any ? reach(radius) : square_of(least_growth(growth), r + radius), wanted, any};
+        return {reach(radius), any ? reach(radius) : square_of(least_growth(growth), r + radius), wanted,
+                any};
     }
 };
 template <class Growth>

@@ -49,7 +49,9 @@ def refuse_joint_space_options(args: argparse.Namespace) -> None:
     """Refuse options of this part where the exact space of a planar arm is printed."""
     for name in OWN:
         if getattr(args, name) is not None:
-            raise UsageError(f"--{name} needs --joints with two joints, since the space of a planar arm is exact")
+            raise UsageError(
+                f"--{name} needs --joints with two joints, since the space of a planar arm is exact"
+            )
 
 
 def run_joint_space(args: argparse.Namespace, out: Output, robot: Robot) -> int:
@@ -61,7 +63,7 @@ def run_joint_space(args: argparse.Namespace, out: Output, robot: Robot) -> int:
             if getattr(args, name) is not None:
                 raise UsageError(f"--{name} needs --joints with two joints")
         with show_progress("sampling the configuration space"):
-            volume = space.volume(default(args.samples, SAMPLES), rng=args.seed)
+            volume = space.volume(or_default(args.samples, SAMPLES), rng=args.seed)
         answer = {"volume": describe_volume(volume)}
     else:
         answer = describe_plane(args, space, robot, joints)
@@ -130,17 +132,17 @@ def describe_plane(
     at = read_place(args, robot)
     if args.samples is None:
         with show_progress("computing a slice"):
-            part = space.slice(joints, at=at, size=default(args.size, SLICE_SIZE))
+            part = space.slice(joints, at=at, size=or_default(args.size, SLICE_SIZE))
         draw_picture(args.plot, "space_slice", part)
         return {"slice": describe_slice(part)}
     with show_progress("computing a projection"):
-        size = default(args.size, PROJECTION_SIZE)
+        size = or_default(args.size, PROJECTION_SIZE)
         shadow = space.project(joints, size=size, samples=args.samples, including=at, rng=args.seed)
     draw_picture(args.plot, "space_projection", shadow, q=at)
     return {"projection": describe_projection(shadow)}
 
 
-def default(given: int | None, otherwise: int) -> int:
+def or_default(given: int | None, otherwise: int) -> int:
     """The number that was typed, or another one."""
     return otherwise if given is None else given
 

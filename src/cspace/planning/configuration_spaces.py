@@ -60,10 +60,10 @@ def configuration_space(
 ) -> Any:
     """The configuration space of a robot among obstacles.
 
-    Of a robot with two revolute joints about parallel axes a ConfigurationSpace, which is exact: links are the
-    segments from the first axis to the second and from there to the tip, and everything within link_radius
-    [m] of them. Mounting, tool and limits count. Of any other robot a JointSpace, whose links are the
-    collision geometry of the robot and keep a margin [m]: slices, projections and volumes.
+    Of a robot with two revolute joints about parallel axes a ConfigurationSpace, which is exact: links are
+    the segments from the first axis to the second and from there to the tip, and everything within
+    link_radius [m] of them. Mounting, tool and limits count. Of any other robot a JointSpace, whose links are
+    the collision geometry of the robot and keep a margin [m]: slices, projections and volumes.
 
     obstacles: a Scene; None, without obstacles, for a JointSpace. For a planar arm a Scene is cut with its
     plane, and polygons (n, 2) [m] in that plane will do, as a list or a PolygonWorld, whose bounds do not

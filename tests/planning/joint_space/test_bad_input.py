@@ -122,7 +122,7 @@ def test_scenes_that_do_not_fit():
         cs.planning.JointSpace(panda, [cs.Sphere(1.0)])
     with pytest.raises(CspaceError, match="has 7 joints"):
         cs.configuration_space(panda, [[(0, 0), (1, 0), (0, 1)]])
-    with pytest.raises(CspaceError, match="no link|no frame|no name|nothing"):
+    with pytest.raises(CspaceError, match=r"no link|no frame|no name|nothing"):
         cs.configuration_space(panda, BOX.allow("box", "no_such_link"))
     T = np.eye(4)
     T[0, 3] = 1.0

@@ -71,7 +71,9 @@ def test_threads_change_nothing_and_the_time_ends_it():
 def test_an_obstacle_more_never_frees_a_cell():
     robot, scene, space, joints, *_ = draw_case(3)
     before = space.project(joints, size=24, samples=16)
-    more = cs.planning.JointSpace(robot, scene.add(cs.Sphere(0.3, [0.3, 0.2, 0.5], "more")), margin=space.margin)
+    more = cs.planning.JointSpace(
+        robot, scene.add(cs.Sphere(0.3, [0.3, 0.2, 0.5], "more")), margin=space.margin
+    )
     after = more.project(joints, size=24, samples=16)
     assert (after.share <= before.share).all()
     assert (after.share < before.share).any()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -158,7 +159,7 @@ def test_obstacles_and_margins_only_add_blocked_cells(seed):
     ]
     spaces.append(cs.planning.JointSpace(robot, spaces[-1].scene, margin=0.05))
     maps = [space.slice(joints, at=at, size=32).bitmap for space in spaces]
-    for less, more in zip(maps[:-1], maps[1:], strict=True):
+    for less, more in pairwise(maps):
         assert not (less & ~more).any()
 
 
@@ -176,7 +177,9 @@ def test_limits_give_way_to_whole_turns():
 def test_what_is_carried_counts_as_the_robot():
     robot = cs.load_robot("ur5e", geometry="skeleton")
     long = cs.Capsule(0.03, 0.8, [0, 0, 5.0], name="rod")
-    scene = cs.Scene([long, cs.Sphere(0.1, [5, 0, 0], "far")]).attach("rod", "tool0", cs.pose([0, 0, 0.5]), touch=WRIST)
+    scene = cs.Scene([long, cs.Sphere(0.1, [5, 0, 0], "far")]).attach(
+        "rod", "tool0", cs.pose([0, 0, 0.5]), touch=WRIST
+    )
     at = [-0.65, 3.95, 2.57, 5.39, -1.72, -1.62]
     bare, carrying = (cs.configuration_space(robot, s).slice((2, 4), at=at, size=64) for s in (None, scene))
     assert carrying.bitmap.sum() > bare.bitmap.sum()

@@ -68,7 +68,9 @@ def test_nothing_in_the_way_is_all_free():
 def test_the_parts_add_up_and_obstacles_only_take_away(seed):
     robot, scene, space, *_ = draw_case(seed)
     kept = [cs.planning.JointSpace(robot, s, margin=space.margin) for s in (None, scene)]
-    kept.append(cs.planning.JointSpace(robot, scene.add(cs.Sphere(0.4, [0.4, 0, 0.4], "more")), margin=space.margin))
+    kept.append(
+        cs.planning.JointSpace(robot, scene.add(cs.Sphere(0.4, [0.4, 0, 0.4], "more")), margin=space.margin)
+    )
     volumes = [each.volume(3000, rng=seed) for each in kept]
     for volume in volumes:
         assert volume.share + volume.self_share + volume.obstacle_share == pytest.approx(1)

@@ -1,8 +1,8 @@
 """Grids of configurations settled by a quadtree: one proof for a square of many cells where it is possible.
 
-A square of cells is a box q ± h of two joints. If every ball of the robot, grown by how far it can move within
-the box, touches nothing, all of it is free; if a ball that is smaller by that still touches something, all of
-it is blocked. Other squares are cut into four, down to single cells.
+A square of cells is a box q ± h of two joints. If every ball of the robot, grown by how far it can move
+within the box, touches nothing, all of it is free; if a ball that is smaller by that still touches something,
+all of it is blocked. Other squares are cut into four, down to single cells.
 """
 
 from __future__ import annotations
@@ -48,8 +48,9 @@ class Grid:
 
     def coordinates(self, axis: int, place: Any) -> Array:
         """The coordinate at places along an axis, 0 at the lower end and n at the upper one."""
-        low, high = self.lower[axis], self.upper[axis]
-        return low + (high - low) * np.asarray(place, dtype=np.float64) / self.shape[axis]
+        low, high = float(self.lower[axis]), float(self.upper[axis])
+        steps: Array = np.asarray(place, dtype=np.float64)
+        return low + (high - low) * steps / self.shape[axis]
 
     def centers(self) -> tuple[Array, Array]:
         """The coordinates (n1,) and (n2,) of the centres of the cells."""
@@ -69,9 +70,7 @@ class Grid:
         return half
 
 
-def settle_grid(
-    checker: CollisionChecker, grid: Grid, deadline: float, threads: int
-) -> tuple[Mask, Mask]:
+def settle_grid(checker: CollisionChecker, grid: Grid, deadline: float, threads: int) -> tuple[Mask, Mask]:
     """Where a grid is blocked (n1, n2), and where that is proved for the whole cell (n1, n2).
 
     Cells that are not proved are decided at their centres. After the deadline [s, of perf_counter] no more

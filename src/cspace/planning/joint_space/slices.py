@@ -23,10 +23,11 @@ class Slice:
     """Where a robot is free while two joints move and the others are held.
 
     at (dof,) [rad or m]: where they are held; joints: the two, by number; joint_names, units: their names,
-    "rad" or "m". lower, upper (2,): their range; wraps (2,): whether both ends are the same place. bitmap (n1, n2): bool, True where the robot touches something at the centre of a
-    cell; row i belongs to the first joint, column j to the second, in ascending order. is_proved (n1, n2):
-    bool, True where the whole cell is as its centre; the others are decided at their centres alone.
-    obstacles: the names that `obstacle_map` counts, the last is "self".
+    "rad" or "m". lower, upper (2,): their range; wraps (2,): whether both ends are the same place. bitmap
+    (n1, n2): bool, True where the robot touches something at the centre of a cell; row i belongs to the first
+    joint, column j to the second, in ascending order. is_proved (n1, n2): bool, True where the whole cell is
+    as its centre; the others are decided at their centres alone. obstacles: the names that `obstacle_map`
+    counts, the last is "self".
     """
 
     at: Array
@@ -94,7 +95,8 @@ class Slice:
         first, second = self.joint_names
         return one_line(
             "Slice",
-            f"of {first} and {second}, {n1} x {n2} cells: {self.free_share:.1%} free, {self.proved:.1%} proved",
+            f"of {first} and {second}, {n1} x {n2} cells: {self.free_share:.1%} free,"
+            f" {self.proved:.1%} proved",
         )
 
 

@@ -1,4 +1,4 @@
-"""JointSpace: the configuration space of any robot with collision geometry, in slices, projections, volumes."""
+"""JointSpace: the configuration space of any robot, in slices, projections and volumes."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ MOST_SAMPLES: Final = 10**10
 class JointSpace(Renamed):
     """The configurations of a robot with collision geometry, free or blocked, for any number of joints.
 
-    robot: a Robot, or a RobotGeometry. scene: None without obstacles. margin [m]: everything keeps so far away
-    from everything else. limits: whether the limits of revolute joints count; a joint without them turns
+    robot: a Robot, or a RobotGeometry. scene: None without obstacles. margin [m]: everything keeps so far
+    away from everything else. limits: whether the limits of revolute joints count; a joint without them turns
     around.
 
-    dof, joint_names: the joints. lower, upper (dof,): their range [rad or m], −π and π for a joint that wraps;
-    wraps (dof,): the joints where both ends are the same place. obstacles: the names of what may block, the
-    last of them "self", for contacts of the robot with itself and with what it carries.
+    dof, joint_names: the joints. lower, upper (dof,): their range [rad or m], −π and π for a joint that
+    wraps; wraps (dof,): the joints where both ends are the same place. obstacles: the names of what may
+    block, the last of them "self", for contacts of the robot with itself and with what it carries.
 
     Raises InputError for a robot without collision geometry, a prismatic joint without limits, a negative
     margin, and names of the scene that do not fit the robot.
@@ -114,9 +114,9 @@ class JointSpace(Renamed):
         they can move within it, touch nothing, or, made smaller by that, still touch. Squares that remain are
         cut, and cells that remain are decided at their centres.
 
-        joints: two names or numbers. at (dof,) [rad or m]: where the others are held; by default in the middle
-        of their range. size: the number of cells along each joint, or (n1, n2). time_limit [s]: after it no
-        more proofs are tried. threads: 0 or None for all; the result does not depend on it.
+        joints: two names or numbers. at (dof,) [rad or m]: where the others are held; by default in the
+        middle of their range. size: the number of cells along each joint, or (n1, n2). time_limit [s]: after
+        it no more proofs are tried. threads: 0 or None for all; the result does not depend on it.
 
         Raises InputError for a joint that is given twice or is not there, a configuration outside the limits,
         and a size below one.
@@ -146,7 +146,7 @@ class JointSpace(Renamed):
         time_limit: float | None = None,
         threads: int | None = None,
     ) -> Projection:
-        """The projection onto two joints: for each cell, how often the robot is free at samples of the others.
+        """The projection onto two joints: for each cell, how often samples of the others are free.
 
         Each sample sets the other joints uniformly within their range, for all cells alike. joints: two names
         or numbers. size: the number of cells along each joint, or (n1, n2). samples: how many. including

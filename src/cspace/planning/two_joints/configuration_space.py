@@ -36,8 +36,8 @@ class ConfigurationSpace(Renamed):
     comes from these arcs, nothing from samples. `cs.configuration_space` makes it.
 
     arm: the links and their plane. obstacles: the names. sections: name → convex pieces (corners, radius) in
-    the plane. link_radius [m]. dof, joint_names: the joints. lower, upper (2,): the range of both joints [rad], −π and π where a joint has
-    no limits; wraps (2,): there both ends are the same place.
+    the plane. link_radius [m]. dof, joint_names: the joints. lower, upper (2,): the range of both joints
+    [rad], −π and π where a joint has no limits; wraps (2,): there both ends are the same place.
 
     Lozano-Pérez 1983.
     """
