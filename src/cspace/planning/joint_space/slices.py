@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array
-from cspace.planning.joint_space.cells import Grid
+from cspace.arrays import Array, guard_memory
+from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid
 from cspace.tables import one_line
 
 SELF = "self"
@@ -64,9 +64,11 @@ class Slice:
 
     def configurations(self) -> Array:
         """The configurations (n1, n2, dof) at the centres of the cells."""
-        first, second = np.meshgrid(*self.cells, indexing="ij")
-        rows = self._grid.configurations(first.ravel(), second.ravel())
-        return rows.reshape(*self.bitmap.shape, -1)
+        n1, n2 = self.bitmap.shape
+        with guard_memory("size", (n1, n2), 3.0 * n1 * n2 * len(self.at), "take fewer cells"):
+            first, second = np.meshgrid(*self.cells, indexing="ij")
+            rows = self._grid.configurations(first.ravel(), second.ravel())
+        return rows.reshape(n1, n2, -1)
 
     @cached_property
     def obstacle_map(self) -> npt.NDArray[np.int32]:
@@ -76,9 +78,11 @@ class Slice:
         rather than the robot itself.
         """
         found = np.full(self.bitmap.shape, -1, dtype=np.int32)
-        i, j = np.nonzero(self.bitmap)
+        places = np.argwhere(self.bitmap)
         first, second = self.cells
-        found[i, j] = self._find_obstacles(self._grid.configurations(first[i], second[j]))
+        for begin in range(0, len(places), ROWS_AT_ONCE):
+            i, j = places[begin : begin + ROWS_AT_ONCE].T
+            found[i, j] = self._find_obstacles(self._grid.configurations(first[i], second[j]))
         return found
 
     @property
