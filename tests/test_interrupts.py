@@ -154,6 +154,24 @@ CALLS["components"] = two_joints(lambda space: space.components)
 CALLS["bitmap"] = two_joints(lambda space: [space.bitmap(5000) for _ in range(50)])
 
 
+def joint_space(use: Callable[[Any], Any]) -> Callable[[], Call]:
+    """A call of the configuration space of an arm among a thousand balls."""
+
+    def make() -> Call:
+        places = np.random.default_rng(1).uniform(-1, 1, (1000, 3)) * [1, 1, 0.5] + [0, 0, 0.9]
+        scene = cs.Scene([cs.Sphere(0.03, p) for p in places if np.hypot(*p[:2]) > 0.3])
+        space = cs.configuration_space(cs.load_robot("panda"), scene)
+        return lambda: use(space)
+
+    return make
+
+
+CALLS["slice"] = joint_space(lambda space: [space.slice((k, 3), size=4096) for k in (0, 1, 2)])
+CALLS["obstacle_map"] = joint_space(lambda space: space.slice((0, 1), size=2048).obstacle_map)
+CALLS["project"] = joint_space(lambda space: space.project((0, 1), size=2048, samples=100))
+CALLS["volume"] = joint_space(lambda space: space.volume(10**8))
+
+
 def batch(name: str, rows: int, use: Callable[[Any, Any, Any], Any]) -> Callable[[], Call]:
     """A call over rows of configurations and their poses, of which there are only some different ones."""
 

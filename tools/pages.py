@@ -21,6 +21,7 @@ COURSE += (
     "collision",
     "planning",
     "two-joint-space",
+    "joint-space",
     "maps",
     "navigation",
     "planners",

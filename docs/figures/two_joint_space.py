@@ -1,4 +1,4 @@
-"""Draws the figure of the page on the C-space of two links: `python docs/figures/two_joint_space.py`."""
+"""Draws the figures of the page on the C-space of two links: `python docs/figures/two_joint_space.py`."""
 
 from __future__ import annotations
 
@@ -21,6 +21,10 @@ def main() -> None:
     way = space.path(start, goals)
     artists = cs.plot.configuration_space(space, start=start, goals=goals, path=way)
     cs.plot.save(artists, HERE / "two_joint_space.png", dpi=120)
+    posts = [[(x - 0.1, -0.1), (x + 0.1, -0.1), (x + 0.1, 0.1), (x - 0.1, 0.1)] for x in (0.6, -0.6)]
+    between = cs.configuration_space(arm, posts)
+    artists = cs.plot.configuration_space(between, start=[1.57, 0.0], goals=[[-1.57, 0.0]])
+    cs.plot.save(artists, HERE / "two_posts.png", dpi=80)
 
 
 if __name__ == "__main__":

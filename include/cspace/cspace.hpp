@@ -8,9 +8,9 @@
 // after the instruction set (cspace/math/isa.hpp).
 #pragma once
 
+#include "cspace/collision/cells.hpp"
 #include "cspace/collision/edge.hpp"
 #include "cspace/collision/one.hpp"
-#include "cspace/collision/rows.hpp"
 #include "cspace/ik/numeric/resolved_rate.hpp"
 #include "cspace/ik/numeric/search.hpp"
 #include "cspace/ik/numeric/tasks.hpp"

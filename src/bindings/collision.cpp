@@ -131,6 +131,25 @@ Plain<std::uint8_t> check_rows(const Checker& checker, const ConstDoubles& q, in
     return found;
 }
 
+Plain<std::int32_t> find_objects(const Checker& checker, const ConstDoubles& q, int threads) {
+    require(q.ndim() == 2 && q.shape(1) == checker.dof(), "configurations must be an array (n, dof)");
+    Plain<std::int32_t> found({q.shape(0)});
+    const nb::gil_scoped_release release;
+    checker.find_objects(q.data, std::size_t(q.shape(0)), found.data, threads);
+    return found;
+}
+
+// Of cells q ± half, as the checker numbers them.
+Plain<std::uint8_t> check_cells(const Checker& checker, const ConstDoubles& q, const ConstDoubles& half,
+                                int threads) {
+    require(q.ndim() == 2 && q.shape(1) == checker.dof(), "configurations must be an array (n, dof)");
+    require(half.ndim() == 1 && half.size == checker.dof(), "half must be an array (dof,)");
+    Plain<std::uint8_t> found({q.shape(0)});
+    const nb::gil_scoped_release release;
+    checker.check_cells(q.data, std::size_t(q.shape(0)), half.data, found.data, threads);
+    return found;
+}
+
 // Verdict, contact and its place on the edge, 0 … 1. A resolution of zero: the edge is proved.
 std::tuple<int, std::optional<NamedContact>, double> check_edge(const Checker& checker,
                                                                 const ConstDoubles& from,
@@ -172,6 +191,13 @@ void bind_collision(nb::module_& m) {
         .def("find_contact", &find_contact, "q"_a, "What touches at a configuration (dof,), None if nothing.")
         .def("check_rows", &check_rows, "q"_a, "threads"_a,
              "A byte per configuration (n, dof): 1 where something touches.")
+        .def("find_objects", &find_objects, "q"_a, "threads"_a,
+             "What touches at configurations (n, dof): the number of an obstacle, -1 for nothing, -2 for the "
+             "robot itself.")
+        .def("check_cells", &check_cells, "q"_a, "half"_a, "threads"_a,
+             "A byte per cell q ± half, q (n, dof): 1 where its middle touches something, and 2 more where "
+             "all "
+             "of it is so.")
         .def("check_edge", &check_edge, "start"_a, "end"_a, "resolution"_a, "Verdict, contact and its place.")
         .def("find_clearance", &find_clearance, "q"_a,
              "Distance, gradient, whether another pair is as near, the nearest pair.");

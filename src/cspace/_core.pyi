@@ -352,6 +352,16 @@ class CollisionChecker:
     def check_rows(self, q: numpy.typing.NDArray[numpy.float64], threads: int) -> numpy.typing.NDArray[numpy.uint8]:
         """A byte per configuration (n, dof): 1 where something touches."""
 
+    def find_objects(self, q: numpy.typing.NDArray[numpy.float64], threads: int) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        What touches at configurations (n, dof): the number of an obstacle, -1 for nothing, -2 for the robot itself.
+        """
+
+    def check_cells(self, q: numpy.typing.NDArray[numpy.float64], half: numpy.typing.NDArray[numpy.float64], threads: int) -> numpy.typing.NDArray[numpy.uint8]:
+        """
+        A byte per cell q ± half, q (n, dof): 1 where its middle touches something, and 2 more where all of it is so.
+        """
+
     def check_edge(self, start: numpy.typing.NDArray[numpy.float64], end: numpy.typing.NDArray[numpy.float64], resolution: float) -> tuple[int, tuple[bool, int, int] | None, float]:
         """Verdict, contact and its place."""
 

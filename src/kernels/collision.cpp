@@ -1,8 +1,8 @@
 #include "collision.hpp"
 
+#include "cspace/collision/cells.hpp"
 #include "cspace/collision/edge.hpp"
 #include "cspace/collision/one.hpp"
-#include "cspace/collision/rows.hpp"
 
 namespace cspace::collision::inline CSPACE_ISA {
 
@@ -30,11 +30,24 @@ bool touches_something(const Robot& robot, const Scene& scene, Workspace& w, con
     return OneCheck(robot, scene, w).find_contact(q);
 }
 
+CSPACE_INLINE void load_columns(const Robot& robot, const float* columns, Floats* q) {
+    for (int k = 0; k < robot.n_coordinates; ++k) q[k] = load_floats(columns + float_lanes * k);
+}
+
 unsigned check_rows(const Robot& robot, const Scene& scene, Workspace& w, const float* columns, int count) {
     Floats q[most_coordinates];
-    for (int k = 0; k < robot.n_coordinates; ++k) q[k] = load_floats(columns + float_lanes * k);
+    load_columns(robot, columns, q);
     Block block(robot, scene, w);
     return lanes_in_collision(block, q, (1u << count) - 1);
+}
+
+unsigned check_cells(const Robot& robot, const Scene& scene, Workspace& w, const float* columns,
+                     const float* half, float rounding, int count) {
+    Floats q[most_coordinates];
+    load_columns(robot, columns, q);
+    Block block(robot, scene, w);
+    const CellVerdicts found = settle_cells(block, q, half, rounding, (1u << count) - 1);
+    return found.touching | found.proved << float_lanes;
 }
 
 bool ball_touches(const Scene& scene, int i, const Ball& ball) {

@@ -24,6 +24,12 @@ CSPACE_NARROW_KERNEL(cspace::collision, bool, touches_something,
 CSPACE_NARROW_KERNEL(cspace::collision, unsigned, check_rows,
                      (const cspace::collision::Robot& robot, const cspace::collision::Scene& scene,
                       cspace::collision::Workspace& w, const float* columns, int count))
+// Of up to eight cells q ± half (one entry per coordinate): bit i whether the middle of cell i touches
+// something, bit 8 + i whether all of the cell is so. rounding: of places [m].
+CSPACE_NARROW_KERNEL(cspace::collision, unsigned, check_cells,
+                     (const cspace::collision::Robot& robot, const cspace::collision::Scene& scene,
+                      cspace::collision::Workspace& w, const float* columns, const float* half,
+                      float rounding, int count))
 // Whether a ball of the base, in its frame, touches primitive i.
 CSPACE_NARROW_KERNEL(cspace::collision, bool, ball_touches,
                      (const cspace::collision::Scene& scene, int i, const cspace::collision::Ball& ball))

@@ -214,9 +214,9 @@ bool Checker::is_free(const double* q, WorkspaceMemory& memory) const {
     return !kernels::touches_something(robot(), scene_, memory.w, a);
 }
 
-void Checker::check_rows(const double* q, std::size_t n, std::uint8_t* collides, int threads) const {
+template <class Check>
+void Checker::over_blocks(const double* q, std::size_t n, int threads, const Check& check) const {
     constexpr std::size_t least_rows = 2048;
-    if (base_contact_.other >= 0) return void(std::fill_n(collides, n, std::uint8_t(1)));
     const std::size_t width = std::size_t(dof());
     over_rows(n, threads, 8, least_rows, [&](std::size_t begin, std::size_t end) {
         const Borrowed memory = borrow_workspace();
@@ -229,10 +229,47 @@ void Checker::check_rows(const double* q, std::size_t n, std::uint8_t* collides,
                 round_edge(from, from, a, b);
                 for (std::size_t k = 0; k < width; ++k) columns[8 * k + i] = a[k];
             }
-            const unsigned hit = kernels::check_rows(robot(), scene_, memory->w, columns, int(count));
-            for (std::size_t i = 0; i < count; ++i) collides[row + i] = hit >> i & 1;
+            check(memory->w, columns, int(count), row);
+            poll_interrupts();
         }
         return true;
+    });
+}
+
+void Checker::check_rows(const double* q, std::size_t n, std::uint8_t* collides, int threads) const {
+    if (base_contact_.other >= 0) return void(std::fill_n(collides, n, std::uint8_t(1)));
+    over_blocks(q, n, threads, [&](Workspace& w, const float* columns, int count, std::size_t row) {
+        const unsigned hit = kernels::check_rows(robot(), scene_, w, columns, count);
+        for (int i = 0; i < count; ++i) collides[row + std::size_t(i)] = hit >> i & 1;
+    });
+}
+
+void Checker::find_objects(const double* q, std::size_t n, std::int32_t* objects, int threads) const {
+    constexpr std::size_t least_rows = 512;
+    over_rows(n, threads, 1, least_rows, [&](std::size_t begin, std::size_t end) {
+        const Borrowed memory = borrow_workspace();
+        for (std::size_t row = begin; row < end; ++row) {
+            reset_workspace(*memory);
+            const bool free = is_free(q + row * std::size_t(dof()), *memory);
+            const Contact& found = memory->w.contact;
+            objects[row] = free ? nothing : found.is_pair ? itself : std::int32_t(data_->owner(found.other));
+            poll_interrupts();
+        }
+        return true;
+    });
+}
+
+void Checker::check_cells(const double* q, std::size_t n, const double* half, std::uint8_t* verdicts,
+                          int threads) const {
+    if (base_contact_.other >= 0) return void(std::fill_n(verdicts, n, std::uint8_t(3)));
+    float widths[most_coordinates];
+    constexpr float round_up = 1 + 1e-6f;
+    for (int k = 0; k < dof(); ++k) widths[k] = float(half[k]) * round_up;
+    over_blocks(q, n, threads, [&](Workspace& w, const float* columns, int count, std::size_t row) {
+        const unsigned found =
+            kernels::check_cells(robot(), scene_, w, columns, widths, robot_->slack(), count);
+        for (int i = 0; i < count; ++i)
+            verdicts[row + std::size_t(i)] = std::uint8_t((found >> i & 1) | (found >> (8 + i) & 1) << 1);
     });
 }
 

@@ -67,6 +67,14 @@ class Checker {
     bool is_free(const double* q, WorkspaceMemory& memory) const;
     // Rows of configurations (n, dof): collides[i] is 1 where something touches. On so many threads (0: all).
     void check_rows(const double* q, std::size_t n, std::uint8_t* collides, int threads) const;
+    // What touches at rows of configurations (n, dof), of several things always the same: the number of an
+    // object, `itself` for two links, `nothing`.
+    static constexpr std::int32_t nothing = -1, itself = -2;
+    void find_objects(const double* q, std::size_t n, std::int32_t* objects, int threads) const;
+    // Cells q ± half of configurations: rows q (n, dof), half (dof,). verdicts[i] is 1 where the middle of a
+    // cell touches something, and 2 more where all of the cell is so.
+    void check_cells(const double* q, std::size_t n, const double* half, std::uint8_t* verdicts,
+                     int threads) const;
     // In double: the exact distance of the spheres. Margins do not count.
     Clearance clearance(const double* q) const;
     Verdict prove_edge(const double* from, const double* to, WorkspaceMemory& memory) const;
@@ -91,6 +99,9 @@ class Checker {
     mutable std::vector<std::unique_ptr<WorkspaceMemory>> spare_;
 
     void check_base();
+    // Calls check(memory, columns, count, row) for eight rows after the other, rounded to float.
+    template <class Check>
+    void over_blocks(const double* q, std::size_t n, int threads, const Check& check) const;
     // The exact tests of kernels; owner: a checker.
     static bool reaches_primitive(const void* owner, int sphere, const float* frame, int primitive,
                                   float gap);

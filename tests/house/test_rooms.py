@@ -14,8 +14,9 @@ COMPILED = sorted([*(tree.ROOT / "src/bindings").glob("*.?pp"), *(tree.ROOT / "s
 
 CPP_ALONE = {"ik/general", "ik/position"}
 """Folders of headers that no Python file stands for: the plan of an arm chooses among them."""
-PYTHON_ALONE = {"ik/explain", "ik/goals", "model/mjcf"}
-"""Packages of words: files, names and sentences, with no loop of their own."""
+PYTHON_ALONE = {"ik/explain", "ik/goals", "model/mjcf", "planning/joint_space"}
+"""Packages of words: files, names and sentences, with no loop of their own; the checks of the last one are
+those of collision."""
 NO_ROOM = {"module", "bindings", "arrays", "numpy_api", "dispatch", "once"}
 """What all bindings or all kernels share."""
 PAGES = {"model": "robots", "plan_motion": "planning"}

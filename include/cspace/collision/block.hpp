@@ -92,7 +92,7 @@ class Block {
         int n = 0;
         for (int k = 0; k < from.count; ++k) {
             const int i = from.begin[k];
-            if (find_touching(scene, i, at, Mover{r, growth, wanted})) into[n++] = i;
+            if (find_touching(scene, i, at, Mover{r, search_growth(growth), wanted})) into[n++] = i;
         }
         return {into, n};
     }
@@ -139,7 +139,8 @@ class Block {
         const Place* places = sphere_places(g, x);
         for (int s = 0; s < group.count; ++s) {
             const Place& at = places[s];
-            const float r = robot.spheres[group.first + s].r + scene.margin;
+            if (Motion::is_shrinking && is_hollow(group.first + s)) continue;
+            const float r = radius_of<Motion>(group.first + s) + scene.margin;
             Marks<Motion> marks(motion.growth(x, at));
             for (int k = 0; k < near.count; ++k) {
                 compare_primitive(x, group.first + s, at, near.begin[k], r, motion, marks);
@@ -169,10 +170,13 @@ class Block {
                 const Place& at = places[s];
                 const float r = robot.spheres[group.first + s].r + scene.pair_margin;
                 const Floats from_a = square_distance(at, at_a);
-                if (!(bits_of(from_a < square_of(relative.most_growth, r + a.ball.r)) & wanted)) continue;
+                if constexpr (!Motion::is_cell)
+                    if (!(bits_of(from_a < square_of(relative.most_growth, r + a.ball.r)) & wanted)) continue;
                 Marks<Motion> marks(relative.growth(at));
-                if (Motion::is_moving && !(bits_of(from_a < square_of(marks.growth, r + a.ball.r)) & wanted))
-                    continue;
+                if constexpr (Motion::is_moving || Motion::is_cell) {
+                    const Floats reach = square_of(search_growth(marks.growth), r + a.ball.r);
+                    if (!(bits_of(from_a < reach) & wanted)) continue;
+                }
                 const Place* all = static_cast<Place*>(w.sphere_places);
                 for (int k = 0; k < count; ++k) {
                     const int other = w.near_spheres[k];
@@ -226,7 +230,8 @@ class Block {
     }
     template <class Growth>
     CSPACE_INLINE bool may_meet(const Place& one, const Place& other, float r, Growth growth) {
-        return bits_of(square_distance(one, other) < square_of(growth, r + scene.pair_margin)) & wanted;
+        const Floats reach = square_of(search_growth(growth), r + scene.pair_margin);
+        return bits_of(square_distance(one, other) < reach) & wanted;
     }
 
   private:
@@ -251,6 +256,14 @@ class Block {
 
         CSPACE_INLINE explicit Marks(decltype(Motion::no_growth()) growth) : growth(growth) {}
     };
+    // Below this square two balls touch. A cell has no middle of its own: its growth counts.
+    template <class Motion>
+    static CSPACE_INLINE Floats touching_square(const Marks<Motion>& marks, float r) {
+        if constexpr (Motion::is_moving)
+            return fill_floats(r * r);
+        else
+            return square_of(marks.growth, r);
+    }
     // A sphere against a primitive. The growth bounds the motion first; where it does not suffice, the part
     // of the motion that brings them nearer.
     template <class Motion>
@@ -259,7 +272,7 @@ class Block {
         float radius;
         const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
-        if (is_cover(s)) {
+        if (!Motion::is_cell && is_cover(s)) {
             const unsigned near = bits_of(gap < square_of(marks.growth, sum)) & wanted;
             if (!near) return;
             // The gaps of others are exact only as far as they compare with this radius.
@@ -276,7 +289,10 @@ class Block {
             if (suspects) refine_primitive(x, s, i, suspects, motion, marks);
             return;
         }
-        marks.touching = marks.touching | (gap < fill_floats(sum * sum));
+        FloatMask touching = gap < touching_square(marks, sum);
+        if constexpr (Motion::is_cell)
+            if (is_convex(scene, i)) touching = motion.refine_primitive(touching, x, i, at, gap, sum);
+        marks.touching = marks.touching | touching;
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
             if (bits_of(near) & wanted)
@@ -288,9 +304,10 @@ class Block {
     template <class Motion, class Relative>
     CSPACE_INLINE void compare_balls(const LinkPair& links, int s, const Place& at, int other,
                                      const Place& other_at, const Relative& relative, Marks<Motion>& marks) {
-        const float r = robot.spheres[s].r + scene.pair_margin + robot.spheres[other].r;
+        const float r = radius_of<Motion>(s) + scene.pair_margin + radius_of<Motion>(other);
+        if (Motion::is_shrinking && (is_hollow(s) || is_hollow(other))) return;
         const Floats gap = square_distance(at, other_at);
-        if (is_cover(s) || is_cover(other)) {
+        if (!Motion::is_cell && (is_cover(s) || is_cover(other))) {
             const unsigned near = bits_of(gap < square_of(marks.growth, r)) & wanted;
             if (!near) return;
             const float inner = robot.inner_radii[s], other_inner = robot.inner_radii[other];
@@ -306,7 +323,9 @@ class Block {
             if (suspects) refine_pair(links, s, other, suspects, relative, marks);
             return;
         }
-        marks.touching = marks.touching | (gap < fill_floats(r * r));
+        FloatMask touching = gap < touching_square(marks, r);
+        if constexpr (Motion::is_cell) touching = relative.refine(touching, at, other_at, gap, r);
+        marks.touching = marks.touching | touching;
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
             if (bits_of(near) & wanted)
@@ -314,6 +333,13 @@ class Block {
         }
     }
 
+    // The radius with which a sphere counts: what is proved blocked touches the ball inside a solid.
+    template <class Motion>
+    CSPACE_INLINE float radius_of(int s) const {
+        return Motion::is_shrinking ? robot.inner_radii[s] : robot.spheres[s].r;
+    }
+    // Whether a sphere covers a solid that holds no ball around its centre.
+    CSPACE_INLINE bool is_hollow(int s) const { return robot.inner_radii[s] < 0; }
     // Whether a sphere only covers a solid.
     CSPACE_INLINE bool is_cover(int s) const { return robot.sphere_solids && robot.sphere_solids[s] >= 0; }
     CSPACE_INLINE const Ball& ball_around(int s) const {

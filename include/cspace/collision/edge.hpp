@@ -100,7 +100,7 @@ class EdgeCheck {
     struct Moving {
         const EdgeCheck& edge;
         Block& block;
-        static constexpr bool is_moving = true;
+        static constexpr bool is_moving = true, is_cell = false, is_shrinking = false;
         static Floats no_growth() { return fill_floats(0.0f); }
         CSPACE_INLINE Floats growth(int x, const Place& at) const {
             return speed_at(block.frames[x], block.rates[x], at) * edge.width_ +
@@ -162,7 +162,7 @@ class EdgeCheck {
     struct Still {
         const EdgeCheck& edge;
         float covered;
-        static constexpr bool is_moving = false;
+        static constexpr bool is_moving = false, is_cell = false, is_shrinking = false;
         static NoMotion no_growth() { return {}; }
         CSPACE_INLINE NoMotion growth(int, const Place&) const { return {}; }
         // As of Moving.

@@ -44,6 +44,24 @@ struct NoMotion {};
 CSPACE_INLINE Floats square_of(NoMotion, float r) { return fill_floats(r * r); }
 CSPACE_INLINE Floats square_of(Floats growth, float r) { return square(growth + r); }
 
+// By how much a ball is smaller, so that what still touches it touches wherever the ball moves.
+struct Shrink {
+    Floats by;
+};
+CSPACE_INLINE Floats square_of(Shrink shrink, float r) {
+    return square(clamp_positive(fill_floats(r) - shrink.by));
+}
+
+// With which a ball around others is compared: that some of them shrink does not make it smaller.
+CSPACE_INLINE NoMotion search_growth(NoMotion) { return {}; }
+CSPACE_INLINE Floats search_growth(Floats growth) { return growth; }
+CSPACE_INLINE NoMotion search_growth(Shrink) { return {}; }
+
+// The least that is of interest: whether a ball touches where it is, or does when it is smaller.
+CSPACE_INLINE NoMotion least_growth(NoMotion) { return {}; }
+CSPACE_INLINE NoMotion least_growth(Floats) { return {}; }
+CSPACE_INLINE Shrink least_growth(Shrink shrink) { return shrink; }
+
 // A ball of radius r, and by how much it may move, in the lanes that are wanted.
 template <class Growth>
 struct Mover {
@@ -52,7 +70,8 @@ struct Mover {
     unsigned wanted;
     CSPACE_INLINE Floats reach(float radius) const { return square_of(growth, r + radius); }
     CSPACE_INLINE Sought seek(float radius, bool any) const {
-        return {reach(radius), any ? reach(radius) : square_of(NoMotion{}, r + radius), wanted, any};
+        return {reach(radius), any ? reach(radius) : square_of(least_growth(growth), r + radius), wanted,
+                any};
     }
 };
 template <class Growth>

@@ -1,14 +1,19 @@
-"""Planning: free ways of arms among obstacles, and the exact configuration space of arms with two joints."""
+"""Planning: free ways of arms among obstacles, and configuration spaces, exact for arms with two joints."""
 
 from cspace.planning.aorrtc import AORRTC
 from cspace.planning.arm_planner import ArmPlanner
+from cspace.planning.configuration_spaces import configuration_space
+from cspace.planning.joint_space.projections import Projection
+from cspace.planning.joint_space.slices import Slice
+from cspace.planning.joint_space.space import JointSpace
+from cspace.planning.joint_space.volumes import Volume
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
 from cspace.planning.region import Region
 from cspace.planning.rrt_connect import RRTConnect
 from cspace.planning.space import ArmSpace
 from cspace.planning.two_joints.answers import BoundaryCurve, Connection, FreeComponent
-from cspace.planning.two_joints.configuration_space import ConfigurationSpace, configuration_space
+from cspace.planning.two_joints.configuration_space import ConfigurationSpace
 
 __all__ = [
     "AORRTC",
@@ -20,9 +25,13 @@ __all__ = [
     "ConfigurationSpace",
     "Connection",
     "FreeComponent",
+    "JointSpace",
     "Plan",
+    "Projection",
     "RRTConnect",
     "Region",
+    "Slice",
+    "Volume",
     "configuration_space",
     "find_planner",
 ]

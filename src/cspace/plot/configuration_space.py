@@ -213,18 +213,18 @@ def wrap_into(space: Any, q: Array) -> Array:
 
 
 def mark_angles(axis: Any, low: float, high: float) -> None:
-    """Ticks at multiples of π/2, or of π where there are many."""
-    step = math.pi / 2 if high - low < 3.0 * math.pi else math.pi
+    """Ticks at multiples of π/2, of π where there are many, of π/4 where there are few."""
+    wide = high - low
+    step = math.pi / 4 if wide < math.pi else math.pi / 2 if wide < 3.0 * math.pi else math.pi
     ticks = np.arange(math.ceil(low / step - 0.01), math.floor(high / step + 0.01) + 1)
     axis.set_ticks(ticks * step, [write_angle(tick * step) for tick in ticks])
 
 
 def write_angle(angle: float) -> str:
-    """A multiple of π/2 as text."""
-    halves = round(angle / (math.pi / 2))
-    if halves == 0:
+    """A multiple of π/4 as text."""
+    quarters = round(angle / (math.pi / 4))
+    if quarters == 0:
         return "0"
-    whole, sign = abs(halves) // 2, "−" if halves < 0 else ""
-    if halves % 2 == 0:
-        return f"{sign}{'' if whole == 1 else whole}π"
-    return f"{sign}{'' if abs(halves) == 1 else abs(halves)}π/2"
+    below = 4 // math.gcd(quarters, 4)
+    above, sign = abs(quarters) * below // 4, "−" if quarters < 0 else ""
+    return f"{sign}{'' if above == 1 else above}π{'' if below == 1 else f'/{below}'}"

@@ -1,4 +1,5 @@
-"""`cspace space`: the configuration space of a planar arm with two joints, and a path through it."""
+"""`cspace space`: configuration spaces: exact ones of planar arms with two joints, with a path through them,
+and slices, projections and volumes of any others."""
 
 from __future__ import annotations
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot, read_number
 from cspace.cli.exits import Exit, UsageError
+from cspace.cli.joint_space import add_joint_space, refuse_joint_space_options, run_joint_space
 from cspace.cli.output import Output, Table, check_format, check_writable
 from cspace.cli.robot import (
     degrees_note,
@@ -30,6 +32,9 @@ EXAMPLES: Final = """
 cspace space planar_2r --scene cell.toml --plot space.png
 cspace space planar_2r --scene walls.txt --link-radius 0.05 --from 0 30 --to -1.2 1.25 --deg --plot way.png
 cspace space arm.urdf --scene walls.geojson --from 0 0.5 --to-q 1.8 1.0 --json
+cspace space panda --scene cell.toml
+cspace space panda --scene cell.toml --joints 2,4 --at ready --plot slice.png
+cspace space ur5e --scene cell.toml --joints shoulder_lift_joint,elbow_joint --samples 200 --plot shadow.png
 """
 
 POLYGON_FILES: Final = {".txt", ".geojson"}
@@ -39,9 +44,9 @@ POLYGON_FILES: Final = {".txt", ".geojson"}
 def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
     text = "a scene (.toml, .json, .scene), cut with the plane of the arm, or polygons (.txt, .geojson)"
-    add_option(parser, "--scene FILE", text, Path, required=True)
+    add_option(parser, "--scene FILE", text, Path)
     text = "everything within this distance of its axis belongs to a link [m] (default: 0)"
-    add_option(parser, "--link-radius RADIUS", text, read_number, default=0.0)
+    add_option(parser, "--link-radius RADIUS", text, read_number)
     text = "the height of the plane in a scene [m] (default: that of the tip)"
     add_option(parser, "--height HEIGHT", text, read_number)
     add_option(parser, "--no-limits", "the joints rotate without limits")
@@ -50,26 +55,57 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     text = "a position in the plane [m]; each of its IK solutions is a goal"
     add_option(goal, "--to X Y", text, read_number)
     add_option(goal, "--to-q Q1 Q2", "a configuration as the goal [rad]", read_number)
-    add_option(parser, "--plot FILE", "draw the plane beside the space (.png, .svg, .pdf)", Path)
+    add_option(parser, "--plot FILE", "draw the space (.png, .svg, .pdf)", Path)
+    add_joint_space(parser)
     add_degrees(parser)
     add_chain(parser)
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
-    """Print the components of the space, and the path if one is asked for."""
-    from cspace.planning import configuration_space
-
-    if (args.to or args.to_q) and not args.start:
-        raise UsageError("a path needs its start: --from Q1 Q2")
+    """Print the space of the robot: exact for a planar arm, unless two joints of it are asked for."""
     if args.plot:
         check_writable(args.plot)
         check_format(args.plot)
     robot = load_chosen(args)
     need_chain(robot)
+    if args.joints is None and is_planar(robot):
+        refuse_joint_space_options(args)
+        return run_exact(args, out, robot)
+    refuse_exact_options(args)
+    return run_joint_space(args, out, robot)
+
+
+def is_planar(robot: Robot) -> bool:
+    """Whether the exact space of a robot is known."""
+    from cspace.planning.two_joints.planar_arm import is_planar_arm
+
+    return is_planar_arm(robot)
+
+
+def refuse_exact_options(args: argparse.Namespace) -> None:
+    """Refuse options of the exact space where another one is asked for."""
+    for name in ("link_radius", "height", "start", "to", "to_q"):
+        if getattr(args, name) is not None:
+            option = "--from" if name == "start" else f"--{name.replace('_', '-')}"
+            raise UsageError(
+                f"{option} is for planar arms with two joints, without --joints; cspace plan finds paths of"
+                " others"
+            )
+
+
+def run_exact(args: argparse.Namespace, out: Output, robot: Robot) -> int:
+    """Print the components of the exact space, and the path if one is asked for."""
+    from cspace.planning import configuration_space
+
+    if args.scene is None:
+        raise UsageError("the exact space of a planar arm needs obstacles: --scene FILE")
+    if (args.to or args.to_q) and not args.start:
+        raise UsageError("a path needs its start: --from Q1 Q2")
+    radius = args.link_radius or 0.0
     space = configuration_space(
         robot,
         load_obstacles(args.scene),
-        link_radius=args.link_radius,
+        link_radius=radius,
         limits=not args.no_limits,
         height=args.height,
     )
@@ -85,7 +121,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         document |= {"status": "unreachable", "reason": reason}
     if out.as_json:
         written = [str(args.plot)] if args.plot else []
-        given = {"robot": robot.name, "scene": str(args.scene), "link_radius": args.link_radius}
+        given = {"robot": robot.name, "scene": str(args.scene), "link_radius": radius}
         out.document({"schema": "cspace.space/1", **given, **document, "written": written})
     else:
         print_space(out, robot, space, document, way, degrees=args.deg)

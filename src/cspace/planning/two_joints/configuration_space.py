@@ -33,11 +33,11 @@ class ConfigurationSpace(Renamed):
 
     A configuration q = (q1, q2) is blocked where a link touches an obstacle, or beyond a joint limit. At
     each q1 a convex obstacle blocks one arc of directions of link 2, known in closed form; everything here
-    comes from these arcs, nothing from samples. `configuration_space` makes it.
+    comes from these arcs, nothing from samples. `cs.configuration_space` makes it.
 
     arm: the links and their plane. obstacles: the names. sections: name → convex pieces (corners, radius) in
-    the plane. link_radius [m]. lower, upper (2,): the range of both joints [rad], −π and π where a joint has
-    no limits; wraps (2,): there both ends are the same place.
+    the plane. link_radius [m]. dof, joint_names: the joints. lower, upper (2,): the range of both joints
+    [rad], −π and π where a joint has no limits; wraps (2,): there both ends are the same place.
 
     Lozano-Pérez 1983.
     """
@@ -45,6 +45,7 @@ class ConfigurationSpace(Renamed):
     def __init__(self, arm: PlanarArm, sections: dict[str, list[Piece]], link_radius: float) -> None:
         self.arm, self.sections, self.link_radius = arm, sections, link_radius
         self.obstacles = tuple(sections)
+        self.dof, self.joint_names = 2, arm.joint_names
         self.lower, self.upper, self.wraps = arm.lower, arm.upper, arm.wraps
         self._core = make_core(arm, sections, link_radius)
 
@@ -204,35 +205,11 @@ class ConfigurationSpace(Renamed):
         return html_table(caption, ("component", "area [rad²]", "a configuration", "proved"), rows)
 
 
-def configuration_space(
-    robot: Any,
-    obstacles: Any,
-    *,
-    link_radius: float = 0.0,
-    limits: bool = True,
-    height: float | None = None,
+def exact_space(
+    robot: Any, obstacles: Any, *, link_radius: float, limits: bool, height: float | None
 ) -> ConfigurationSpace:
-    """The exact configuration space of a planar arm with two revolute joints among obstacles.
-
-    robot: any with two revolute joints about parallel axes; mounting, tool and limits count. Its links are
-    the segments from the first axis to the second and from there to the tip, and everything within
-    link_radius [m] of them.
-
-    obstacles: a Scene, cut with the plane of the arm; or polygons (n, 2) [m] in that plane, as a list or a
-    PolygonWorld, whose bounds do not count. In a horizontal plane x and y are those of the world; in another
-    one x is horizontal and y points up. A Scene may contain boxes, hulls, spheres, half spaces and point
-    clouds anywhere, cylinders and capsules that are upright or lie in the plane.
-
-    limits: whether the joint limits count; a joint without limits turns around and around. height [m]: of
-    the plane over the origin along its normal; by default that of the tip.
-
-    Raises InputError for other joints, axes that are not parallel, a negative radius, a tilted cylinder, an
-    attached object and links in different planes; InputTypeError for shapes without a known section, such as
-    meshes; GeometryError for a polygon that crosses itself.
-    """
-    if not isinstance(limits, (bool, np.bool_)):
-        raise InputTypeError(f"limits is a {type(limits).__name__}; it must be True or False")
-    arm = read_planar_arm(robot, bool(limits))
+    """The exact configuration space of a planar arm with two revolute joints; see configuration_space."""
+    arm = read_planar_arm(robot, limits)
     radius = bounded_number(
         link_radius, "link_radius", 0.0, "it must be a length [m], 0 or more", LARGEST_NUMBER
     )

@@ -65,6 +65,15 @@ class PlanarArm:
         return np.cumsum(np.concatenate([start, links], axis=-2), axis=-2)
 
 
+def is_planar_arm(robot: Any) -> bool:
+    """Whether a robot has two revolute joints about parallel axes; True for what is no robot."""
+    if not isinstance(robot, KinematicModel):
+        return not hasattr(robot, "collision")
+    if robot.tip is None or robot.chain.joint_types != "RR" or robot.chain.dof != 2:
+        return False
+    return bool(np.abs(np.cross(*robot.chain.axes)).max() <= PLANAR_AXES)
+
+
 def read_planar_arm(robot: Any, use_limits: bool) -> PlanarArm:
     """The planar arm that a robot is; InputError for other joints and for axes that are not parallel."""
     if not isinstance(robot, KinematicModel):

@@ -1,0 +1,1 @@
+"""The configuration space of any robot: slices, projections and volumes."""
