@@ -50,6 +50,7 @@
 #include "cspace/planning/aorrtc.hpp"
 #include "cspace/planning/options.hpp"
 #include "cspace/planning/simplify.hpp"
+#include "cspace/planning/tree_space.hpp"
 #include "cspace/planning/two_joints/bitmap.hpp"
 #include "cspace/planning/two_joints/boundaries.hpp"
 #include "cspace/planning/two_joints/path.hpp"

@@ -1,6 +1,5 @@
 #include "planning_arm.hpp"
 
-#include "cspace/math/made_once.hpp"
 #include "cspace/planning/aorrtc.hpp"
 #include "cspace/planning/rrt_connect.hpp"
 #include "planning_arm_query.hpp"
@@ -9,17 +8,12 @@ namespace cspace::planning {
 
 namespace {
 
-const search::HaltonTable& table_of(int width) {
-    static const MadeOnce<search::HaltonTable> tables[search::most_dimensions + 1];
-    return tables[width].get([&] { return std::make_unique<search::HaltonTable>(width); });
-}
-
 class ConnectSearch {
   public:
     ConnectSearch(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options)
         : query_(space, problem, options),
           options_(options),
-          trees_(query_.edges(), table_of(int(query_.width())), options.seed, options.range) {}
+          trees_(query_.edges(), halton_table(int(query_.width())), options.seed, options.range) {}
 
     ArmPlan run() {
         if (query_.check_ends()) {
@@ -79,7 +73,7 @@ class ConnectSearch {
             query_.each_goal([&](const float* q) { trees.add_goal(q); });
             const std::int64_t before = edges.answer_edges();
             const SearchEnd end = trees.run(float(query_.plan().cost), left);
-            if (end == SearchEnd::met && query_.keep_shorter([&] { write_path(trees); }))
+            if (end == SearchEnd::met && query_.keep_shorter([&] { write_path(trees); }, [](std::size_t) {}))
                 ++stats().improvements;
             left -= trees.counts().edges + edges.answer_edges() - before;
             stats().samples += trees.counts().samples, stats().edges += trees.counts().edges;

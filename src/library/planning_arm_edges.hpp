@@ -92,6 +92,12 @@ class ArmEdges {
         return kernels::find_nearest(tree.blocks(), tree.size(), tree.width(), q, box_.wraps);
     }
 
+    // Up to so many, the nearest first; returns how many.
+    int find_nearest(const search::ConfigurationTree& tree, const float* q, int most,
+                     search::NearRow* found) const {
+        return kernels::find_nearest_rows(tree.blocks(), tree.size(), tree.width(), q, box_.wraps, most,
+                                          found);
+    }
     search::NearRow find_nearest_within(const search::ConfigurationTree& tree, const float* q,
                                         float bound) const {
         return kernels::find_nearest_within(tree.blocks(), tree.costs(), tree.size(), tree.width(), q,

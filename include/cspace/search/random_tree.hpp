@@ -51,9 +51,10 @@ class RandomTree {
 
     RandomTree(Space& space, const TreeGrowth& growth) : space_(space), growth_(growth) {}
 
-    void add_root(const Place& place) {
-        add(place, none);
-        try_goals(size() - 1);
+    void add_root(const Place& place) { add(place, none); }
+    // Looks for paths straight from the roots, which are all there is.
+    void try_roots() {
+        for (int i = 0; i < size(); ++i) try_goals(i);
     }
     // Draws a place and grows towards it. `bound`: of the paths that are looked for, where one is known.
     void grow(double bound) {

@@ -4,6 +4,7 @@ from cspace.planning.aorrtc import AORRTC
 from cspace.planning.arm_planner import ArmPlanner
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
+from cspace.planning.rrt import RRT, InformedRRTStar, RRTStar
 from cspace.planning.rrt_connect import RRTConnect
 from cspace.planning.space import ArmSpace
 from cspace.planning.two_joints.answers import BoundaryCurve, Connection, FreeComponent
@@ -12,6 +13,7 @@ from cspace.planning.two_joints.configuration_space import ConfigurationSpace, c
 __all__ = [
     "AORRTC",
     "PLANNERS",
+    "RRT",
     "STATUSES",
     "ArmPlanner",
     "ArmSpace",
@@ -19,8 +21,10 @@ __all__ = [
     "ConfigurationSpace",
     "Connection",
     "FreeComponent",
+    "InformedRRTStar",
     "Plan",
     "RRTConnect",
+    "RRTStar",
     "configuration_space",
     "find_planner",
 ]

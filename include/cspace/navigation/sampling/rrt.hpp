@@ -102,6 +102,7 @@ class Tree {
 
     SampledRoute solve() {
         tree_.add_root({problem_.start.at, none});
+        tree_.try_roots();
         SampledRoute answer;
         InterruptPoll poll(16);
         while (answer.samples < growth_.samples && !is_done()) {
