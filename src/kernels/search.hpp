@@ -1,4 +1,5 @@
 #pragma once
+#include "cspace/search/nearest_leaf.hpp"
 #include "cspace/search/nearest_row.hpp"
 #include "dispatch.hpp"
 
@@ -11,3 +12,8 @@ CSPACE_NARROW_KERNEL(cspace::search, cspace::search::NearRow, find_nearest_withi
 CSPACE_NARROW_KERNEL(cspace::search, int, find_nearest_rows,
                      (const float* blocks, int count, int width, const float* q, const unsigned char* wraps,
                       int most, cspace::search::NearRow* found))
+// See cspace/search/nearest_leaf.hpp.
+CSPACE_NARROW_KERNEL(cspace::search, int, find_nearest_in_leaves,
+                     (const cspace::search::LeafView& view, int width, const float* q,
+                      const unsigned char* wraps, int most, float* bounds, cspace::search::NearRow* found,
+                      int count))

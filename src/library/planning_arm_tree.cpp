@@ -29,7 +29,7 @@ class TreeSearch {
     using Space = TreeSpace<ArmEdges>;
     using Finish = ArmQuery::Finish;
     // A path counts as shorter by this share.
-    static constexpr double least_gain = 0.01;
+    static constexpr double least_gain = 1e-3;
     // So many samples may be drawn in vain.
     static constexpr std::int64_t samples_per_edge = 1000;
 

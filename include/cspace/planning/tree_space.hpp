@@ -3,8 +3,9 @@
 //
 //   edges.box()                              see box.hpp
 //   edges.is_free(a, b)                      whether the edge between two rows is free
-//   edges.find_nearest(tree, q)              the search::NearRow of a tree
-//   edges.find_nearest(tree, q, most, out)   up to so many of its nearest rows; returns how many
+//   edges.find_nearest(tree, leaves, q, most, out)   up to so many of the nearest rows of a tree, as
+//                                                    search::NearRow, of which search::RowLeaves hold the
+//                                                    first; returns how many
 //   edges.has_time()                         false: every further edge counts as blocked
 #pragma once
 
@@ -18,6 +19,7 @@
 #include "cspace/search/halton.hpp"
 #include "cspace/search/nearest_row.hpp"
 #include "cspace/search/portable_log.hpp"
+#include "cspace/search/row_leaves.hpp"
 
 namespace cspace::planning {
 
@@ -72,16 +74,24 @@ class TreeSpace {
         const Pair& pair = pairs_[pick(std::size_t(end - pairs_.begin()))];
         return samples_.draw(place(pair.start).data(), goal(pair.goal).data(), float(bound), drawn.data());
     }
-    void add(const Place& place) { nodes_.add(place.data(), search::ConfigurationTree::no_parent, 0); }
+    void add(const Place& place) {
+        nodes_.add(place.data(), search::ConfigurationTree::no_parent, 0);
+        leaves_.update(nodes_);
+    }
     Place place(int node) const {
         Place row;
         nodes_.copy_row(node, row.data());
         return row;
     }
-    int find_nearest(const Place& place) const { return edges_.find_nearest(nodes_, place.data()).row; }
+    int find_nearest(const Place& place) {
+        search::NearRow found;
+        edges_.find_nearest(nodes_, leaves_, place.data(), 1, &found);
+        return found.row;
+    }
     void find_near(const Place& place, double, std::vector<int>& out) {
         near_.resize(std::size_t(count_near()));
-        near_.resize(std::size_t(edges_.find_nearest(nodes_, place.data(), int(near_.size()), near_.data())));
+        const int most = int(near_.size());
+        near_.resize(std::size_t(edges_.find_nearest(nodes_, leaves_, place.data(), most, near_.data())));
         out.clear();
         for (const search::NearRow& each : near_) out.push_back(each.row);
     }
@@ -113,6 +123,8 @@ class TreeSpace {
             kept.add(place(i).data(), search::ConfigurationTree::no_parent, 0);
         }
         nodes_ = std::move(kept);
+        leaves_.clear();
+        leaves_.update(nodes_);
     }
 
   private:
@@ -129,6 +141,7 @@ class TreeSpace {
     const float range_;
     const bool is_informed_;
     search::ConfigurationTree nodes_;
+    search::RowLeaves leaves_;  // of the nodes
     std::vector<Place> goals_;
     std::vector<Pair> pairs_;  // of a start and a goal, the nearest first
     std::vector<search::NearRow> near_;

@@ -120,7 +120,7 @@ class RandomTree {
     const Node& node(int i) const { return nodes_[std::size_t(i)]; }
 
     bool draw(double bound, Place& drawn) {
-        if (has_path()) return space_.draw_within(bound, drawn);
+        if (bound < infinity) return space_.draw_within(bound, drawn);
         if (space_.uniform() < growth_.goal_bias) return space_.draw_goal(drawn), true;
         return space_.draw(drawn);
     }
