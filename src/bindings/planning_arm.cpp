@@ -140,8 +140,8 @@ void bind_planning_arm(nb::module_& m) {
             "What blocked most edges, and how many.");
     m.def("plan_arm", &plan_one<>, "checker"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a, "options"_a,
           nb::keep_alive<0, 1>(), "From any of the starts (s, dof) to any of the goals (g, dof).");
-    m.def("plan_arms", &plan_each<>, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a, "threads"_a,
-          "A plan per pair of starts and goals; the checker must outlive them.");
+    m.def("plan_arms", &plan_each<>, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a,
+          "threads"_a, "A plan per pair of starts and goals; the checker must outlive them.");
     m.def("plan_arm", &plan_one<TreeOptions>, "checker"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a,
           "options"_a, "tree"_a, nb::keep_alive<0, 1>(), "The same by a tree from the starts.");
     m.def("plan_arms", &plan_each<TreeOptions>, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a,

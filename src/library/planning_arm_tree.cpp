@@ -17,7 +17,7 @@ class TreeSearch {
           is_optimal_(tree.is_optimal),
           space_(query_.edges(), halton_table(int(query_.width())), options.seed, options.range,
                  tree.is_informed),
-          tree_(space_, {tree.goal_bias, reach_of(options, tree), tree.is_optimal}) {}
+          tree_(space_, {tree.goal_bias, search::TreeGrowth::any_reach, tree.is_optimal}) {}
 
     ArmPlan run() {
         if (query_.check_ends()) query_.plan().status = search();
@@ -40,10 +40,6 @@ class TreeSearch {
     search::RandomTree<Space> tree_;
     std::vector<int> path_;  // nodes, a start first
 
-    static double reach_of(const ArmOptions& options, const TreeOptions& tree) {
-        if (const char* r = getenv("REACH")) return atof(r);
-        return tree.is_optimal ? std::numeric_limits<double>::infinity() : double(options.range);
-    }
     ArmStats& stats() { return query_.plan().stats; }
 
     PlanStatus search() {

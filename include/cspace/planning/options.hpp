@@ -26,7 +26,8 @@ struct ArmOptions {
 
 // What a tree from the starts does: RRT, RRT*, informed RRT*.
 struct TreeOptions {
-    bool is_optimal = false;   // RRT*: joins and rewires; ArmOptions::improve is its budget after the first path
+    bool is_optimal =
+        false;  // RRT*: joins and rewires; ArmOptions::improve is its budget after the first path
     bool is_informed = false;  // then draws only what can still shorten the path
     double goal_bias = 0.05;   // how often a goal is drawn while no path is known
 };

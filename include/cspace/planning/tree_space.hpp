@@ -95,9 +95,7 @@ class TreeSpace {
         out.clear();
         for (const search::NearRow& each : near_) out.push_back(each.row);
     }
-    double distance(int node, const Place& to) const {
-        return box_.distance(place(node).data(), to.data());
-    }
+    double distance(int node, const Place& to) const { return box_.distance(place(node).data(), to.data()); }
     int goals() const { return int(goals_.size()); }
     const Place& goal(int g) const { return goals_[std::size_t(g)]; }
 

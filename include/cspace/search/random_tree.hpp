@@ -38,9 +38,10 @@
 namespace cspace::search {
 
 struct TreeGrowth {
-    double goal_bias = 0;     // how often a goal is drawn while no path is known
-    double reach = 0;         // edges to goals may be so long
-    bool is_optimal = false;  // RRT*
+    static constexpr double any_reach = std::numeric_limits<double>::infinity();
+    double goal_bias = 0;      // how often a goal is drawn while no path is known
+    double reach = any_reach;  // edges to goals may be so long
+    bool is_optimal = false;   // RRT*
 };
 
 template <class Space>

@@ -110,9 +110,7 @@ class EdgePlanner(ArmPlanner):
         )
 
 
-def explain_end(
-    space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan, approach: str
-) -> tuple[str, str]:
+def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan, approach: str) -> tuple[str, str]:
     """The status of a plan, and its reason in words."""
     end = ENDS[found.status]
     if end == "found":
