@@ -1,4 +1,4 @@
-"""RRT and RRT*: a tree grows from the starts towards samples, until it reaches a goal, and to shorten its paths."""
+"""RRT and RRT*: a tree grows from the starts towards samples, until it reaches a goal or paths are short."""
 
 from __future__ import annotations
 
