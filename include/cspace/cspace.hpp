@@ -49,6 +49,7 @@
 #include "cspace/navigation/voronoi/roadmap.hpp"
 #include "cspace/planning/aorrtc.hpp"
 #include "cspace/planning/options.hpp"
+#include "cspace/planning/rrt_connect.hpp"
 #include "cspace/planning/simplify.hpp"
 #include "cspace/planning/tree_space.hpp"
 #include "cspace/planning/two_joints/bitmap.hpp"
