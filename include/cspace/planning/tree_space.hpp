@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/planning/informed_samples.hpp"
 #include "cspace/search/configuration_tree.hpp"
 #include "cspace/search/halton.hpp"
@@ -40,15 +41,21 @@ class TreeSpace {
           range_(range),
           is_informed_(is_informed),
           nodes_(box_.width) {}
+    TreeSpace(const TreeSpace&) = delete;
+    TreeSpace& operator=(const TreeSpace&) = delete;
 
     // Before the first node is added.
     void add_goal(const Place& goal) { goals_.push_back(goal); }
     // The nodes up to here are the starts.
     void list_pairs() {
+        InterruptPoll poll(1024);
         pairs_.clear();
         for (int s = 0; s < nodes_.size(); ++s)
-            for (int g = 0; g < goals(); ++g) pairs_.push_back({float(distance(s, goal(g))), s, g});
-        std::sort(pairs_.begin(), pairs_.end());
+            for (int g = 0; g < goals(); ++g) {
+                poll.step();
+                pairs_.push_back({float(distance(s, goal(g))), s, g});
+            }
+        sort_polled(pairs_);
     }
     // No path is shorter.
     double least_cost() const { return pairs_.front().distance; }
