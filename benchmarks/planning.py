@@ -4,8 +4,8 @@ Usage: python benchmarks/planning.py [--repeat 5] [--vamp FOLDER] [--robots pand
 the shared data folder ($CSPACE_DATA, default ../shared/data). --trees compares RRT, RRT*, informed RRT* and
 AORRTC at equal numbers of motions instead (planning_trees.json). FOLDER holds programs vamp_panda, vamp_ur5
 and vamp_fetch that print a line per problem of problems/NAME.txt, with the columns that a first line names
-(VAMP 0.6.4, Thomason et al. 2024, compiled for each robot): valid, solved, rrt_median_us, total_median_us, cost_raw
-and cost_simplified are read. They run between our rounds.
+(VAMP 0.6.4, Thomason et al. 2024, compiled for each robot): valid, solved, rrt_median_us, total_median_us,
+cost_raw and cost_simplified are read. They run between our rounds.
 
 Times are those of the thread's processor clock, the median of the rounds per problem; "wall" is what a caller
 of cs.plan waits for in a scene that was not checked before.

@@ -93,7 +93,15 @@ class ArmEdges {
         return kernels::find_nearest(tree.blocks(), tree.size(), tree.width(), q, box_.wraps);
     }
 
-    // Up to so many, the nearest first; returns how many. leaves: hold the first rows of the tree.
+    // leaves: hold the first rows of the tree.
+    search::NearRow find_nearest(const search::ConfigurationTree& tree, search::RowLeaves& leaves,
+                                 const float* q) const {
+        if (leaves.size() == 0) return find_nearest(tree, q);
+        search::NearRow found;
+        find_nearest(tree, leaves, q, 1, &found);
+        return found;
+    }
+    // Up to so many, the nearest first; returns how many.
     int find_nearest(const search::ConfigurationTree& tree, search::RowLeaves& leaves, const float* q,
                      int most, search::NearRow* found) const {
         const int sorted = leaves.size(), width = tree.width();

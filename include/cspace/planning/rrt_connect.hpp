@@ -3,11 +3,7 @@
 // smaller tree grows. Nodes near obstacles take only samples near to them (dynamic_domain.hpp). Where nothing
 // grows any more, that is given up; edges get shorter then, and some samples are drawn near to nodes.
 //
-// A space offers:
-//   space.box()                   see box.hpp
-//   space.is_free(a, b)           whether the edge between two rows is free
-//   space.find_nearest(tree, q)   the search::NearRow of a tree
-//   space.has_time()              false ends the search
+// A space offers, besides what tree_pair.hpp needs, has_time(): false ends the search.
 #pragma once
 
 #include <algorithm>
@@ -120,7 +116,7 @@ class RrtConnect {
             box_.scale(points_.next(), sample.data());
         else
             draw_locally(nodes(t), sample);
-        const search::NearRow near = space_.find_nearest(nodes(t), sample.data());
+        const search::NearRow near = trees_.find_nearest(t, sample.data());
         const float far = std::sqrt(near.square), domain = trees_.radius(t, near.row);
         if (has_domains_ && domain < far) return reject();
         nodes(t).copy_row(near.row, from.data());
@@ -151,7 +147,7 @@ class RrtConnect {
 
     // Extends tree t from one of its nodes to the nearest node of the other tree; true if it arrives.
     bool connect(int t, int node, const float* from) {
-        const search::NearRow near = space_.find_nearest(nodes(1 - t), from);
+        const search::NearRow near = trees_.find_nearest(1 - t, from);
         return trees_.connect(t, node, from, near, range_,
                               [&](const float* at, const float* target, float left) {
                                   note_distance(left, t == 0 ? at : target, t == 0 ? target : at);

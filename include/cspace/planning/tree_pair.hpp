@@ -3,6 +3,7 @@
 //
 //   space.box()           see box.hpp
 //   space.is_free(a, b)   whether the edge between two rows is free
+//   space.find_nearest(tree, leaves, q)   the search::NearRow of a tree, whose first rows are in leaves
 #pragma once
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include "cspace/search/configuration_tree.hpp"
 #include "cspace/search/halton.hpp"
 #include "cspace/search/nearest_row.hpp"
+#include "cspace/search/row_leaves.hpp"
 
 namespace cspace::planning {
 
@@ -50,14 +52,23 @@ class TreePair {
     void set_path(std::vector<PathNode> path) { path_ = std::move(path); }
 
     int add(int t, const float* q, int parent, float cost) {
-        trees_[std::size_t(t)].radii.push_back(DynamicDomain::unbounded);
-        return nodes(t).add(q, parent, cost);
+        Tree& tree = trees_[std::size_t(t)];
+        tree.radii.push_back(DynamicDomain::unbounded);
+        const int node = tree.nodes.add(q, parent, cost);
+        tree.leaves.update(tree.nodes);
+        return node;
     }
     void remove_branch(int t, int node) {
-        const std::vector<int> kept = nodes(t).remove_branch(node);
-        std::vector<float>& radii = trees_[std::size_t(t)].radii;
-        for (std::size_t i = 0; i < kept.size(); ++i) radii[i] = radii[std::size_t(kept[i])];
-        radii.resize(kept.size());
+        Tree& tree = trees_[std::size_t(t)];
+        const std::vector<int> kept = tree.nodes.remove_branch(node);
+        for (std::size_t i = 0; i < kept.size(); ++i) tree.radii[i] = tree.radii[std::size_t(kept[i])];
+        tree.radii.resize(kept.size());
+        tree.leaves.clear();
+        tree.leaves.update(tree.nodes);
+    }
+    search::NearRow find_nearest(int t, const float* q) {
+        Tree& tree = trees_[std::size_t(t)];
+        return space_.find_nearest(tree.nodes, tree.leaves, q);
     }
     bool check_edge(const float* a, const float* b) {
         ++counts_.edges;
@@ -100,6 +111,7 @@ class TreePair {
     struct Tree {
         explicit Tree(int width) : nodes(width) {}
         search::ConfigurationTree nodes;
+        search::RowLeaves leaves;
         std::vector<float> radii;
     };
     Space& space_;

@@ -3,9 +3,8 @@
 //
 //   edges.box()                              see box.hpp
 //   edges.is_free(a, b)                      whether the edge between two rows is free
-//   edges.find_nearest(tree, leaves, q, most, out)   up to so many of the nearest rows of a tree, as
-//                                                    search::NearRow, of which search::RowLeaves hold the
-//                                                    first; returns how many
+//   edges.find_nearest(tree, leaves, q)      the search::NearRow of a tree, whose first rows are in leaves
+//   edges.find_nearest(tree, leaves, q, most, out)   up to so many; returns how many
 //   edges.has_time()                         false: every further edge counts as blocked
 #pragma once
 
@@ -90,11 +89,7 @@ class TreeSpace {
         nodes_.copy_row(node, row.data());
         return row;
     }
-    int find_nearest(const Place& place) {
-        search::NearRow found;
-        edges_.find_nearest(nodes_, leaves_, place.data(), 1, &found);
-        return found.row;
-    }
+    int find_nearest(const Place& place) { return edges_.find_nearest(nodes_, leaves_, place.data()).row; }
     void find_near(const Place& place, double, std::vector<int>& out) {
         near_.resize(std::size_t(count_near()));
         const int most = int(near_.size());
