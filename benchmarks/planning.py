@@ -1,10 +1,11 @@
 """Plans and checks of arms on MotionBenchMaker problems: benchmarks/results/planning.json.
 
-Usage: python benchmarks/planning.py [--repeat 5] [--vamp FOLDER] [--robots panda ur5 fetch]. Needs the shared
-data folder ($CSPACE_DATA, default ../shared/data). FOLDER holds programs vamp_panda, vamp_ur5 and vamp_fetch
-that print a line per problem of problems/NAME.txt, with the columns that a first line names (VAMP 0.6.4,
-Thomason et al. 2024, compiled for each robot): valid, solved, rrt_median_us, total_median_us, cost_raw and
-cost_simplified are read. They run between our rounds.
+Usage: python benchmarks/planning.py [--repeat 5] [--vamp FOLDER] [--robots panda ur5 fetch] [--trees]. Needs
+the shared data folder ($CSPACE_DATA, default ../shared/data). --trees compares RRT, RRT*, informed RRT* and
+AORRTC at equal numbers of motions instead (planning_trees.json). FOLDER holds programs vamp_panda, vamp_ur5
+and vamp_fetch that print a line per problem of problems/NAME.txt, with the columns that a first line names
+(VAMP 0.6.4, Thomason et al. 2024, compiled for each robot): valid, solved, rrt_median_us, total_median_us,
+cost_raw and cost_simplified are read. They run between our rounds.
 
 Times are those of the thread's processor clock, the median of the rounds per problem; "wall" is what a caller
 of cs.plan waits for in a scene that was not checked before.
@@ -28,10 +29,13 @@ sys.path.append(str(HERE.parent / "tests"))
 
 import cspace as cs  # noqa: E402
 from collision.motion_bench import ROBOTS, problems, published_robot  # noqa: E402
-from cspace.planning import AORRTC, ArmSpace, RRTConnect  # noqa: E402
+from cspace.planning import AORRTC, RRT, ArmSpace, InformedRRTStar, RRTConnect, RRTStar  # noqa: E402
 
 IMPROVE = 8000
 """Motions that AORRTC may check: about ten milliseconds."""
+
+TREE_PROBLEMS, TREE_EDGES, TREE_BUDGETS = 60, 20_000, (1000, 5000, 20_000)
+"""Of the comparison of trees: problems of a robot, motions until the first path, and after it."""
 
 COLUMNS = {
     "rrt_connect": "rrt_median_us",
@@ -132,14 +136,46 @@ def measure_checks(name: str) -> dict[str, float]:
     return {"one_us": float(np.median(single)), "rows_per_second": float(np.median(batch))}
 
 
+def compare_trees(name: str) -> dict[str, Any]:
+    """One tree against two at equal numbers of motions: costs where all have a path, and time per problem."""
+    robot, _ = published_robot(name)
+    given = [(ArmSpace(robot, scene), start, goals) for _, _, scene, start, goals in problems(name)]
+    first = RRTConnect(edges=TREE_EDGES)
+    valid = [row for row in given if not first.plan(*row).status.startswith("invalid")]
+    chosen = [valid[k * len(valid) // TREE_PROBLEMS] for k in range(TREE_PROBLEMS)]
+    planners = {"rrt_connect": first, "rrt": RRT(edges=TREE_EDGES)}
+    for budget in TREE_BUDGETS:
+        for planner in (RRTStar, InformedRRTStar, AORRTC):
+            planners[f"{planner.name} {budget}"] = planner(edges=TREE_EDGES, improve=budget)
+    plans, results = {}, {}
+    for key, planner in planners.items():
+        begin = time.thread_time_ns()
+        plans[key] = [planner.plan(*row) for row in chosen]
+        results[key] = {"mean_ms": (time.thread_time_ns() - begin) / 1e6 / len(chosen)}
+        results[key]["solved"] = sum(map(bool, plans[key]))
+    shared = [k for k in range(len(chosen)) if all(row[k] for row in plans.values())]
+    for key, row in plans.items():
+        results[key]["cost"] = summarize([row[k].cost for k in shared])
+        results[key]["motions"] = float(np.mean([row[k].stats["edges"] for k in shared]))
+    return {"problems": len(chosen), "solved_by_all": len(shared), "planners": results}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--repeat", type=int, default=5)
     parser.add_argument("--vamp", type=Path)
+    parser.add_argument("--trees", action="store_true")
     parser.add_argument("--robots", nargs="+", default=list(ROBOTS))
     given = parser.parse_args()
     os.environ.setdefault("CSPACE_DATA", str(HERE.parents[1] / "shared" / "data"))
-    results = {"version": cs.__version__, "isa": cs._core.isa, "improve": IMPROVE}
+    results: dict[str, Any] = {"version": cs.__version__, "isa": cs._core.isa}
+    if given.trees:
+        for name in given.robots:
+            results[name] = compare_trees(name)
+            print(name, json.dumps(results[name], indent=1), flush=True)
+        (HERE / "results/planning_trees.json").write_text(json.dumps(results, indent=1) + "\n")
+        return
+    results["improve"] = IMPROVE
     for name in given.robots:
         results[name] = measure_plans(name, given.repeat, given.vamp) | {"checks": measure_checks(name)}
         print(name, json.dumps(results[name], indent=1), flush=True)

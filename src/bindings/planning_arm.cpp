@@ -97,25 +97,29 @@ ArmOptions read_options(bool proves_search, bool proves_answer, bool simplify, s
     return options;
 }
 
+// More: options of the planner itself.
+template <class... More>
 NamedPlan plan_one(const collision::Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
-                   const ConstDoubles& starts, const ConstDoubles& goals, const ArmOptions& options) {
+                   const ConstDoubles& starts, const ConstDoubles& goals, const ArmOptions& options,
+                   const More&... more) {
     const ArmSpace space = read_space(checker, bounds, wraps);
     const ArmProblem problem = {read_rows(checker, starts), read_rows(checker, goals)};
     const nb::gil_scoped_release release;
-    return {plan_arm(space, problem, options), &checker, checker.dof()};
+    return {plan_arm(space, problem, options, more...), &checker, checker.dof()};
 }
 
+template <class... More>
 std::vector<NamedPlan> plan_each(const collision::Checker& checker, const ConstDoubles& bounds,
                                  const Bytes& wraps,
                                  const std::vector<std::pair<ConstDoubles, ConstDoubles>>& given,
-                                 const ArmOptions& options, int threads) {
+                                 const ArmOptions& options, int threads, const More&... more) {
     const ArmSpace space = read_space(checker, bounds, wraps);
     std::vector<ArmProblem> problems;
     for (const auto& [starts, goals] : given)
         problems.push_back({read_rows(checker, starts), read_rows(checker, goals)});
     const nb::gil_scoped_release release;
     std::vector<NamedPlan> plans;
-    for (ArmPlan& plan : plan_arms(space, problems, options, threads))
+    for (ArmPlan& plan : plan_arms(space, problems, options, threads, more...))
         plans.push_back({std::move(plan), &checker, checker.dof()});
     return plans;
 }
@@ -138,6 +142,11 @@ void bind_planning_arm(nb::module_& m) {
     nb::class_<ArmOptions>(m, "ArmOptions", "Options of plans of arms.")
         .def(nb::new_(&read_options), "proves_search"_a, "proves_answer"_a, "simplify"_a, "seed"_a, "edges"_a,
              "improve"_a, "time_limit"_a, "range"_a, "resolution"_a);
+    nb::class_<TreeOptions>(m, "TreeOptions", "Options of plans by a tree from the starts.")
+        .def(nb::new_([](bool is_optimal, bool is_informed, double goal_bias) {
+                 return TreeOptions{is_optimal, is_informed, goal_bias};
+             }),
+             "is_optimal"_a, "is_informed"_a, "goal_bias"_a);
     nb::class_<NamedPlan>(m, "ArmPlan", "A plan of an arm.")
         .def_prop_ro("status", [](const NamedPlan& p) { return int(p.plan.status); })
         .def_prop_ro("path", &NamedPlan::path, "The configurations (m, dof).")
@@ -164,8 +173,12 @@ void bind_planning_arm(nb::module_& m) {
             "What blocked most edges, and how many.");
     m.def("as_rows", &as_rows, "value"_a, "dof"_a, "largest"_a,
           "Configurations (dof,) or (n, dof) of numbers up to ±largest as rows; None for anything else.");
-    m.def("plan_arm", &plan_one, "checker"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a, "options"_a,
+    m.def("plan_arm", &plan_one<>, "checker"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a, "options"_a,
           nb::keep_alive<0, 1>(), "From any of the starts (s, dof) to any of the goals (g, dof).");
-    m.def("plan_arms", &plan_each, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a, "threads"_a,
-          "A plan per pair of starts and goals; the checker must outlive them.");
+    m.def("plan_arms", &plan_each<>, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a,
+          "threads"_a, "A plan per pair of starts and goals; the checker must outlive them.");
+    m.def("plan_arm", &plan_one<TreeOptions>, "checker"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a,
+          "options"_a, "tree"_a, nb::keep_alive<0, 1>(), "The same by a tree from the starts.");
+    m.def("plan_arms", &plan_each<TreeOptions>, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a,
+          "threads"_a, "tree"_a, "The same by a tree from the starts.");
 }

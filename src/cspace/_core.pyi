@@ -385,6 +385,11 @@ class ArmOptions:
 
     def __init__(self, proves_search: bool, proves_answer: bool, simplify: bool, seed: int, edges: int, improve: int, time_limit: float, range: float, resolution: float) -> None: ...
 
+class TreeOptions:
+    """Options of plans by a tree from the starts."""
+
+    def __init__(self, is_optimal: bool, is_informed: bool, goal_bias: float) -> None: ...
+
 class ArmPlan:
     """A plan of an arm."""
 
@@ -432,11 +437,21 @@ def as_rows(value: object, dof: int, largest: float) -> numpy.typing.NDArray[num
     Configurations (dof,) or (n, dof) of numbers up to ±largest as rows; None for anything else.
     """
 
+@overload
 def plan_arm(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions) -> ArmPlan:
     """From any of the starts (s, dof) to any of the goals (g, dof)."""
 
+@overload
+def plan_arm(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions, tree: TreeOptions) -> ArmPlan:
+    """The same by a tree from the starts."""
+
+@overload
 def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, threads: int) -> list[ArmPlan]:
     """A plan per pair of starts and goals; the checker must outlive them."""
+
+@overload
+def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, threads: int, tree: TreeOptions) -> list[ArmPlan]:
+    """The same by a tree from the starts."""
 
 class RouteBase:
     """The compiled half of cspace.navigation.Route."""

@@ -1,4 +1,5 @@
 #pragma once
+#include "cspace/search/nearest_leaf.hpp"
 #include "cspace/search/nearest_row.hpp"
 #include "dispatch.hpp"
 
@@ -8,3 +9,11 @@ CSPACE_NARROW_KERNEL(cspace::search, cspace::search::NearRow, find_nearest,
 CSPACE_NARROW_KERNEL(cspace::search, cspace::search::NearRow, find_nearest_within,
                      (const float* blocks, const float* costs, int count, int width, const float* q,
                       const unsigned char* wraps, float bound))
+CSPACE_NARROW_KERNEL(cspace::search, int, find_nearest_rows,
+                     (const float* blocks, int count, int width, const float* q, const unsigned char* wraps,
+                      int most, cspace::search::NearRow* found))
+// See cspace/search/nearest_leaf.hpp.
+CSPACE_NARROW_KERNEL(cspace::search, int, find_nearest_in_leaves,
+                     (const cspace::search::LeafView& view, int width, const float* q,
+                      const unsigned char* wraps, int most, float* bounds, cspace::search::NearRow* found,
+                      int count))

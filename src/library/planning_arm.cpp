@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "cspace/math/made_once.hpp"
 #include "cspace/planning/aorrtc.hpp"
 #include "cspace/planning/rrt_connect.hpp"
 #include "planning_arm_query.hpp"
@@ -11,11 +10,6 @@
 namespace cspace::planning {
 
 namespace {
-
-const search::HaltonTable& table_of(int width) {
-    static const MadeOnce<search::HaltonTable> tables[search::most_dimensions + 1];
-    return tables[width].get([&] { return std::make_unique<search::HaltonTable>(width); });
-}
 
 class ConnectSearch {
   public:
@@ -47,7 +41,7 @@ class ConnectSearch {
     ArmStats& stats() { return query_.plan().stats; }
 
     void plant_roots(std::size_t goals) {
-        trees_.emplace(query_.edges(), table_of(int(query_.width())), options_.seed, options_.range);
+        trees_.emplace(query_.edges(), halton_table(int(query_.width())), options_.seed, options_.range);
         query_.each_start([&](const float* q) { trees_->add_start(q); });
         query_.each_of_first_goals(goals, [&](const float* q) { trees_->add_goal(q); });
     }
@@ -102,7 +96,7 @@ class ConnectSearch {
             query_.each_goal([&](const float* q) { trees.add_goal(q); });
             const std::int64_t before = edges.answer_edges();
             const SearchEnd end = trees.run(float(query_.plan().cost), left);
-            if (end == SearchEnd::met && query_.keep_shorter([&] { write_path(trees); }))
+            if (end == SearchEnd::met && query_.keep_shorter([&] { write_path(trees); }, [](std::size_t) {}))
                 ++stats().improvements;
             left -= trees.counts().edges + edges.answer_edges() - before;
             stats().samples += trees.counts().samples, stats().edges += trees.counts().edges;

@@ -1,4 +1,5 @@
-// Plans of arms among obstacles: RRT-Connect, shortcuts, and a proof of every edge of the answer.
+// Plans of arms among obstacles: RRT-Connect and trees from the starts, shortcuts, and a proof of every edge
+// of the answer.
 #pragma once
 
 #include <span>
@@ -28,5 +29,11 @@ ArmPlan plan_arm(const ArmSpace& space, const ArmProblem& problem, const ArmOpti
 // Each as if alone, on so many threads (0: all).
 std::vector<ArmPlan> plan_arms(const ArmSpace& space, std::span<const ArmProblem> problems,
                                const ArmOptions& options, int threads);
+
+// The same by a tree from the starts. Throws std::invalid_argument for a bias that is no share, too.
+ArmPlan plan_arm(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options,
+                 const TreeOptions& tree);
+std::vector<ArmPlan> plan_arms(const ArmSpace& space, std::span<const ArmProblem> problems,
+                               const ArmOptions& options, int threads, const TreeOptions& tree);
 
 }  // namespace cspace::planning

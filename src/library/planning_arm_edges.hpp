@@ -8,6 +8,7 @@
 #include "cspace/math/interrupts.hpp"
 #include "cspace/planning/box.hpp"
 #include "cspace/search/configuration_tree.hpp"
+#include "cspace/search/row_leaves.hpp"
 #include "kernels/search.hpp"
 #include "planning_arm.hpp"
 
@@ -92,6 +93,25 @@ class ArmEdges {
         return kernels::find_nearest(tree.blocks(), tree.size(), tree.width(), q, box_.wraps);
     }
 
+    // leaves: hold the first rows of the tree.
+    search::NearRow find_nearest(const search::ConfigurationTree& tree, search::RowLeaves& leaves,
+                                 const float* q) const {
+        if (leaves.size() == 0) return find_nearest(tree, q);
+        search::NearRow found;
+        find_nearest(tree, leaves, q, 1, &found);
+        return found;
+    }
+    // Up to so many, the nearest first; returns how many.
+    int find_nearest(const search::ConfigurationTree& tree, search::RowLeaves& leaves, const float* q,
+                     int most, search::NearRow* found) const {
+        const int sorted = leaves.size(), width = tree.width();
+        int count = kernels::find_nearest_rows(tree.blocks() + std::ptrdiff_t(sorted) * width,
+                                               tree.size() - sorted, width, q, box_.wraps, most, found);
+        for (int i = 0; i < count; ++i) found[i].row += sorted;
+        if (sorted == 0) return count;
+        return kernels::find_nearest_in_leaves(leaves.view(), width, q, box_.wraps, most, leaves.scratch(),
+                                               found, count);
+    }
     search::NearRow find_nearest_within(const search::ConfigurationTree& tree, const float* q,
                                         float bound) const {
         return kernels::find_nearest_within(tree.blocks(), tree.costs(), tree.size(), tree.width(), q,

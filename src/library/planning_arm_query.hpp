@@ -10,10 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/made_once.hpp"
 #include "cspace/math/threads.hpp"
 #include "cspace/math/wrapping.hpp"
 #include "cspace/planning/path.hpp"
 #include "cspace/planning/simplify.hpp"
+#include "cspace/search/halton.hpp"
 #include "planning_arm_edges.hpp"
 
 namespace cspace::planning {
@@ -129,15 +131,16 @@ class ArmQuery {
         return Finish::accepted;
     }
     // The same of a path that takes the place of a longer one; false if it does not.
-    template <class WritePath>
-    bool keep_shorter(const WritePath& write) {
+    template <class WritePath, class RemoveEdge>
+    bool keep_shorter(const WritePath& write, const RemoveEdge& remove_edge) {
         const int start = plan_.start, goal = plan_.goal;
         const std::vector<int> turns = plan_.turns;
         write();
         if (options_.simplify) Simplifier(edges_, path_).run();
-        const bool is_whole = options_.answer == EdgeTest::sampled || is_proved();
-        if (is_whole && path_.length() < plan_.cost) return accept_path(), true;
+        const int failed = options_.answer == EdgeTest::sampled ? Path::checked : find_failing();
+        if (failed == Path::checked && path_.length() < plan_.cost) return accept_path(), true;
         plan_.start = start, plan_.goal = goal, plan_.turns = turns;
+        if (failed != Path::checked) remove_edge(std::size_t(failed));
         return false;
     }
 
@@ -235,11 +238,12 @@ class ArmQuery {
         }
         return Path::checked;
     }
-    bool is_proved() {
+    // The same without a look at the clock, and uncounted.
+    int find_failing() {
         for (std::size_t i = 0; i + 1 < path_.size(); ++i)
             if (path_.source(i) != Path::checked && !edges_.is_free(path_.row(i), path_.row(i + 1)))
-                return false;
-        return true;
+                return path_.source(i);
+        return Path::checked;
     }
     void accept_path() {
         plan_.path = path_.rows();
@@ -247,6 +251,12 @@ class ArmQuery {
         plan_.certified = options_.answer == EdgeTest::proved;
     }
 };
+
+// Of so many dimensions; shared by all searches.
+inline const search::HaltonTable& halton_table(int width) {
+    static const MadeOnce<search::HaltonTable> tables[search::most_dimensions + 1];
+    return tables[width].get([&] { return std::make_unique<search::HaltonTable>(width); });
+}
 
 inline void require(bool holds, const char* rule) {
     if (!holds) throw std::invalid_argument(rule);

@@ -5,6 +5,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "ball_in_plane.hpp"
 #include "check.hpp"
 #include "cspace/math/interrupts.hpp"
 #include "cspace/planning/rrt_connect.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 using namespace cspace;
 using namespace cspace::planning;
+using check::BallInPlane;
+using check::ring;
 using Row = std::vector<double>;
 using Clock = std::chrono::steady_clock;
 
@@ -69,38 +72,6 @@ Row free_configuration(const check::RandomCell& cell, check::Random& random) {
     }
     return {};
 }
-
-// A ball that moves in the plane, among walls given as boxes (x, y, half sizes).
-struct BallInPlane {
-    std::unique_ptr<collision::Checker> checker;
-    Row lower = {-1, -1}, upper = {1, 1};
-
-    explicit BallInPlane(const std::vector<std::array<double, 4>>& walls, double radius = 0.02) {
-        // Turns the axes round: z to x, and once more to y.
-        const Posed turn = {{{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}}, {0, 0, 0}};
-        const model::Joint along_x = {turn, -1, 0, 1, 0, true, 0}, along_y = {turn, 0, 1, 1, 0, true, 0};
-        const std::vector<model::Joint> joints = {along_x, along_y};
-        const std::vector<int> bodies = {2};
-        const std::vector<collision::Sphere> spheres = {{{0, 0, 0}, radius, 0}};
-        std::vector<double> boxes;
-        std::vector<int> owners;
-        for (const auto& w : walls) {
-            boxes.insert(boxes.end(), {w[0], w[1], 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, w[2], w[3], 0.5});
-            owners.push_back(int(owners.size()));
-        }
-        collision::Primitives given = {};
-        given.boxes = boxes, given.owners = owners;
-        checker = std::make_unique<collision::Checker>(
-            std::make_shared<collision::RobotData>(joints, 2, lower, upper, bodies, spheres,
-                                                   std::vector<std::pair<int, int>>{}),
-            std::make_shared<collision::SceneData>(given), 0.0, std::vector<std::pair<int, int>>{});
-    }
-    ArmPlan plan(const Row& starts, const Row& goals, const ArmOptions& options = {}) const {
-        return plan_arm({*checker, lower, upper, {}}, {starts, goals}, options);
-    }
-};
-const std::vector<std::array<double, 4>> ring = {
-    {0.5, 0.65, 0.15, 0.01}, {0.5, 0.35, 0.15, 0.01}, {0.65, 0.5, 0.01, 0.15}, {0.35, 0.5, 0.01, 0.15}};
 
 // An arm of one joint about z that carries a ball, and a rod at the angle `blocked`.
 struct Turntable {

@@ -81,7 +81,7 @@ def keywords() -> set[str]:
 KEYWORDS = keywords()
 PUBLIC = {name for name, _ in exports()}
 MEMBERS = set().union(*(members(value) for _, value in exports() if inspect.isclass(value)))
-DATA = {*cs.navigation.PLANNERS, *cs.navigation.STATUSES, *cs.robots.names()}
+DATA = {*cs.navigation.PLANNERS, *cs.planning.PLANNERS, *cs.navigation.STATUSES, *cs.robots.names()}
 DATA.update(*(cs.robots.load_description(name).link_by_name for name in cs.robots.names()))
 
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cspace/planning/informed_samples.hpp"
-#include "cspace/planning/rrt_connect.hpp"
+#include "cspace/planning/tree_pair.hpp"
 
 namespace cspace::planning {
 
@@ -19,33 +19,28 @@ template <class Space>
 class CostBoundedTrees {
   public:
     using Row = InformedSamples::Row;
-    using PathNode = typename RrtConnect<Space>::PathNode;
-    using Counts = typename RrtConnect<Space>::Counts;
+    using Trees = TreePair<Space>;
 
     CostBoundedTrees(Space& space, InformedSamples& samples, float range)
-        : space_(space),
-          box_(space.box()),
-          samples_(samples),
-          range_(range),
-          trees_{Tree(box_.width), Tree(box_.width)} {}
+        : space_(space), box_(space.box()), samples_(samples), range_(range), trees_(space) {}
 
-    void add_start(const float* q) { add_node(0, q, Tree::no_parent, 0), ++roots_[0]; }
-    void add_goal(const float* q) { add_node(1, q, Tree::no_parent, 0), ++roots_[1]; }
+    void add_start(const float* q) { trees_.add(0, q, Tree::no_parent, 0), ++roots_[0]; }
+    void add_goal(const float* q) { trees_.add(1, q, Tree::no_parent, 0), ++roots_[1]; }
 
     // Searches for a path shorter than `bound`, until `budget` edges are checked.
     SearchEnd run(float bound, std::int64_t budget) {
         bound_ = bound;
         list_pairs();
-        while (counts_.edges < budget && !pairs_.empty()) {
+        while (counts().edges < budget && !pairs_.empty()) {
             if (!space_.has_time()) return SearchEnd::no_time;
             if (grow()) return SearchEnd::met;
-            if (++counts_.samples > samples_per_edge * budget) break;
+            if (++trees_.counts().samples > samples_per_edge * budget) break;
         }
         return SearchEnd::edge_budget;
     }
-    const std::vector<PathNode>& path() const { return path_; }
-    const search::ConfigurationTree& tree(int t) const { return trees_[std::size_t(t)]; }
-    const Counts& counts() const { return counts_; }
+    const std::vector<PathNode>& path() const { return trees_.path(); }
+    const search::ConfigurationTree& tree(int t) const { return trees_.nodes(t); }
+    const typename Trees::Counts& counts() const { return trees_.counts(); }
 
   private:
     using Tree = search::ConfigurationTree;
@@ -59,19 +54,12 @@ class CostBoundedTrees {
     const Box box_;
     InformedSamples& samples_;
     const float range_;
-    std::array<Tree, 2> trees_;
-    std::array<std::vector<float>, 2> radii_;  // of the domains of the nodes
+    Trees trees_;
     std::array<int, 2> roots_ = {0, 0};
     std::vector<std::pair<int, int>> pairs_;
-    std::vector<PathNode> path_;
-    Counts counts_;
     float bound_ = 0;
 
-    int add_node(int t, const float* q, int parent, float cost) {
-        radii_[std::size_t(t)].push_back(DynamicDomain::unbounded);
-        return nodes(t).add(q, parent, cost);
-    }
-    Tree& nodes(int t) { return trees_[std::size_t(t)]; }
+    Tree& nodes(int t) { return trees_.nodes(t); }
 
     // The pairs of a start and a goal between which a shorter path may be.
     void list_pairs() {
@@ -93,12 +81,6 @@ class CostBoundedTrees {
         }
         return least;
     }
-    bool check_edge(const float* a, const float* b) {
-        ++counts_.edges;
-        const bool is_free = space_.is_free(a, b);
-        counts_.blocked += !is_free;
-        return is_free;
-    }
 
     bool grow() {
         const int t = nodes(0).size() <= nodes(1).size() ? 0 : 1;
@@ -114,17 +96,14 @@ class CostBoundedTrees {
         const search::NearRow near = space_.find_nearest_within(nodes(t), sample.data(), limit);
         if (near.row < 0) return false;
         const float far = std::sqrt(near.square), length = std::min(far, range_);
-        float& radius = radii_[std::size_t(t)][std::size_t(near.row)];
+        float& radius = trees_.radius(t, near.row);
         if (radius < far) return false;
         nodes(t).copy_row(near.row, from.data());
-        if (far <= range_)
-            std::copy_n(sample.data(), box_.width, to.data());
-        else
-            box_.interpolate(from.data(), sample.data(), range_ / far, to.data());
+        trees_.steer(from.data(), sample.data(), far, range_, to.data());
         const float cost = nodes(t).cost(near.row) + length;
         const float left = distance_from_roots(1 - t, to.data());
         if (cost + left >= bound_) return false;
-        if (!check_edge(from.data(), to.data())) {
+        if (!trees_.check_edge(from.data(), to.data())) {
             radius = DynamicDomain::after_blocked(radius, range_);
             return false;
         }
@@ -143,9 +122,9 @@ class CostBoundedTrees {
             const float other = nodes(t).cost(near.row) + std::sqrt(near.square);
             Row from;
             nodes(t).copy_row(near.row, from.data());
-            if (other < cost && check_edge(from.data(), q)) parent = near.row, cost = other;
+            if (other < cost && trees_.check_edge(from.data(), q)) parent = near.row, cost = other;
         }
-        return add_node(t, q, parent, cost);
+        return trees_.add(t, q, parent, cost);
     }
 
     // Extends tree t from one of its nodes to the nearest node of the other tree with which the path is
@@ -154,23 +133,7 @@ class CostBoundedTrees {
         const float spent = nodes(t).cost(node), limit = (1 - least_gain) * bound_ - spent;
         const search::NearRow near = space_.find_nearest_within(nodes(1 - t), from, limit);
         if (near.row < 0) return false;
-        const float far = std::sqrt(near.square);
-        Row target, places[2];
-        nodes(1 - t).copy_row(near.row, target.data());
-        const int steps = std::max(1, int(std::ceil(far / range_)));
-        const float* at = from;
-        for (int i = 1; i <= steps; ++i) {
-            float* const next = i == steps ? target.data() : places[i % 2].data();
-            if (i < steps) box_.interpolate(from, target.data(), float(i) / float(steps), next);
-            if (!check_edge(at, next)) return false;
-            if (i < steps) node = add_node(t, next, node, spent + far * (float(i) / float(steps)));
-            at = next;
-        }
-        path_.clear();
-        for (int n = t == 0 ? node : near.row; n >= 0; n = nodes(0).parent(n)) path_.push_back({0, n});
-        std::reverse(path_.begin(), path_.end());
-        for (int n = t == 0 ? near.row : node; n >= 0; n = nodes(1).parent(n)) path_.push_back({1, n});
-        return true;
+        return trees_.connect(t, node, from, near, range_, [](const float*, const float*, float) {});
     }
 };
 

@@ -24,6 +24,14 @@ struct ArmOptions {
     float resolution = 1.0f / 32;                                 // of sampled edges [rad, m]
 };
 
+// What a tree from the starts does: RRT, RRT*, informed RRT*.
+struct TreeOptions {
+    bool is_optimal =
+        false;  // RRT*: joins and rewires; ArmOptions::improve is its budget after the first path
+    bool is_informed = false;  // then draws only what can still shorten the path
+    double goal_bias = 0.05;   // how often a goal is drawn while no path is known
+};
+
 enum class PlanStatus { found, edge_budget, time_limit, invalid_start, invalid_goals };
 
 // A given start or goal; contact: what touches.

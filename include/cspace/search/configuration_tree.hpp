@@ -28,6 +28,8 @@ class ConfigurationTree {
         for (int k = 0; k < width_; ++k) q[k] = at[lanes * k];
     }
 
+    float coordinate(int node, int k) const { return blocks_[place(node) + std::size_t(lanes * k)]; }
+
     // The number of the new node.
     int add(const float* q, int parent, float cost) {
         constexpr float beyond = 3e38f;

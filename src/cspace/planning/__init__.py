@@ -10,6 +10,7 @@ from cspace.planning.joint_space.volumes import Volume
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
 from cspace.planning.region import Region
+from cspace.planning.rrt import RRT, InformedRRTStar, RRTStar
 from cspace.planning.rrt_connect import RRTConnect
 from cspace.planning.space import ArmSpace
 from cspace.planning.two_joints.answers import BoundaryCurve, Connection, FreeComponent
@@ -18,6 +19,7 @@ from cspace.planning.two_joints.configuration_space import ConfigurationSpace
 __all__ = [
     "AORRTC",
     "PLANNERS",
+    "RRT",
     "STATUSES",
     "ArmPlanner",
     "ArmSpace",
@@ -25,10 +27,12 @@ __all__ = [
     "ConfigurationSpace",
     "Connection",
     "FreeComponent",
+    "InformedRRTStar",
     "JointSpace",
     "Plan",
     "Projection",
     "RRTConnect",
+    "RRTStar",
     "Region",
     "Slice",
     "Volume",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,6 +31,9 @@ class EdgePlanner(ArmPlanner):
     motion whose proof fails is removed, and the search goes on.
     A subclass defines `_plan_rows` and `_plan_each_rows`.
     """
+
+    approach: ClassVar[str] = "the trees came within {} of each other"
+    """What a failed search says of its closest approach."""
 
     search: str = option(
         "proved", "how the search checks motions", choices=("proved", "sampled"), subject="kind of check"
@@ -90,7 +93,7 @@ class EdgePlanner(ArmPlanner):
 
     def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> Plan:
         """The Plan of what the core found."""
-        status, reason = explain_end(space, rows, found)
+        status, reason = explain_end(space, rows, found, self.approach)
         path = found.path
         return Plan(
             status=status,
@@ -129,7 +132,7 @@ def check_problems(space: ArmSpace, problems: Sequence[tuple[Any, Any]]) -> list
     ]
 
 
-def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> tuple[str, str]:
+def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan, approach: str) -> tuple[str, str]:
     """The status of a plan, and its reason in words."""
     end = ENDS[found.status]
     if end == "found":
@@ -139,7 +142,7 @@ def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> t
         return "invalid_start", explain_rows(space, rows[0], found.starts, "start")
     if end == "invalid goals":
         return "invalid_goal", explain_rows(space, rows[1], found.goals, "goal")
-    return "undetermined", explain_budget(space, found, end)
+    return "undetermined", explain_budget(space, found, end, approach)
 
 
 def explain_rows(space: ArmSpace, rows: Array, reports: Sequence[Any], subject: str) -> str:
@@ -155,13 +158,13 @@ def explain_rows(space: ArmSpace, rows: Array, reports: Sequence[Any], subject: 
     )
 
 
-def explain_budget(space: ArmSpace, found: ArmPlan, end: str) -> str:
+def explain_budget(space: ArmSpace, found: ArmPlan, end: str, approach: str) -> str:
     """Why a search gave up: the budget, the closest approach, and what was most in the way."""
     stats = found.stats
     parts = [f"the {end} was used up after {stats['edges']} motions"]
     distance, near, _ = found.approach
     if len(near):
-        parts.append(f"the trees came within {shown(distance)} of each other")
+        parts.append(approach.format(shown(distance)))
     contact, count = found.blocker
     if contact is not None:
         parts.append(f"{' and '.join(space.checker.name_pair(contact))} blocked {count} motions")

@@ -4,6 +4,7 @@
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/sampling/sight.hpp"
 #include "cspace/search/draws.hpp"
+#include "cspace/search/portable_log.hpp"
 
 namespace cspace::navigation::sampling {
 
@@ -85,14 +86,9 @@ class Samples {
 
 // The radius within which n evenly drawn points of an area must be joined for shortest ways to be found in
 // the limit: above 2 (1 + 1/2)^½ (area / π)^½ (log n / n)^½ (Karaman & Frazzoli 2011, "Sampling-based
-// algorithms for optimal motion planning", theorem 34). The logarithm is summed here, so that it is the same
-// on every machine.
+// algorithms for optimal motion planning", theorem 34).
 inline double joining_radius(double area, std::size_t n) {
-    double log = 0, m = double(n);
-    for (; m > 1.5; m /= 2) log += 0.6931471805599453;
-    const double x = (m - 1) / (m + 1), xx = x * x;
-    double term = 2 * x;
-    for (int k = 1; k < 30; k += 2, term *= xx) log += term / k;
+    const double log = search::portable_log(n);
     return 1.01 * std::sqrt(6 * area / 3.141592653589793 * std::max(log, 0.5) / double(n));
 }
 
