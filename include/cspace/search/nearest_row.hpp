@@ -78,4 +78,26 @@ inline NearRow find_nearest_row_within(const float* blocks, const float* costs, 
     return found.square < none ? found : NearRow{-1, none};
 }
 
+// The `most` nearest rows, the nearest first, of equally near ones the first; returns how many there are.
+template <bool any_wraps>
+inline int find_nearest_rows(const float* blocks, int count, int width, const float* q,
+                             const unsigned char* wraps, int most, NearRow* found) {
+    int n = 0;
+    float bound = most > 0 ? 3e38f : 0.0f;  // a row must be nearer
+    for (int first = 0; first < count; first += float_lanes, blocks += float_lanes * width) {
+        const Floats sum = square_distances<any_wraps>(blocks, width, q, wraps);
+        if (bits_of(sum < fill_floats(bound)) == 0) continue;
+        alignas(32) float squares[float_lanes];
+        store_floats(squares, sum);
+        for (int i = 0; i < float_lanes && first + i < count; ++i) {
+            if (!(squares[i] < bound)) continue;
+            int at = n < most ? n++ : most - 1;
+            for (; at > 0 && squares[i] < found[at - 1].square; --at) found[at] = found[at - 1];
+            found[at] = {first + i, squares[i]};
+            if (n == most) bound = found[most - 1].square;
+        }
+    }
+    return n;
+}
+
 }  // namespace cspace::search::inline CSPACE_ISA

@@ -4,6 +4,8 @@ from cspace.planning.aorrtc import AORRTC
 from cspace.planning.arm_planner import ArmPlanner
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
+from cspace.planning.prm import PRM, LazyPRM, PRMStar
+from cspace.planning.roadmap import Roadmap
 from cspace.planning.rrt_connect import RRTConnect
 from cspace.planning.space import ArmSpace
 from cspace.planning.two_joints.answers import BoundaryCurve, Connection, FreeComponent
@@ -12,6 +14,7 @@ from cspace.planning.two_joints.configuration_space import ConfigurationSpace, c
 __all__ = [
     "AORRTC",
     "PLANNERS",
+    "PRM",
     "STATUSES",
     "ArmPlanner",
     "ArmSpace",
@@ -19,8 +22,11 @@ __all__ = [
     "ConfigurationSpace",
     "Connection",
     "FreeComponent",
+    "LazyPRM",
+    "PRMStar",
     "Plan",
     "RRTConnect",
+    "Roadmap",
     "configuration_space",
     "find_planner",
 ]

@@ -17,7 +17,7 @@ from cspace.planning.space import ArmSpace
 from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
 
-ENDS = ("found", "edge budget", "time limit", "invalid start", "invalid goals")
+ENDS = ("found", "edge budget", "time limit", "invalid start", "invalid goals", "disconnected")
 """How the core ends, in its order."""
 
 
