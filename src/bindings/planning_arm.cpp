@@ -206,7 +206,7 @@ void bind_planning_arm(nb::module_& m) {
         .def(nb::new_([](std::shared_ptr<ArmRoadmap> roadmap, std::shared_ptr<collision::Checker> checker,
                          bool is_self_free, bool proves_search, double resolution) {
                  const EdgeTest search = proves_search ? EdgeTest::proved : EdgeTest::sampled;
-                 return std::make_unique<RoadmapWorld>(roadmap, checker, is_self_free, search,
+                 return std::make_shared<RoadmapWorld>(roadmap, checker, is_self_free, search,
                                                        float(resolution));
              }),
              "roadmap"_a, "checker"_a, "is_self_free"_a, "proves_search"_a, "resolution"_a)
