@@ -1,25 +1,20 @@
 #include "planning_arm.hpp"
 
-#include "cspace/math/made_once.hpp"
 #include "cspace/planning/aorrtc.hpp"
 #include "cspace/planning/rrt_connect.hpp"
 #include "planning_arm_query.hpp"
+#include "planning_halton.hpp"
 
 namespace cspace::planning {
 
 namespace {
-
-const search::HaltonTable& table_of(int width) {
-    static const MadeOnce<search::HaltonTable> tables[search::most_dimensions + 1];
-    return tables[width].get([&] { return std::make_unique<search::HaltonTable>(width); });
-}
 
 class ConnectSearch {
   public:
     ConnectSearch(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options)
         : query_(space, problem, options),
           options_(options),
-          trees_(query_.edges(), table_of(int(query_.width())), options.seed, options.range) {}
+          trees_(query_.edges(), halton_table(int(query_.width())), options.seed, options.range) {}
 
     ArmPlan run() {
         if (query_.check_ends()) {

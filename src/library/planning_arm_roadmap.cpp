@@ -5,10 +5,10 @@
 #include <stdexcept>
 
 #include "cspace/math/threads.hpp"
-#include "cspace/search/halton.hpp"
 #include "planning_arm_edges.hpp"
 #include "planning_arm_query.hpp"
 #include "planning_arm_roadmap_state.hpp"
+#include "planning_halton.hpp"
 
 namespace cspace::planning {
 
@@ -80,8 +80,7 @@ class RoadmapMaker {
 
     void draw_nodes() {
         const std::size_t width = made_.width, n = std::size_t(made_.rule.samples);
-        const search::HaltonTable table{int(width)};
-        search::HaltonPoints points(table, made_.rule.seed);
+        search::HaltonPoints points(halton_table(int(width)), made_.rule.seed);
         std::vector<float> drawn(n * width);
         std::vector<double> rows(n * width);
         visit_range(0, n, [&](std::size_t i) {

@@ -2,8 +2,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cspace/planning/rrt_connect.hpp"
 #include "planning_arm_query.hpp"
 #include "planning_arm_roadmap_state.hpp"
+#include "planning_halton.hpp"
 
 namespace cspace::planning {
 
@@ -13,7 +15,8 @@ using search::EdgeState;
 using search::NearRow;
 using search::WayArc;
 
-// Nodes: the samples, then starts, then goals. Edges: those of the roadmap, then those of the ends.
+// Nodes: the samples, then starts, goals and what trees from them add. Edges: those of the roadmap, then those
+// of the ends.
 class RoadmapQuery {
   public:
     RoadmapQuery(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options,
@@ -43,12 +46,12 @@ class RoadmapQuery {
     // The interface of a graph for ShortestWay. What is known from plans before is not used to choose edges:
     // a plan is the same whatever came before it.
     static constexpr bool is_known(std::uint32_t) { return false; }
-    bool is_goal(std::uint32_t node) const { return node >= first_goal(); }
+    bool is_goal(std::uint32_t node) const { return node >= first_goal() && node < first_goal() + goals_; }
     double bound(std::uint32_t node) {
         float& least = bounds_to_goal_[node];
         if (least < 0) {
             least = std::numeric_limits<float>::max();
-            for (std::size_t g = first_goal(); g < nodes(); ++g)
+            for (std::size_t g = first_goal(); g < first_goal() + goals_; ++g)
                 least = std::min(least, box().distance(row(node), row(g)));
         }
         return least;
@@ -69,7 +72,7 @@ class RoadmapQuery {
     }
 
   private:
-    // An edge from a start or to a goal; next: of those that leave the same node.
+    // An edge from a start, to a goal or of a tree; next: of those that leave the same node.
     struct EndEdge {
         std::uint32_t from, to;
         float length;
@@ -91,7 +94,8 @@ class RoadmapQuery {
     std::size_t starts_ = 0, goals_ = 0;
     std::vector<float> ends_, bounds_to_goal_;
     std::vector<std::int32_t> heads_;  // per node its first edge to or from an end, −1 if none
-    std::vector<EndEdge> end_edges_;
+    std::vector<EndEdge> end_edges_;   // first those that lead from starts to goals
+    std::vector<std::size_t> near_;    // the free nodes near to the ends of a side
     std::vector<std::uint32_t> removed_;  // edges whose proof as a part of the answer failed
     PlanStatus stopped_ = PlanStatus::time_limit;
 
@@ -99,7 +103,7 @@ class RoadmapQuery {
     ArmStats& stats() { return query_.plan().stats; }
     std::size_t samples() const { return map_.size(); }
     std::size_t first_goal() const { return samples() + starts_; }
-    std::size_t nodes() const { return first_goal() + goals_; }
+    std::size_t nodes() const { return samples() + ends_.size() / map_.width; }
     bool is_of_end(std::uint32_t edge) const { return edge >= map_.pairs.size(); }
     EndEdge& end_edge(std::uint32_t edge) { return end_edges_[edge - map_.pairs.size()]; }
     const float* row(std::size_t node) const {
@@ -139,13 +143,44 @@ class RoadmapQuery {
         const StageTimer timer(stats().search_seconds);
         heads_.assign(nodes(), -1);
         bounds_to_goal_.assign(nodes(), -1.0f);
-        for (std::size_t end = samples(); end < nodes(); ++end)
-            if (!join_end(end)) return false;
-        for (std::size_t s = samples(); s < first_goal(); ++s)
-            for (std::size_t g = first_goal(); g < nodes(); ++g) add_end_edge(s, g);
+        add_straight_edges();
+        const EdgeState shortest = find_free(0, 1);
+        if (shortest != EdgeState::blocked) return shortest == EdgeState::free;
+        const std::size_t end_of_starts = first_goal(), end_of_goals = nodes();
+        if (!join_side(0, samples(), end_of_starts) || !join_side(1, end_of_starts, end_of_goals)) return false;
+        bounds_to_goal_.assign(nodes(), -1.0f);
         return is_lazy_ || check_map();
     }
-    // To the nearest nodes that are free.
+    // From each start to each goal, the shortest first.
+    void add_straight_edges() {
+        std::vector<std::pair<float, std::pair<std::size_t, std::size_t>>> pairs;
+        for (std::size_t s = samples(); s < first_goal(); ++s)
+            for (std::size_t g = first_goal(); g < nodes(); ++g)
+                pairs.push_back({box().distance(row(s), row(g)), {s, g}});
+        sort_polled(pairs);
+        for (const auto& [length, ends] : pairs) add_end_edge(ends.first, ends.second);
+    }
+    // Joins all starts, or all goals; if none of them sees a node, trees lead to those that are near.
+    bool join_side(int side, std::size_t first, std::size_t end) {
+        const std::size_t before = end_edges_.size();
+        near_.clear();
+        for (std::size_t k = first; k < end; ++k)
+            if (!join_end(k)) return false;
+        const EdgeState straight = find_free(0, starts_ * goals_);
+        if (straight != EdgeState::blocked) return straight == EdgeState::free;
+        const EdgeState joined = find_free(before, end_edges_.size());
+        if (joined != EdgeState::blocked || near_.empty()) return joined != EdgeState::unknown;
+        return grow_trees(side, first, end);
+    }
+    // Whether one of these edges of ends is free.
+    EdgeState find_free(std::size_t first, std::size_t end) {
+        for (std::size_t k = first; k < end; ++k) {
+            const EdgeState state = check_edge(std::uint32_t(map_.pairs.size() + k), end_edges_[k].to, true);
+            if (state != EdgeState::blocked) return state;
+        }
+        return EdgeState::blocked;
+    }
+    // To the nearest nodes that are free, the nearest first.
     bool join_end(std::size_t end) {
         const std::size_t wanted = std::size_t(map_.neighbours);
         const std::size_t most = std::min(samples(), widest_search * wanted);
@@ -155,14 +190,57 @@ class RoadmapQuery {
             near.resize(std::min(room, most));
             find_nearest(map_.blocks, row(end), box(), near);
             for (; seen < near.size() && joined < wanted; ++seen) {
-                if (!has_time()) return false;
+                if (!has_time()) return stopped_ = PlanStatus::time_limit, false;
                 const auto node = std::size_t(near[seen].row);
                 if (!is_node_free(node)) continue;
                 ++joined;
+                near_.push_back(node);
                 end < first_goal() ? add_end_edge(end, node) : add_end_edge(node, end);
             }
         }
         return true;
+    }
+    // RRT-Connect between ends and the free nodes near to them; its path is added to the graph. False if time
+    // or budget is over.
+    bool grow_trees(int side, std::size_t first, std::size_t end) {
+        RrtConnect<ArmEdges> trees(query_.edges(), halton_table(int(map_.width)), options_.seed,
+                                   options_.range);
+        std::vector<std::size_t> roots[2];
+        for (std::size_t k = first; k < end; ++k) roots[side].push_back(k);
+        std::sort(near_.begin(), near_.end());
+        near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+        roots[1 - side] = near_;
+        for (const std::size_t k : roots[0]) trees.add_start(row(k));
+        for (const std::size_t k : roots[1]) trees.add_goal(row(k));
+        const SearchEnd found = trees.run(options_.edges - stats().edges);
+        const auto& counts = trees.counts();
+        stats().samples += counts.samples, stats().rejected += counts.rejected;
+        stats().edges += counts.edges, stats().blocked += counts.blocked;
+        if (found == SearchEnd::edge_budget) stopped_ = PlanStatus::edge_budget;
+        if (found == SearchEnd::no_time) stopped_ = PlanStatus::time_limit;
+        if (found == SearchEnd::met) add_tree_path(trees, roots);
+        return found == SearchEnd::met;
+    }
+    void add_tree_path(const RrtConnect<ArmEdges>& trees, const std::vector<std::size_t> (&roots)[2]) {
+        std::size_t before = 0;
+        for (std::size_t i = 0; i < trees.path().size(); ++i) {
+            const auto [tree, number] = trees.path()[i];
+            const auto& own = roots[tree];
+            std::size_t node = nodes();
+            if (std::size_t(number) < own.size()) {
+                node = own[std::size_t(number)];
+            } else {
+                ArmQuery::Row q;
+                trees.tree(tree).copy_row(number, q.data());
+                add_end(q.data());
+                heads_.push_back(-1);
+            }
+            if (i > 0) {
+                add_end_edge(before, node);
+                end_edges_.back().state = EdgeState::free;
+            }
+            before = node;
+        }
     }
     void add_end_edge(std::size_t from, std::size_t to) {
         const float length = box().distance(row(from), row(to));
@@ -177,6 +255,7 @@ class RoadmapQuery {
 
     // Whether the node that an edge leads to and the edge are free; unknown if budget or time is over.
     EdgeState check_edge(std::uint32_t edge, std::uint32_t to, bool counts) {
+        if (is_of_end(edge) && end_edge(edge).state != EdgeState::unknown) counts = false;
         if (counts && stats().edges >= options_.edges) return stop(PlanStatus::edge_budget);
         if (!has_time()) return stop(PlanStatus::time_limit);
         const bool is_free = (to >= samples() || is_node_free(to)) &&
@@ -225,10 +304,12 @@ class RoadmapQuery {
         if (way)
             for (std::uint32_t node = 0; node < samples(); ++node)
                 if (way->ways().is_settled(node)) from_start.push_back(node);
-        for (std::size_t g = first_goal(); g < nodes(); ++g) from_goal.push_back(std::uint32_t(g));
+        for (std::size_t g = 0; g < goals_; ++g) from_goal.push_back(std::uint32_t(first_goal() + g));
         if (status == PlanStatus::disconnected) flood(from_goal);
-        stats().start_nodes = std::int64_t(from_start.size() - starts_);
-        stats().goal_nodes = std::int64_t(from_goal.size() - goals_);
+        const auto count = [&](const std::vector<std::uint32_t>& reached) {
+            return std::count_if(reached.begin(), reached.end(), [&](auto node) { return node < samples(); });
+        };
+        stats().start_nodes = count(from_start), stats().goal_nodes = count(from_goal);
         return give_up_between(status, from_start, from_goal);
     }
     // Adds the nodes that are joined with those given, as far as budget and time allow.
@@ -240,12 +321,16 @@ class RoadmapQuery {
             reached.push_back(node);
         };
         const std::size_t map_edges = map_.pairs.size();
-        for (std::size_t k = 0; k < end_edges_.size(); ++k)
-            if (is_goal(end_edges_[k].to) && end_edges_[k].from < samples())
-                reach(std::uint32_t(map_edges + k), end_edges_[k].from);
-        for (std::size_t next = goals_; next < reached.size(); ++next)
-            for (const search::RoadmapArc& arc : map_.arcs.of(reached[next]))
-                reach(std::uint32_t(arc.edge), std::uint32_t(arc.to));
+        for (std::size_t next = 0; next < reached.size(); ++next) {
+            const std::uint32_t node = reached[next];
+            if (node < samples()) {
+                for (const search::RoadmapArc& arc : map_.arcs.of(node))
+                    reach(std::uint32_t(arc.edge), std::uint32_t(arc.to));
+                continue;
+            }
+            for (std::size_t k = 0; k < end_edges_.size(); ++k)
+                if (end_edges_[k].to == node) reach(std::uint32_t(map_edges + k), end_edges_[k].from);
+        }
     }
     PlanStatus give_up_between(PlanStatus status, const std::vector<std::uint32_t>& from_start,
                                const std::vector<std::uint32_t>& from_goal) {
