@@ -18,10 +18,10 @@ using search::NearRow;
 using search::NodePair;
 using RoadmapState = ArmRoadmap::State;
 
-constexpr std::int64_t most_samples = std::int64_t(1) << 20;  // nodes and edges are numbered in 32 bits
+constexpr std::int64_t most_samples = std::int64_t(1) << 18;  // the nearest of so many take a minute
 
 void check_rule(const RoadmapRule& rule) {
-    require(rule.samples >= 0 && rule.samples <= most_samples, "a roadmap has 0 to 2^20 samples");
+    require(rule.samples >= 0 && rule.samples <= most_samples, "a roadmap has 0 to 2^18 samples");
     require(rule.neighbours >= 0, "the number of neighbours must not be negative");
 }
 
@@ -81,13 +81,14 @@ class RoadmapMaker {
     void draw_nodes() {
         const std::size_t width = made_.width, n = std::size_t(made_.rule.samples);
         search::HaltonPoints points(halton_table(int(width)), made_.rule.seed);
-        std::vector<float> drawn(n * width);
-        std::vector<double> rows(n * width);
+        auto drawn = filled_vector<float>(n * width);
+        auto rows = filled_vector<double>(n * width);
         visit_range(0, n, [&](std::size_t i) {
             box().scale(points.next(), &drawn[i * width]);
             std::copy_n(&drawn[i * width], width, &rows[i * width]);
         });
         std::vector<std::uint8_t> collides(n);
+        made_.rows.reserve(n * width);
         robot_.checker.check_rows(rows.data(), n, collides.data(), threads_);
         visit_range(0, n, [&](std::size_t i) {
             const auto row = drawn.begin() + std::ptrdiff_t(i * width);
@@ -107,7 +108,7 @@ class RoadmapMaker {
     // Each node is paired with its nearest neighbours.
     std::vector<NodePair> choose_pairs() const {
         const std::size_t n = made_.size(), most = std::min(n, std::size_t(made_.neighbours) + 1);
-        std::vector<std::int32_t> near(n * most);
+        auto near = filled_vector<std::int32_t>(n * most);
         over_parts(n, [&](std::size_t begin, std::size_t end) {
             std::vector<NearRow> found(most);
             for (std::size_t i = begin; i < end; ++i) {

@@ -22,8 +22,8 @@ from cspace.files import path_of, read_regular, whole_file
 TITLE: Final = b"cspace roadmap 1\n"
 """The first line; another version has another number."""
 
-MOST_SAMPLES: Final = 1 << 20
-"""Samples of a roadmap at most: its edges are numbered in 32 bits."""
+MOST_SAMPLES: Final = 1 << 18
+"""Samples of a roadmap at most: to find the nearest of so many takes a minute."""
 
 MOST_BYTES: Final = 1 << 33
 """The largest file that is read."""
