@@ -179,7 +179,8 @@ ArmRoadmap::ArmRoadmap(const ArmSpace& robot, const RoadmapRule& rule, std::span
     check_space(robot), check_rule(rule);
     const std::size_t width = std::size_t(robot.checker.dof());
     require(width > 0 ? nodes.size() % width == 0 : nodes.empty(), "a node has one entry per coordinate");
-    require(std::int64_t(nodes.size()) <= rule.samples * std::int64_t(width), "there are more nodes than samples");
+    require(std::int64_t(nodes.size()) <= rule.samples * std::int64_t(width),
+            "there are more nodes than samples");
     require(edges.size() % 2 == 0, "an edge has two nodes");
     state_ = std::make_shared<const State>(RoadmapMaker(robot, rule, 1).restore(nodes, edges));
 }

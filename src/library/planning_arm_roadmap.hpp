@@ -32,7 +32,7 @@ class ArmRoadmap {
     int width() const;
     std::vector<double> nodes() const;        // (n, dof)
     std::vector<std::int32_t> edges() const;  // (e, 2)
-    std::size_t size() const;        // of nodes
+    std::size_t size() const;                 // of nodes
     std::size_t edge_count() const;
     std::int64_t components() const;
     int neighbours() const;  // to which each node is joined

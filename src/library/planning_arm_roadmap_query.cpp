@@ -15,8 +15,8 @@ using search::EdgeState;
 using search::NearRow;
 using search::WayArc;
 
-// Nodes: the samples, then starts, goals and what trees from them add. Edges: those of the roadmap, then those
-// of the ends.
+// Nodes: the samples, then starts, goals and what trees from them add. Edges: those of the roadmap, then
+// those of the ends.
 class RoadmapQuery {
   public:
     RoadmapQuery(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options,
@@ -67,7 +67,8 @@ class RoadmapQuery {
         }
     }
     EdgeState check(const WayArc& arc) {
-        if (std::find(removed_.begin(), removed_.end(), arc.edge) != removed_.end()) return EdgeState::blocked;
+        if (std::find(removed_.begin(), removed_.end(), arc.edge) != removed_.end())
+            return EdgeState::blocked;
         return check_edge(arc.edge, arc.to, is_lazy_ || is_of_end(arc.edge));
     }
 
@@ -93,9 +94,9 @@ class RoadmapQuery {
     const bool is_lazy_;
     std::size_t starts_ = 0, goals_ = 0;
     std::vector<float> ends_, bounds_to_goal_;
-    std::vector<std::int32_t> heads_;  // per node its first edge to or from an end, −1 if none
-    std::vector<EndEdge> end_edges_;   // first those that lead from starts to goals
-    std::vector<std::size_t> near_;    // the free nodes near to the ends of a side
+    std::vector<std::int32_t> heads_;     // per node its first edge to or from an end, −1 if none
+    std::vector<EndEdge> end_edges_;      // first those that lead from starts to goals
+    std::vector<std::size_t> near_;       // the free nodes near to the ends of a side
     std::vector<std::uint32_t> removed_;  // edges whose proof as a part of the answer failed
     PlanStatus stopped_ = PlanStatus::time_limit;
 
@@ -122,7 +123,8 @@ class RoadmapQuery {
             if (end == Search::End::none) return give_up(PlanStatus::disconnected, &way);
             const std::vector<WayArc> arcs = way.arcs();
             write_path(arcs);
-            const Finish finish = query_.finish_path([&](std::size_t i) { removed_.push_back(arcs[i].edge); });
+            const Finish finish =
+                query_.finish_path([&](std::size_t i) { removed_.push_back(arcs[i].edge); });
             if (finish == Finish::late) return give_up(PlanStatus::time_limit, &way);
             if (finish == Finish::accepted) return PlanStatus::found;
         }
@@ -147,7 +149,8 @@ class RoadmapQuery {
         const EdgeState shortest = find_free(0, 1);
         if (shortest != EdgeState::blocked) return shortest == EdgeState::free;
         const std::size_t end_of_starts = first_goal(), end_of_goals = nodes();
-        if (!join_side(0, samples(), end_of_starts) || !join_side(1, end_of_starts, end_of_goals)) return false;
+        if (!join_side(0, samples(), end_of_starts) || !join_side(1, end_of_starts, end_of_goals))
+            return false;
         bounds_to_goal_.assign(nodes(), -1.0f);
         return is_lazy_ || check_map();
     }

@@ -18,10 +18,10 @@ struct ArmRoadmap::State {
     RoadmapRule rule;
     std::size_t width = 0;
     int neighbours = 0;
-    std::vector<float> rows;                // (n, width)
-    search::ConfigurationTree blocks{0};    // the same, as the search for neighbours reads them
-    std::vector<search::NodePair> pairs;    // the edges
-    std::vector<float> lengths;             // of the edges
+    std::vector<float> rows;              // (n, width)
+    search::ConfigurationTree blocks{0};  // the same, as the search for neighbours reads them
+    std::vector<search::NodePair> pairs;  // the edges
+    std::vector<float> lengths;           // of the edges
     search::Adjacency<search::RoadmapArc> arcs;
     std::size_t components = 0;
 

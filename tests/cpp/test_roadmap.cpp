@@ -44,9 +44,8 @@ struct RandomGraph {
             pairs.push_back({std::int32_t(edges.back().a), std::int32_t(edges.back().b)});
         }
         for (int k = 0; k < 2; ++k) goals[draw(nodes)] = 1;
-        arcs = join_pairs<RoadmapArc>(nodes, pairs, [](std::int32_t to, std::int32_t edge) {
-            return RoadmapArc{to, edge};
-        });
+        arcs = join_pairs<RoadmapArc>(
+            nodes, pairs, [](std::int32_t to, std::int32_t edge) { return RoadmapArc{to, edge}; });
         const std::vector<double> to_goal = distances(goals, true);
         const double share = random.uniform(0, 1);
         for (std::size_t k = 0; k < nodes; ++k) bounds[k] = to_goal[k] == inf ? 1e9 : share * to_goal[k];
@@ -87,8 +86,8 @@ struct LoneRobot {
 
     explicit LoneRobot(check::Random& random) : cell(check::random_cell(random, 5)) {
         alone = std::make_shared<collision::Checker>(
-            std::make_shared<collision::RobotData>(cell.joints, int(cell.lower.size()), cell.lower, cell.upper,
-                                                   cell.link_bodies, cell.spheres, cell.pairs),
+            std::make_shared<collision::RobotData>(cell.joints, int(cell.lower.size()), cell.lower,
+                                                   cell.upper, cell.link_bodies, cell.spheres, cell.pairs),
             std::make_shared<collision::SceneData>(collision::Primitives{}), 0.0,
             std::vector<std::pair<int, int>>{});
     }
@@ -150,7 +149,8 @@ TEST(pairs_are_those_of_the_lists) {
                 }
         std::sort(expected.begin(), expected.end());
         expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
-        const auto pairs = choose_pairs(n, false, [&](std::int32_t i, auto& near) { near = lists[std::size_t(i)]; });
+        const auto pairs =
+            choose_pairs(n, false, [&](std::int32_t i, auto& near) { near = lists[std::size_t(i)]; });
         CHECK(pairs == expected);
         Components parts(static_cast<std::size_t>(n));
         std::vector<std::int32_t> label(static_cast<std::size_t>(n));
@@ -194,8 +194,8 @@ TEST(ways_over_free_edges_are_shortest_however_many_are_known) {
         double cost = 0;
         for (std::size_t i = 0; i < arcs.size(); ++i) {
             const RandomGraph::Edge& e = graph.edges[arcs[i].edge];
-            CHECK(e.is_free && ((e.a == arcs[i].from && e.b == arcs[i].to) ||
-                                (e.b == arcs[i].from && e.a == arcs[i].to)));
+            CHECK(e.is_free &&
+                  ((e.a == arcs[i].from && e.b == arcs[i].to) || (e.b == arcs[i].from && e.a == arcs[i].to)));
             CHECK(i == 0 ? starts[arcs[i].from] != 0 : arcs[i].from == arcs[i - 1].to);
             cost += e.length;
             CHECK(cost == arcs[i].cost);
@@ -217,14 +217,16 @@ TEST(roadmaps_are_the_same_on_any_number_of_threads_and_as_restored) {
     for (int trial = 0; trial < 5; ++trial) {
         const LoneRobot robot(random);
         const planning::RoadmapRule rule = {400, trial % 2 ? 0 : 7, std::uint64_t(trial)};
-        const planning::ArmRoadmap one(robot.space(), rule, nullptr, 1), many(robot.space(), rule, nullptr, 3);
+        const planning::ArmRoadmap one(robot.space(), rule, nullptr, 1),
+            many(robot.space(), rule, nullptr, 3);
         CHECK(one.nodes() == many.nodes() && one.edges() == many.edges());
         const planning::ArmRoadmap read(robot.space(), rule, one.nodes(), one.edges());
         CHECK(one.nodes() == read.nodes() && one.edges() == read.edges());
         CHECK(one.components() == read.components() && one.neighbours() == read.neighbours());
         planning::RoadmapRule less = rule;
         less.samples = 150;
-        const planning::ArmRoadmap part(robot.space(), less, nullptr, 1), whole(robot.space(), rule, &part, 2);
+        const planning::ArmRoadmap part(robot.space(), less, nullptr, 1),
+            whole(robot.space(), rule, &part, 2);
         CHECK(one.nodes() == whole.nodes() && one.edges() == whole.edges());
     }
 }

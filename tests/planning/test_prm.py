@@ -1,4 +1,4 @@
-"""Roadmaps of arms: paths against Dijkstra on the edges that are free, files, and many scenes on one roadmap."""
+"""Roadmaps of arms: paths against Dijkstra on the edges that are free, files, one roadmap in many scenes."""
 
 import heapq
 import signal
@@ -113,7 +113,9 @@ def test_edges_are_free_of_self_collision_over_their_whole_length(seed):
     for k in range(0, len(nodes), 10):
         far = np.array([space.distance(nodes[k], q) for q in nodes])
         for other in np.argsort(far, kind="stable")[1:6].tolist():
-            assert (frozenset((k, other)) in joined) == bool(space.edge(nodes[max(k, other)], nodes[min(k, other)]))
+            assert (frozenset((k, other)) in joined) == bool(
+                space.edge(nodes[max(k, other)], nodes[min(k, other)])
+            )
     many = Roadmap(robot, samples=150, neighbours=5, rng=seed, threads=2)
     np.testing.assert_array_equal(many.nodes, nodes)
     np.testing.assert_array_equal(many.edges, edges)
@@ -122,7 +124,7 @@ def test_edges_are_free_of_self_collision_over_their_whole_length(seed):
 
 
 def test_an_extended_roadmap_is_the_one_made_at_once():
-    robot, scene, free = cell(1)
+    robot, _, _ = cell(1)
     for neighbours in (7, None):
         whole = Roadmap(robot, samples=500, neighbours=neighbours, rng=3)
         extended = Roadmap(robot, samples=120, neighbours=neighbours, rng=3).extend(180).extend(200)
@@ -189,7 +191,7 @@ def test_a_roadmap_used_in_other_scenes_plans_as_a_fresh_one(planner):
     robot, _, free = cell(2)
     used = Roadmap(robot, samples=200, rng=4)
     rng = np.random.default_rng(0)
-    for k in range(12):
+    for _ in range(12):
         place = rng.uniform(-0.6, 0.6, 3)
         scene = cs.Scene([cs.Sphere(rng.uniform(0.02, 0.2), place, name="ball")])
         open_rows = free[~robot.collides(free, scene)]
@@ -206,7 +208,9 @@ def test_a_roadmap_used_in_other_scenes_plans_as_a_fresh_one(planner):
 def test_what_a_robot_carries_is_checked_against_its_links():
     robot = wall_arm()
     roadmap = Roadmap(robot, samples=300)
-    rod = cs.Scene([cs.Capsule(0.05, 0.8, name="rod")]).attach("rod", "link_2", cs.pose([0.0, 0.4, 0.0]), touch=["link_2"])
+    rod = cs.Scene([cs.Capsule(0.05, 0.8, name="rod")]).attach(
+        "rod", "link_2", cs.pose([0.0, 0.4, 0.0]), touch=["link_2"]
+    )
     space = ArmSpace(robot, rod)
     nodes = roadmap.nodes
     free = ~robot.collides(nodes, rod)
@@ -238,7 +242,9 @@ def test_paths_of_prm_star_approach_the_shortest():
         if not np.isfinite(grid):
             continue
         space = ArmSpace(robot, scene)
-        row = [PRMStar(samples=n, simplify=False).plan(space, free[0], apart).cost for n in (150, 1200, 10000)]
+        row = [
+            PRMStar(samples=n, simplify=False).plan(space, free[0], apart).cost for n in (150, 1200, 10000)
+        ]
         costs.append(row)
         best.append(grid)
     rows = np.array(costs)
@@ -323,7 +329,9 @@ def test_time_limits_and_interrupts_are_heeded():
     roadmap = Roadmap(robot, samples=20000)
     for planner in (PRM, LazyPRM):
         begin = time.perf_counter()
-        plan = planner(roadmap=roadmap, time_limit=0.002).plan(ArmSpace(robot, scene), [1.0, 0.0], [-2.0, 0.0])
+        plan = planner(roadmap=roadmap, time_limit=0.002).plan(
+            ArmSpace(robot, scene), [1.0, 0.0], [-2.0, 0.0]
+        )
         assert time.perf_counter() - begin < 1.0
         assert not plan
         assert "time limit" in plan.reason
@@ -347,7 +355,11 @@ BAD = {
     "whole": (lambda r, s: Roadmap(r, samples=1.5), InputTypeError, "whole number"),
     "bare": (lambda r, s: Roadmap(cs.load_robot("ur3")), InputError, "collision geometry"),
     "more": (lambda r, s: Roadmap(r, samples=4).extend(-1), InputError, "samples is -1"),
-    "option": (lambda r, s: cs.plan(r, [2, 0], [2, 1], s, planner="prm", samples=-1), InputError, "samples is"),
+    "option": (
+        lambda r, s: cs.plan(r, [2, 0], [2, 1], s, planner="prm", samples=-1),
+        InputError,
+        "samples is",
+    ),
     "kind": (
         lambda r, s: cs.plan(r, [2, 0], [2, 1], s, planner="prm", roadmap=5),
         InputTypeError,
@@ -368,7 +380,11 @@ BAD = {
         InputError,
         "make it with neighbours=None",
     ),
-    "start": (lambda r, s: cs.plan(r, [0, 0], [2, 0], s, planner="lazy_prm", samples=9), InputError, "touches"),
+    "start": (
+        lambda r, s: cs.plan(r, [0, 0], [2, 0], s, planner="lazy_prm", samples=9),
+        InputError,
+        "touches",
+    ),
 }
 
 

@@ -25,7 +25,8 @@ struct RoadmapArc {
 };
 
 // Above e (1 + 1/d) log n nearest neighbours, shortest ways on a roadmap of n nodes in d dimensions approach
-// the shortest (Karaman & Frazzoli 2011, "Sampling-based algorithms for optimal motion planning", theorem 35).
+// the shortest (Karaman & Frazzoli 2011, "Sampling-based algorithms for optimal motion planning", theorem
+// 35).
 inline int star_neighbours(std::size_t nodes, int dimensions) {
     constexpr double e = 2.718281828459045;
     const double factor = e * (1 + 1.0 / std::max(dimensions, 1));
@@ -53,7 +54,8 @@ std::vector<NodePair> choose_pairs(std::int32_t nodes, bool is_mutual, const Lis
 
 // What lies at each node: make_entry(node at the other end, number of the pair).
 template <class Entry, class MakeEntry>
-Adjacency<Entry> join_pairs(std::size_t nodes, const std::vector<NodePair>& pairs, const MakeEntry& make_entry) {
+Adjacency<Entry> join_pairs(std::size_t nodes, const std::vector<NodePair>& pairs,
+                            const MakeEntry& make_entry) {
     return {nodes, [&](const auto& add) {
                 visit_range(0, pairs.size(), [&](std::size_t k) {
                     const auto [i, j] = pairs[k];

@@ -1,5 +1,5 @@
-// A shortest way on a graph from any of its starts to any of its goals, by A*. An edge may be unchecked: it is
-// checked when a node would be settled through it, so that few are (Cohen, Phillips & Likhachev 2014,
+// A shortest way on a graph from any of its starts to any of its goals, by A*. An edge may be unchecked: it
+// is checked when a node would be settled through it, so that few are (Cohen, Phillips & Likhachev 2014,
 // "Planning single-arm manipulations with n-arm robots", lazy A*). A graph offers:
 //
 //   graph.each_arc(node, visit)  visit(to, edge, length) for each arc that leaves a node

@@ -32,7 +32,8 @@ class RoadmapPlanner(EdgePlanner):
 
     samples: int = option(SAMPLES, "points drawn for the roadmap", minimum=0, maximum=MOST_SAMPLES)
     roadmap: Roadmap | str | None = option(
-        None, "a Roadmap, or the path of a saved one; by default one is made of samples= and the seed, and kept"
+        None,
+        "a Roadmap, or the path of a saved one; by default one is made of samples= and the seed, and kept",
     )
 
     _is_lazy = True
@@ -49,17 +50,14 @@ class RoadmapPlanner(EdgePlanner):
             return given
         if given is not None:
             return Roadmap.load(given, space.geometry)
-        rule = {
-            "samples": self.samples,
-            "neighbours": self._wanted_neighbours,
-            "margin": space.margin,
-            "rng": draw_seed(rng),
-        }
+        count, seed = self._wanted_neighbours, draw_seed(rng)
         kept: dict[Any, Roadmap] = space.geometry._kept.setdefault("roadmaps", {})
-        key = tuple(rule.values())
+        key = self.samples, count, space.margin, seed
         found = kept.pop(key, None)
         if found is None:
-            found = Roadmap(space.geometry, **rule)
+            found = Roadmap(
+                space.geometry, samples=self.samples, neighbours=count, margin=space.margin, rng=seed
+            )
             for name in list(kept)[: max(0, len(kept) - KEPT_ROADMAPS + 1)]:
                 kept.pop(name, None)
         kept[key] = found
@@ -79,9 +77,7 @@ class RoadmapPlanner(EdgePlanner):
     ) -> list[ArmPlan]:
         """See EdgePlanner."""
         world, options = self._open_world(space, rng), self._make_options(rng)
-        return plan_each_on_roadmap(
-            world, space.bounds, space.wraps, rows, options, self._is_lazy, threads
-        )
+        return plan_each_on_roadmap(world, space.bounds, space.wraps, rows, options, self._is_lazy, threads)
 
     def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> Plan:
         """See EdgePlanner."""

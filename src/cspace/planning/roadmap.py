@@ -125,7 +125,9 @@ class Roadmap:
         other joints, limits or spheres.
         """
         geometry = robot.collision
-        header, nodes, edges = read_roadmap(path, geometry.robot, fingerprint_geometry(geometry), geometry.dof)
+        header, nodes, edges = read_roadmap(
+            path, geometry.robot, fingerprint_geometry(geometry), geometry.dof
+        )
         rule = {name: header[name] for name in ("samples", "neighbours", "margin", "seed")}
         space = ArmSpace(geometry, margin=rule["margin"])
         core = restore_roadmap(
@@ -141,7 +143,7 @@ class Roadmap:
         return cls._restore(geometry, rule, core)
 
     def _world(self, space: ArmSpace, proves_search: bool, resolution: float) -> RoadmapWorld:
-        """What is known of it in a scene. Raises InputError for a space of another robot or a larger margin."""
+        """What is known of it in a scene; InputError for a space of another robot or a larger margin."""
         self._check_space(space)
         attached = space.scene is not None and bool(space.scene.attached)
         version = None if space.scene is None else space.scene.version

@@ -96,7 +96,7 @@ def read_roadmap(
 def read_header(line: bytes, name: str) -> dict[str, Any]:
     """The fields of the second line; RoadmapError for others."""
     try:
-        header = json.loads(line)
+        header: dict[str, Any] = json.loads(line)
     except (ValueError, RecursionError):
         raise RoadmapError(
             "the file is damaged: its second line is no JSON; save the roadmap again", path=name

@@ -69,13 +69,14 @@ class Roadmap {
 
     void choose_pairs() {
         const bool is_radius = key_.neighbours <= 0;
-        pairs_ = search::choose_pairs(std::int32_t(nodes_.size()), is_radius, [&](std::int32_t i, auto& found) {
-            const Point at = nodes_[std::size_t(i)].at;
-            if (is_radius)
-                near_.within(at, radius_, found);
-            else
-                near_.nearest(at, std::size_t(key_.neighbours) + 1, found);
-        });
+        pairs_ =
+            search::choose_pairs(std::int32_t(nodes_.size()), is_radius, [&](std::int32_t i, auto& found) {
+                const Point at = nodes_[std::size_t(i)].at;
+                if (is_radius)
+                    near_.within(at, radius_, found);
+                else
+                    near_.nearest(at, std::size_t(key_.neighbours) + 1, found);
+            });
     }
 
     // Keeps the pairs that see each other.
