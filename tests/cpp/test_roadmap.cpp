@@ -260,6 +260,56 @@ TEST(roadmaps_that_do_not_fit_are_refused) {
     CHECK(is_refused({60, -1, 0}, nodes, {}));
 }
 
+TEST(plans_on_a_roadmap_are_the_same_lazy_or_not_and_whatever_was_planned_before) {
+    check::Random random(7);
+    int found = 0;
+    for (int trial = 0; trial < 12; ++trial) {
+        LoneRobot robot(random);
+        const std::shared_ptr<const collision::Checker> checker = std::move(robot.cell.checker);
+        const std::size_t width = robot.cell.lower.size();
+        const planning::ArmSpace space = {*checker, robot.cell.lower, robot.cell.upper, {}};
+        const auto map = std::make_shared<const planning::ArmRoadmap>(
+            robot.space(), planning::RoadmapRule{150, 6, 0}, nullptr, 1);
+        // What the roadmap proves of self-collision is used where the scene allows no pair.
+        const auto world = [&] {
+            return planning::RoadmapWorld(map, checker, trial % 2 == 0, planning::EdgeTest::proved, 0);
+        };
+        const planning::RoadmapWorld used = world();
+        std::vector<std::vector<double>> ends;
+        const auto memory = checker->borrow_workspace();
+        for (int i = 0; i < 200 && ends.size() < 6; ++i) {
+            ends.push_back(robot.cell.configuration(random));
+            if (!checker->is_free(ends.back().data(), *memory)) ends.pop_back();
+        }
+        std::vector<planning::ArmProblem> problems;
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) problems.push_back({ends[i], ends[i + 1]});
+        planning::ArmOptions options;
+        options.edges = 3000, options.simplify = trial % 3 != 0;
+        const auto plans = planning::plan_each_on_roadmap(space, problems, options, used, true, 2);
+        for (std::size_t i = 0; i < problems.size(); ++i) {
+            const auto alone = planning::plan_on_roadmap(space, problems[i], options, world(), true);
+            const auto full = planning::plan_on_roadmap(space, problems[i], options, used, false);
+            CHECK(plans[i].status == alone.status && plans[i].path == alone.path);
+            CHECK(plans[i].stats.edges == alone.stats.edges && alone.stats.edges <= options.edges);
+            if (full.status != planning::PlanStatus::edge_budget) CHECK(full.path == alone.path);
+            if (alone.status != planning::PlanStatus::found) continue;
+            ++found;
+            CHECK(alone.certified && alone.cost <= alone.raw_cost * (1 + 1e-12));
+            for (std::size_t k = 0; k + width < alone.path.size(); k += width)
+                for (int step = 0; step <= 50; ++step) {
+                    std::vector<double> q(width);
+                    for (std::size_t j = 0; j < width; ++j)
+                        q[j] =
+                            alone.path[k + j] + step / 50.0 * (alone.path[k + width + j] - alone.path[k + j]);
+                    CHECK(checker->clearance(q.data()).distance > -1e-5);
+                }
+        }
+        const auto [nodes, edges] = used.count_known();
+        CHECK(std::size_t(nodes) <= map->size() && std::size_t(edges) <= map->edge_count());
+    }
+    CHECK(found > 10);
+}
+
 TEST(making_and_searching_heed_interrupts) {
     check::Random random(6);
     const LoneRobot robot(random);
