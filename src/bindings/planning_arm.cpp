@@ -144,7 +144,8 @@ nb::dict stats_of(const NamedPlan& named) {
     stats["search_seconds"] = s.search_seconds, stats["simplify_seconds"] = s.simplify_seconds;
     stats["proof_seconds"] = s.proof_seconds, stats["improve_seconds"] = s.improve_seconds;
     stats["improvements"] = s.improvements;
-    stats["start_nodes"] = s.start_nodes, stats["goal_nodes"] = s.goal_nodes;
+    if (named.plan.status == PlanStatus::disconnected)
+        stats["start_nodes"] = s.start_nodes, stats["goal_nodes"] = s.goal_nodes;
     return stats;
 }
 
