@@ -71,6 +71,23 @@ def test_a_path_is_free_and_begins_and_ends_as_told(seed):
     assert found
 
 
+@pytest.mark.parametrize("gap", [0.01, 0.005, 0.004])
+def test_an_arm_finds_its_way_out_of_a_slot(gap):
+    """The last link of a planar arm lies between two plates: it has to be pulled straight out."""
+    robot, rng = cs.load_robot("planar_3r"), np.random.default_rng(3)
+    for _ in range(8):
+        while True:
+            q, goal = robot.random_configuration(2, rng=rng)
+            T = robot.fk_all(q)[-2]
+            sides = [T @ cs.pose([0.35, side * (0.06 + gap), 0]) for side in (1, -1)]
+            scene = cs.Scene([cs.Box([0.6, 0.02, 0.4], T_side) for T_side in sides])
+            if abs(q[2]) < 2 and not robot.collides([q, goal], scene).any():  # a folded one may be shut in
+                break
+        plan = cs.plan(robot, q, goal, scene)
+        assert plan, plan.reason
+        assert judge_path(robot, scene, plan.path) > -oracle.BAND
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_many_plans_are_those_of_each_alone(seed):
     robot, scene, free = cell(seed)

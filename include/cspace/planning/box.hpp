@@ -44,6 +44,17 @@ struct Box {
             q[k] = x;
         }
     }
+    // The configuration of a point of the unit cube, in a cube around a row.
+    void move_within(const float* at, float half_side, const float* unit, float* q) const {
+        constexpr float half_turn = float(pi), turn = float(2 * pi);
+        for (int k = 0; k < width; ++k) {
+            const float x = at[k] + half_side * (2 * unit[k] - 1);
+            if (is_wrapping(k))
+                q[k] = x > half_turn ? x - turn : x < -half_turn ? x + turn : x;
+            else
+                q[k] = std::clamp(x, lower[k], upper[k]);
+        }
+    }
     // The configuration of a point of the unit cube.
     void scale(const float* unit, float* q) const {
         for (int k = 0; k < width; ++k) q[k] = lower[k] + unit[k] * (upper[k] - lower[k]);

@@ -1,7 +1,7 @@
 // RRT-Connect: two trees grow towards samples and towards each other (Kuffner & LaValle 2000, "RRT-Connect:
 // an efficient approach to single-query path planning"). Starts and goals are the roots of the trees. The
-// smaller tree grows. Nodes near obstacles take only samples near to them (dynamic_domain.hpp), which
-// is given up when nothing grows any more.
+// smaller tree grows. Nodes near obstacles take only samples near to them (dynamic_domain.hpp). Where nothing
+// grows any more, that is given up; edges get shorter then, and some samples are drawn near to nodes.
 //
 // A space offers:
 //   space.box()                   see box.hpp
@@ -82,13 +82,15 @@ class RrtConnect {
         std::vector<float> radii;  // of the domains of the nodes
     };
     static constexpr float unbounded = DynamicDomain::unbounded;
-    // So many samples in a row outside all domains: the trees starve.
-    static constexpr int most_rejections = 20000;
+    // So many samples in a row outside all domains: the trees starve. From then on edges are so much shorter,
+    // and after so many samples without a new node every second one is drawn near to a node.
+    static constexpr int most_rejections = 20000, most_failures = 1000;
+    static constexpr float starving_range = 0.25f;
 
     Space& space_;
     const Box box_;
     search::HaltonPoints points_;
-    const float range_;
+    float range_;
     std::array<Tree, 2> trees_;
     std::vector<std::pair<int, int>> straight_;
     std::size_t next_straight_ = 0;
@@ -96,6 +98,8 @@ class RrtConnect {
     Counts counts_;
     bool has_domains_ = true;
     int rejections_ = 0;
+    int failures_ = 0;         // samples without domains since the last new node
+    std::int64_t locals_ = 0;  // samples drawn near to nodes
     float least_distance_ = unbounded;
     std::array<Row, 2> nearest_rows_ = {};
 
@@ -106,7 +110,7 @@ class RrtConnect {
     int add_node(int t, const float* q, int parent, float length) {
         const float cost = parent < 0 ? 0 : nodes(t).cost(parent) + length;
         trees_[std::size_t(t)].radii.push_back(unbounded);
-        rejections_ = 0;
+        rejections_ = failures_ = 0;
         return nodes(t).add(q, parent, cost);
     }
     void remove_branch(int t, int node) {
@@ -152,7 +156,10 @@ class RrtConnect {
         const int t = nodes(0).size() < nodes(1).size() ? 0 : 1;
         Row sample, from, to;
         ++counts_.samples;
-        box_.scale(points_.next(), sample.data());
+        if (has_domains_ || ++failures_ < most_failures || failures_ % 2)
+            box_.scale(points_.next(), sample.data());
+        else
+            draw_locally(nodes(t), sample);
         const search::NearRow near = space_.find_nearest(nodes(t), sample.data());
         const float far = std::sqrt(near.square), domain = radius(t, near.row);
         if (has_domains_ && domain < far) return reject();
@@ -169,9 +176,19 @@ class RrtConnect {
         radius(t, near.row) = DynamicDomain::after_free(domain);
         return connect(t, add_node(t, to.data(), near.row, length), to.data());
     }
+    // A sample near to a node: trees that starve in a narrow place grow by short edges. Each node has its
+    // turn, and sizes from the range down to a hundredth of it.
+    void draw_locally(const search::ConfigurationTree& tree, Row& sample) {
+        constexpr std::int64_t sizes = 8;
+        const std::int64_t turn = locals_++;
+        const float half_side = std::ldexp(range_, -int(turn % sizes));
+        Row at;
+        tree.copy_row(int(turn / sizes % tree.size()), at.data());
+        box_.move_within(at.data(), half_side, points_.next(), sample.data());
+    }
     bool reject() {
         ++counts_.rejected;
-        if (++rejections_ == most_rejections) has_domains_ = false;
+        if (++rejections_ == most_rejections) has_domains_ = false, range_ *= starving_range;
         return false;
     }
 
