@@ -3,7 +3,6 @@
 #include "cspace/planning/aorrtc.hpp"
 #include "cspace/planning/rrt_connect.hpp"
 #include "planning_arm_query.hpp"
-#include "planning_halton.hpp"
 
 namespace cspace::planning {
 

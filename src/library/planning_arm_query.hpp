@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/made_once.hpp"
 #include "cspace/math/threads.hpp"
 #include "cspace/math/wrapping.hpp"
 #include "cspace/planning/path.hpp"
@@ -226,6 +227,12 @@ class ArmQuery {
         plan_.certified = options_.answer == EdgeTest::proved;
     }
 };
+
+// Of so many dimensions; shared by all searches.
+inline const search::HaltonTable& halton_table(int width) {
+    static const MadeOnce<search::HaltonTable> tables[search::most_dimensions + 1];
+    return tables[width].get([&] { return std::make_unique<search::HaltonTable>(width); });
+}
 
 inline void require(bool holds, const char* rule) {
     if (!holds) throw std::invalid_argument(rule);

@@ -8,7 +8,6 @@
 #include "planning_arm_edges.hpp"
 #include "planning_arm_query.hpp"
 #include "planning_arm_roadmap_state.hpp"
-#include "planning_halton.hpp"
 
 namespace cspace::planning {
 

@@ -5,7 +5,6 @@
 #include "cspace/planning/rrt_connect.hpp"
 #include "planning_arm_query.hpp"
 #include "planning_arm_roadmap_state.hpp"
-#include "planning_halton.hpp"
 
 namespace cspace::planning {
 
