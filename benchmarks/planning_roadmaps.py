@@ -1,7 +1,7 @@
 """Roadmaps of arms on MotionBenchMaker problems, beside RRT-Connect.
 
 Usage: python benchmarks/planning_roadmaps.py [--problems 60] [--repeat 5] [--robots panda ur5 fetch]. Needs
-the shared data folder ($CSPACE_DATA, default ../shared/data). Writes benchmarks/results/planning_roadmaps.json.
+the shared data folder ($CSPACE_DATA, default ../shared/data). Writes results/planning_roadmaps.json.
 
 A roadmap is made per robot and number of samples, and used in all scenes. "cold" is a plan in a scene that
 the roadmap was not used in before, "warm" the same plan again. Times are those of the thread's processor
