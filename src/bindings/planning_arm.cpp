@@ -3,11 +3,13 @@
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
 #include "collision.hpp"
+#include "library/planning_arm_roadmap.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -108,20 +110,66 @@ NamedPlan plan_one(const collision::Checker& checker, const ConstDoubles& bounds
     return {plan_arm(space, problem, options, more...), &checker, checker.dof()};
 }
 
+std::vector<ArmProblem> read_problems(const collision::Checker& checker,
+                                      const std::vector<std::pair<ConstDoubles, ConstDoubles>>& given) {
+    std::vector<ArmProblem> problems;
+    for (const auto& [starts, goals] : given)
+        problems.push_back({read_rows(checker, starts), read_rows(checker, goals)});
+    return problems;
+}
+std::vector<NamedPlan> name_plans(std::vector<ArmPlan> plans, const collision::Checker& checker) {
+    std::vector<NamedPlan> named;
+    for (ArmPlan& plan : plans) named.push_back({std::move(plan), &checker, checker.dof()});
+    return named;
+}
+
 template <class... More>
 std::vector<NamedPlan> plan_each(const collision::Checker& checker, const ConstDoubles& bounds,
                                  const Bytes& wraps,
                                  const std::vector<std::pair<ConstDoubles, ConstDoubles>>& given,
                                  const ArmOptions& options, int threads, const More&... more) {
     const ArmSpace space = read_space(checker, bounds, wraps);
-    std::vector<ArmProblem> problems;
-    for (const auto& [starts, goals] : given)
-        problems.push_back({read_rows(checker, starts), read_rows(checker, goals)});
+    const std::vector<ArmProblem> problems = read_problems(checker, given);
     const nb::gil_scoped_release release;
-    std::vector<NamedPlan> plans;
-    for (ArmPlan& plan : plan_arms(space, problems, options, threads, more...))
-        plans.push_back({std::move(plan), &checker, checker.dof()});
-    return plans;
+    return name_plans(plan_arms(space, problems, options, threads, more...), checker);
+}
+
+std::shared_ptr<ArmRoadmap> make_roadmap(const collision::Checker& checker, const ConstDoubles& bounds,
+                                         const Bytes& wraps, std::int64_t samples, int neighbours,
+                                         std::uint64_t seed, const ArmRoadmap* part, int threads) {
+    const ArmSpace robot = read_space(checker, bounds, wraps);
+    const nb::gil_scoped_release release;
+    return std::make_shared<ArmRoadmap>(robot, RoadmapRule{samples, neighbours, seed}, part, threads);
+}
+std::shared_ptr<ArmRoadmap> restore_roadmap(const collision::Checker& checker, const ConstDoubles& bounds,
+                                            const Bytes& wraps, std::int64_t samples, int neighbours,
+                                            std::uint64_t seed, const ConstDoubles& nodes,
+                                            const Plain<const std::int32_t>& edges) {
+    const ArmSpace robot = read_space(checker, bounds, wraps);
+    const std::span<const double> rows = read_rows(checker, nodes);
+    require(edges.ndim() == 2 && edges.shape(1) == 2, "edges must be an array (e, 2)");
+    const std::span<const std::int32_t> pairs = {edges.data, std::size_t(edges.size)};
+    const nb::gil_scoped_release release;
+    return std::make_shared<ArmRoadmap>(robot, RoadmapRule{samples, neighbours, seed}, rows, pairs);
+}
+NamedPlan plan_one_on_roadmap(const RoadmapWorld& world, const ConstDoubles& bounds, const Bytes& wraps,
+                              const ConstDoubles& starts, const ConstDoubles& goals,
+                              const ArmOptions& options, bool is_lazy) {
+    const collision::Checker& checker = world.checker();
+    const ArmSpace space = read_space(checker, bounds, wraps);
+    const ArmProblem problem = {read_rows(checker, starts), read_rows(checker, goals)};
+    const nb::gil_scoped_release release;
+    return {plan_on_roadmap(space, problem, options, world, is_lazy), &checker, checker.dof()};
+}
+std::vector<NamedPlan> plan_all_on_roadmap(const RoadmapWorld& world, const ConstDoubles& bounds,
+                                           const Bytes& wraps,
+                                           const std::vector<std::pair<ConstDoubles, ConstDoubles>>& given,
+                                           const ArmOptions& options, bool is_lazy, int threads) {
+    const collision::Checker& checker = world.checker();
+    const ArmSpace space = read_space(checker, bounds, wraps);
+    const std::vector<ArmProblem> problems = read_problems(checker, given);
+    const nb::gil_scoped_release release;
+    return name_plans(plan_each_on_roadmap(space, problems, options, world, is_lazy, threads), checker);
 }
 
 nb::dict stats_of(const NamedPlan& named) {
@@ -133,6 +181,8 @@ nb::dict stats_of(const NamedPlan& named) {
     stats["search_seconds"] = s.search_seconds, stats["simplify_seconds"] = s.simplify_seconds;
     stats["proof_seconds"] = s.proof_seconds, stats["improve_seconds"] = s.improve_seconds;
     stats["improvements"] = s.improvements;
+    if (named.plan.status == PlanStatus::disconnected)
+        stats["start_nodes"] = s.start_nodes, stats["goal_nodes"] = s.goal_nodes;
     return stats;
 }
 
@@ -181,4 +231,41 @@ void bind_planning_arm(nb::module_& m) {
           "options"_a, "tree"_a, nb::keep_alive<0, 1>(), "The same by a tree from the starts.");
     m.def("plan_arms", &plan_each<TreeOptions>, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a,
           "threads"_a, "tree"_a, "The same by a tree from the starts.");
+    nb::class_<ArmRoadmap>(m, "ArmRoadmap", "A roadmap of an arm.")
+        .def("__len__", &ArmRoadmap::size)
+        .def_prop_ro("edge_count", &ArmRoadmap::edge_count)
+        .def_prop_ro("neighbours", &ArmRoadmap::neighbours)
+        .def_prop_ro("components", &ArmRoadmap::components)
+        .def_prop_ro(
+            "nodes",
+            [](const ArmRoadmap& map) {
+                const std::vector<double> nodes = map.nodes();
+                const npy_intp width = std::max(map.width(), 1);
+                return Doubles({npy_intp(nodes.size()) / width, map.width()}, nodes.data());
+            },
+            "The configurations (n, dof).")
+        .def_prop_ro(
+            "edges",
+            [](const ArmRoadmap& map) {
+                const std::vector<std::int32_t> edges = map.edges();
+                return Plain<std::int32_t>({npy_intp(edges.size() / 2), 2}, edges.data());
+            },
+            "The pairs of nodes (e, 2) that are joined.");
+    nb::class_<RoadmapWorld>(m, "RoadmapWorld", "What is known of a roadmap in a scene.")
+        .def(nb::new_([](std::shared_ptr<ArmRoadmap> roadmap, std::shared_ptr<collision::Checker> checker,
+                         bool is_self_free, bool proves_search, double resolution) {
+                 const EdgeTest search = proves_search ? EdgeTest::proved : EdgeTest::sampled;
+                 return std::make_shared<RoadmapWorld>(roadmap, checker, is_self_free, search,
+                                                       float(resolution));
+             }),
+             "roadmap"_a, "checker"_a, "is_self_free"_a, "proves_search"_a, "resolution"_a)
+        .def_prop_ro("known", &RoadmapWorld::count_known, "How many nodes and edges were checked.");
+    m.def("make_roadmap", &make_roadmap, "checker"_a, "bounds"_a, "wraps"_a, "samples"_a, "neighbours"_a,
+          "seed"_a, "part"_a.none(), "threads"_a, "A roadmap of a robot alone.");
+    m.def("restore_roadmap", &restore_roadmap, "checker"_a, "bounds"_a, "wraps"_a, "samples"_a,
+          "neighbours"_a, "seed"_a, "nodes"_a, "edges"_a, "A roadmap that was made before.");
+    m.def("plan_on_roadmap", &plan_one_on_roadmap, "world"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a,
+          "options"_a, "is_lazy"_a, nb::keep_alive<0, 1>(), "See plan_arm.");
+    m.def("plan_each_on_roadmap", &plan_all_on_roadmap, "world"_a, "bounds"_a, "wraps"_a, "problems"_a,
+          "options"_a, "is_lazy"_a, "threads"_a, "See plan_arms; the world must outlive the plans.");
 }

@@ -452,6 +452,48 @@ def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.floa
 @overload
 def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, threads: int, tree: TreeOptions) -> list[ArmPlan]:
     """The same by a tree from the starts."""
+class ArmRoadmap:
+    """A roadmap of an arm."""
+
+    def __len__(self) -> int: ...
+
+    @property
+    def edge_count(self) -> int: ...
+
+    @property
+    def neighbours(self) -> int: ...
+
+    @property
+    def components(self) -> int: ...
+
+    @property
+    def nodes(self) -> numpy.typing.NDArray[numpy.float64]:
+        """The configurations (n, dof)."""
+
+    @property
+    def edges(self) -> numpy.typing.NDArray[numpy.int32]:
+        """The pairs of nodes (e, 2) that are joined."""
+
+class RoadmapWorld:
+    """What is known of a roadmap in a scene."""
+
+    def __init__(self, roadmap: ArmRoadmap, checker: CollisionChecker, is_self_free: bool, proves_search: bool, resolution: float) -> None: ...
+
+    @property
+    def known(self) -> tuple[int, int]:
+        """How many nodes and edges were checked."""
+
+def make_roadmap(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], samples: int, neighbours: int, seed: int, part: ArmRoadmap | None, threads: int) -> ArmRoadmap:
+    """A roadmap of a robot alone."""
+
+def restore_roadmap(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], samples: int, neighbours: int, seed: int, nodes: numpy.typing.NDArray[numpy.float64], edges: numpy.typing.NDArray[numpy.int32]) -> ArmRoadmap:
+    """A roadmap that was made before."""
+
+def plan_on_roadmap(world: RoadmapWorld, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions, is_lazy: bool) -> ArmPlan:
+    """See plan_arm."""
+
+def plan_each_on_roadmap(world: RoadmapWorld, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, is_lazy: bool, threads: int) -> list[ArmPlan]:
+    """See plan_arms; the world must outlive the plans."""
 
 class RouteBase:
     """The compiled half of cspace.navigation.Route."""

@@ -17,6 +17,7 @@ __all__ = [
     "MeshError",
     "MissingExtraError",
     "Renamed",
+    "RoadmapError",
     "TimeLimitError",
     "UnknownNameError",
     "attribute_error",
@@ -141,6 +142,10 @@ class MapError(_FileError):
 
 class MeshError(_FileError):
     """A mesh file that cannot be read; contains the file and, if known, the line."""
+
+
+class RoadmapError(_FileError):
+    """A roadmap file that cannot be read, or is that of another robot; contains the file."""
 
 
 class MissingExtraError(CspaceError, ImportError):

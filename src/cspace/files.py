@@ -12,7 +12,15 @@ from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
-from cspace.errors import DescriptionError, InputError, InputTypeError, MapError, MeshError, shorten
+from cspace.errors import (
+    DescriptionError,
+    InputError,
+    InputTypeError,
+    MapError,
+    MeshError,
+    RoadmapError,
+    shorten,
+)
 
 __all__ = [
     "YamlLine",
@@ -35,7 +43,7 @@ STEM: Final = 40
 CONTENT: Final = re.compile(r"""(?:(?<!\S)'(?:[^']|'')*'|(?<!\S)"[^"]*"|[^#]|(?<=\S)#)*""")
 """The content of a line of YAML before its comment: a # that follows a blank and is outside quotes."""
 
-FileError = DescriptionError | MapError | MeshError
+FileError = DescriptionError | MapError | MeshError | RoadmapError
 """What is raised for a file that cannot be read."""
 
 ENTRY: Final = re.compile(r"( *)(?:(-)|([A-Za-z_][\w.-]*)\s*:)(?:\s+(.*))?")

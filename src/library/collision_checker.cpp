@@ -103,7 +103,7 @@ WorkspaceMemory::WorkspaceMemory(const Robot& robot, int n_primitives) {
 
 Checker::Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const SceneData> scene,
                  double margin, std::span<const std::pair<int, int>> allowed)
-    : robot_(std::move(robot)), data_(std::move(scene)), scene_(data_->view()) {
+    : robot_(std::move(robot)), data_(std::move(scene)), view_(robot_->view()), scene_(data_->view()) {
     scene_.margin = scene_.pair_margin = float(margin) + robot_->slack();
     scene_.exact = {this, &reaches_primitive, &measure_primitive, &reaches_sphere, &measure_sphere};
     if (!allowed.empty()) {
@@ -121,6 +121,24 @@ Checker::Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const S
             shifts_[std::size_t(joint.coordinate)] = 0;
     }
     check_base();
+}
+
+Checker::Checker(const Checker& other, const Robot& view)
+    : robot_(other.robot_),
+      data_(other.data_),
+      view_(view),
+      allowed_(other.allowed_),
+      scene_(other.scene_),
+      base_contact_(other.base_contact_),
+      shifts_(other.shifts_) {
+    scene_.exact.owner = this;
+    if (scene_.allowed) scene_.allowed = allowed_.data();
+}
+
+std::unique_ptr<Checker> Checker::ignore_pairs() const {
+    Robot view = view_;
+    view.n_pairs = view.n_link_pairs = view.pair_stride = 0;
+    return std::unique_ptr<Checker>(new Checker(*this, view));
 }
 
 bool Checker::reaches_primitive(const void* owner, int sphere, const float* frame, int primitive, float gap) {

@@ -41,7 +41,10 @@ class Checker {
     Checker(std::shared_ptr<const RobotData> robot, std::shared_ptr<const SceneData> scene, double margin,
             std::span<const std::pair<int, int>> allowed);
 
-    const Robot& robot() const { return robot_->view(); }
+    // The same checks, of a robot that may touch itself: for edges that are known to be free of that.
+    std::unique_ptr<Checker> ignore_pairs() const;
+
+    const Robot& robot() const { return view_; }
     const Scene& scene() const { return scene_; }
     const SceneData& scene_data() const { return *data_; }
     int dof() const { return robot().n_coordinates; }
@@ -91,6 +94,7 @@ class Checker {
   private:
     std::shared_ptr<const RobotData> robot_;
     std::shared_ptr<const SceneData> data_;
+    Robot view_;
     std::vector<unsigned char> allowed_;
     Scene scene_;
     Contact base_contact_;
@@ -98,6 +102,7 @@ class Checker {
     mutable std::mutex busy_;
     mutable std::vector<std::unique_ptr<WorkspaceMemory>> spare_;
 
+    Checker(const Checker& other, const Robot& view);
     void check_base();
     // Calls check(memory, columns, count, row) for eight rows after the other, rounded to float.
     template <class Check>

@@ -199,6 +199,7 @@ class OneCheck {
     }
 
     bool touches_itself() {
+        if (robot_.n_pairs == 0) return false;
         for (int a = 0; a < robot_.n_bodies; ++a)
             for (int first = a / float_lanes * float_lanes; first < stride_; first += float_lanes) {
                 const unsigned wanted = robot_.pair_lanes[(a * stride_ + first) / float_lanes];

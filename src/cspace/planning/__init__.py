@@ -9,7 +9,9 @@ from cspace.planning.joint_space.space import JointSpace
 from cspace.planning.joint_space.volumes import Volume
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
+from cspace.planning.prm import PRM, LazyPRM, PRMStar
 from cspace.planning.region import Region
+from cspace.planning.roadmap import Roadmap
 from cspace.planning.rrt import RRT, InformedRRTStar, RRTStar
 from cspace.planning.rrt_connect import RRTConnect
 from cspace.planning.space import ArmSpace
@@ -19,6 +21,7 @@ from cspace.planning.two_joints.configuration_space import ConfigurationSpace
 __all__ = [
     "AORRTC",
     "PLANNERS",
+    "PRM",
     "RRT",
     "STATUSES",
     "ArmPlanner",
@@ -29,11 +32,14 @@ __all__ = [
     "FreeComponent",
     "InformedRRTStar",
     "JointSpace",
+    "LazyPRM",
+    "PRMStar",
     "Plan",
     "Projection",
     "RRTConnect",
     "RRTStar",
     "Region",
+    "Roadmap",
     "Slice",
     "Volume",
     "configuration_space",

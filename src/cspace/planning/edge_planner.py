@@ -19,7 +19,7 @@ from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
 from cspace.tolerances import LARGEST_NUMBER
 
-ENDS = ("found", "edge budget", "time limit", "invalid start", "invalid goals")
+ENDS = ("found", "edge budget", "time limit", "invalid start", "invalid goals", "disconnected")
 """How the core ends, in its order."""
 
 

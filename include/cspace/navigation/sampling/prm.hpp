@@ -9,10 +9,10 @@
 #include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/sampling/problem.hpp"
 #include "cspace/navigation/sampling/samples.hpp"
-#include "cspace/search/adjacency.hpp"
-#include "cspace/search/best_first.hpp"
 #include "cspace/search/cache.hpp"
 #include "cspace/search/nearest_neighbours.hpp"
+#include "cspace/search/roadmap.hpp"
+#include "cspace/search/shortest_way.hpp"
 
 namespace cspace::navigation::sampling {
 
@@ -48,8 +48,8 @@ class Roadmap {
     search::Buckets near_;
     double radius_ = 0;
     std::vector<Located> nodes_;
-    std::vector<std::pair<std::int32_t, std::int32_t>> pairs_;  // tested, the larger first
-    search::Adjacency<std::int32_t> edges_;                     // the nodes at the other ends
+    std::vector<search::NodePair> pairs_;    // tested
+    search::Adjacency<std::int32_t> edges_;  // the nodes at the other ends
 
     Roadmap(const maps::PolygonWorld& world, const RoadmapKey& key, Samples draws)
         : key_(key), near_(draws.box().low, draws.box().high) {
@@ -68,39 +68,28 @@ class Roadmap {
     }
 
     void choose_pairs() {
-        std::vector<std::int32_t> found;
-        InterruptPoll poll(16);
-        for (std::int32_t i = 0; i < std::int32_t(nodes_.size()); ++i) {
-            poll.step();
-            const Point at = nodes_[std::size_t(i)].at;
-            if (key_.neighbours > 0)
-                near_.nearest(at, std::size_t(key_.neighbours) + 1, found);
-            else
-                near_.within(at, radius_, found);
-            for (const std::int32_t j : found)
-                if (j < i || (key_.neighbours > 0 && j != i))
-                    pairs_.push_back({std::max(i, j), std::min(i, j)});
-        }
-        if (key_.neighbours <= 0) return;
-        sort_polled(pairs_);
-        pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+        const bool is_radius = key_.neighbours <= 0;
+        pairs_ =
+            search::choose_pairs(std::int32_t(nodes_.size()), is_radius, [&](std::int32_t i, auto& found) {
+                const Point at = nodes_[std::size_t(i)].at;
+                if (is_radius)
+                    near_.within(at, radius_, found);
+                else
+                    near_.nearest(at, std::size_t(key_.neighbours) + 1, found);
+            });
     }
 
     // Keeps the pairs that see each other.
     void join(const maps::PolygonWorld& world) {
-        std::vector<std::pair<std::int32_t, std::int32_t>> kept;
+        std::vector<search::NodePair> kept;
         InterruptPoll poll(64);
         for (const auto& [i, j] : pairs_) {
             poll.step();
             if (end_of_sight(world.space, nodes_[std::size_t(i)], nodes_[std::size_t(j)].at) != none)
                 kept.push_back({i, j});
         }
-        edges_ = {nodes_.size(), [&](const auto& add) {
-                      visit_range(0, kept.size(), [&](std::size_t k) {
-                          const auto& [i, j] = kept[k];
-                          add(std::size_t(i), j), add(std::size_t(j), i);
-                      });
-                  }};
+        const auto other_end = [](std::int32_t node, std::int32_t) { return node; };
+        edges_ = search::join_pairs<std::int32_t>(nodes_.size(), kept, other_end);
     }
 };
 
@@ -108,7 +97,7 @@ class Roadmap {
 class RoadmapSearch {
   public:
     RoadmapSearch(const Problem& problem, const Roadmap& roadmap)
-        : problem_(problem), roadmap_(roadmap), start_(roadmap.size()), goal_(start_ + 1), ways_(goal_ + 1) {}
+        : problem_(problem), roadmap_(roadmap), start_(roadmap.size()), goal_(start_ + 1) {}
 
     SampledRoute solve(Trace* trace) {
         join();
@@ -120,17 +109,22 @@ class RoadmapSearch {
         return answer_;
     }
 
-    // The interface of a space for best_first.
-    bool settle(std::uint32_t node) { return ways_.settle(node); }
+    // The interface of a graph for ShortestWay.
     bool is_goal(std::uint32_t node) const { return node == goal_; }
-    void expand(std::uint32_t node, search::PriorityQueue& queue) {
+    double bound(std::uint32_t node) const { return distance(at(node), problem_.goal.at); }
+    template <class Visit>
+    void each_arc(std::uint32_t node, const Visit& visit) const {
+        const auto reach = [&](std::uint32_t to) { visit(to, search::no_node, distance(at(node), at(to))); };
         if (node == start_) {
-            for (const std::int32_t to : from_start_) reach(std::uint32_t(to), node, queue);
+            for (const std::int32_t to : from_start_) reach(std::uint32_t(to));
             return;
         }
-        for (const std::int32_t to : roadmap_.joined_with(node)) reach(std::uint32_t(to), node, queue);
-        if (sees_goal_[node]) reach(goal_, node, queue);
+        for (const std::int32_t to : roadmap_.joined_with(node)) reach(std::uint32_t(to));
+        if (sees_goal_[node]) reach(goal_);
     }
+    // All edges are tested before.
+    static constexpr bool is_known(std::uint32_t) { return true; }
+    static constexpr search::EdgeState check(const search::WayArc&) { return search::EdgeState::free; }
 
   private:
     const Problem& problem_;
@@ -140,7 +134,6 @@ class RoadmapSearch {
     std::int64_t looks_ = 0;                // segments tested from the ends
     std::vector<std::int32_t> from_start_;  // also the goal, where they see each other
     std::vector<std::uint8_t> sees_goal_;   // each sample
-    search::Ways ways_;
 
     Point at(std::uint32_t node) const {
         return node == start_ ? problem_.start.at : node == goal_ ? problem_.goal.at : roadmap_[node].at;
@@ -176,19 +169,15 @@ class RoadmapSearch {
             if (sees_goal_[i]) add(i, goal_);
     }
 
-    void reach(std::uint32_t to, std::uint32_t from, search::PriorityQueue& queue) {
-        const double cost = ways_.cost(from) + distance(at(from), at(to));
-        if (ways_.improve(to, cost, from))
-            queue.push({cost + distance(at(to), problem_.goal.at), -float(cost), to});
-    }
     void search() {
-        search::PriorityQueue queue;
-        ways_.improve(start_, 0, search::no_node);
-        queue.push({distance(problem_.start.at, problem_.goal.at), 0, start_});
-        search::Effort effort;
-        if (search::best_first(*this, queue, effort) == search::no_node) return;
+        using Search = search::ShortestWay<RoadmapSearch>;
+        Search way(*this, goal_ + 1);
+        way.add_start(start_);
+        if (way.run() != Search::End::found) return;
         Route& route = answer_.route;
-        for (std::uint32_t n = goal_; n != search::no_node; n = ways_.before(n)) route.path.push_back(at(n));
+        route.path.push_back(problem_.goal.at);
+        const std::vector<search::WayArc> arcs = way.arcs();
+        for (std::size_t i = arcs.size(); i-- > 0;) route.path.push_back(at(arcs[i].from));
         finish_reversed(route);
     }
 };
