@@ -48,6 +48,8 @@
 #include "cspace/navigation/visibility/search.hpp"
 #include "cspace/navigation/voronoi/roadmap.hpp"
 #include "cspace/planning/aorrtc.hpp"
+#include "cspace/planning/descent.hpp"
+#include "cspace/planning/grid_search.hpp"
 #include "cspace/planning/options.hpp"
 #include "cspace/planning/simplify.hpp"
 #include "cspace/planning/two_joints/bitmap.hpp"

@@ -24,7 +24,16 @@ struct ArmOptions {
     float resolution = 1.0f / 32;                                 // of sampled edges [rad, m]
 };
 
-enum class PlanStatus { found, edge_budget, time_limit, invalid_start, invalid_goals };
+// disconnected: the free edges of a graph join no start with a goal. resting: a descent does not arrive.
+enum class PlanStatus {
+    found,
+    edge_budget,
+    time_limit,
+    invalid_start,
+    invalid_goals,
+    disconnected,
+    resting
+};
 
 // A given start or goal; contact: what touches.
 enum class RowState { free, in_collision, out_of_bounds };
@@ -40,6 +49,7 @@ struct ArmStats {
     std::int64_t shortcuts = 0,
                  proofs = 0;        // edges checked for simplification; of what was left of the trees
     std::int64_t improvements = 0;  // shorter paths after the first
+    std::int64_t expansions = 0;    // of nodes of a grid
     double search_seconds = 0, simplify_seconds = 0, proof_seconds = 0, improve_seconds = 0;
 };
 
