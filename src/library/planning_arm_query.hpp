@@ -12,6 +12,7 @@
 #include "cspace/math/wrapping.hpp"
 #include "cspace/planning/path.hpp"
 #include "cspace/planning/simplify.hpp"
+#include "cspace/search/halton.hpp"
 #include "planning_arm_edges.hpp"
 
 namespace cspace::planning {

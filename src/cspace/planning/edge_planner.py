@@ -17,7 +17,15 @@ from cspace.planning.space import ArmSpace
 from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
 
-ENDS = ("found", "edge budget", "time limit", "invalid start", "invalid goals")
+ENDS = (
+    "found",
+    "edge budget",
+    "time limit",
+    "invalid start",
+    "invalid goals",
+    "disconnected",
+    "resting",
+)
 """How the core ends, in its order."""
 
 
@@ -89,9 +97,9 @@ class EdgePlanner(ArmPlanner):
             self.resolution,
         )
 
-    def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> Plan:
-        """The Plan of what the core found."""
-        status, reason = explain_end(space, rows, found)
+    def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: Any) -> Plan:
+        """The Plan of what the core found, an ArmPlan."""
+        status, reason = self._explain_end(space, rows, found)
         path = found.path
         return Plan(
             status=status,
@@ -101,10 +109,18 @@ class EdgePlanner(ArmPlanner):
             start=found.start,
             goal=found.goal,
             certified=found.certified,
-            stats=found.stats,
+            stats=self._list_stats(space, found),
             space=space,
             planner=self,
         )
+
+    def _explain_end(self, space: ArmSpace, rows: tuple[Array, Array], found: Any) -> tuple[str, str]:
+        """The status of a plan, and its reason in words."""
+        return explain_end(space, rows, found)
+
+    def _list_stats(self, space: ArmSpace, found: Any) -> dict[str, Any]:
+        """What the search did."""
+        return dict(found.stats)
 
 
 def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> tuple[str, str]:
@@ -140,7 +156,12 @@ def explain_budget(space: ArmSpace, found: ArmPlan, end: str) -> str:
     distance, near, _ = found.approach
     if len(near):
         parts.append(f"the trees came within {shown(distance)} of each other")
+    return join_words(parts + name_blocker(space, found))
+
+
+def name_blocker(space: ArmSpace, found: ArmPlan) -> list[str]:
+    """What was most in the way, in words; empty if nothing was."""
     contact, count = found.blocker
-    if contact is not None:
-        parts.append(f"{' and '.join(space.checker.name_pair(contact))} blocked {count} motions")
-    return join_words(parts)
+    if contact is None:
+        return []
+    return [f"{' and '.join(space.checker.name_pair(contact))} blocked {count} motions"]
