@@ -76,8 +76,9 @@ GridRule read_grid_rule(const Plain<const std::int32_t>& cells, int order, int r
     rule.scale = scale, rule.k_r = k_r, rule.rho_0 = rho_0, rule.cap = cap;
     return rule;
 }
-FieldRule read_field_rule(double k, double k_r, double rho_0, double cone, double step, std::int64_t looks) {
-    return {{k, k_r, rho_0, cone}, step, looks};
+FieldRule read_field_rule(double k, double k_r, double rho_0, double cone, double rho_links, double step,
+                          std::int64_t looks) {
+    return {{k, k_r, rho_0, cone}, rho_links, step, looks};
 }
 
 std::pair<Doubles, Doubles> evaluate(const Checker& checker, const ConstDoubles& bounds,
@@ -87,7 +88,7 @@ std::pair<Doubles, Doubles> evaluate(const Checker& checker, const ConstDoubles&
     const auto rows = read_rows(checker, q), targets = read_rows(checker, goals);
     Doubles values({q.shape(0)}), gradients({q.shape(0), q.shape(1)});
     const nb::gil_scoped_release release;
-    evaluate_potential(space, targets, rule.gains, rows, values.data, gradients.data);
+    evaluate_potential(space, targets, rule, rows, values.data, gradients.data);
     return {values, gradients};
 }
 
@@ -98,7 +99,7 @@ void bind_planning_fields(nb::module_& m) {
         .def(nb::new_(&read_grid_rule), "cells"_a, "order"_a, "reach"_a, "weight"_a, "has_potential"_a,
              "scale"_a, "k_r"_a, "rho_0"_a, "cap"_a);
     nb::class_<FieldRule>(m, "FieldRule", "Options of a descent of a potential.")
-        .def(nb::new_(&read_field_rule), "k"_a, "k_r"_a, "rho_0"_a, "cone"_a, "step"_a, "looks"_a);
+        .def(nb::new_(&read_field_rule), "k"_a, "k_r"_a, "rho_0"_a, "cone"_a, "rho_links"_a, "step"_a, "looks"_a);
     nb::class_<NamedRest>(m, "FieldRest", "How a descent ended.")
         .def_prop_ro("kind", [](const NamedRest& r) { return r.rest.kind; })
         .def_prop_ro("rows", &NamedRest::rows, "The configurations of the descent (m, dof).")

@@ -596,7 +596,7 @@ class GridRule:
 class FieldRule:
     """Options of a descent of a potential."""
 
-    def __init__(self, k: float, k_r: float, rho_0: float, cone: float, step: float, looks: int) -> None: ...
+    def __init__(self, k: float, k_r: float, rho_0: float, cone: float, rho_links: float, step: float, looks: int) -> None: ...
 
 class FieldRest:
     """How a descent ended."""

@@ -63,12 +63,18 @@ class PlacedSpheres {
     }
 };
 
-// The pairs of a sphere that moves and a primitive, and of two spheres, that are nearer than a range, margins
-// counted.
+// The pairs of a sphere that moves and a primitive that are nearer than a range, and those of two spheres that
+// are nearer than another, margins counted.
 class NearPairs {
   public:
-    NearPairs(const RobotData& robot, const Scene& scene, const SceneData& data, double range)
-        : robot_(robot), scene_(scene), data_(data), range_(range), placed_(robot) {
+    NearPairs(const RobotData& robot, const Scene& scene, const SceneData& data, double range,
+              double link_range)
+        : robot_(robot),
+          scene_(scene),
+          data_(data),
+          range_(range),
+          link_range_(link_range),
+          placed_(robot) {
         const auto spheres = robot.given_spheres();
         first_.assign(std::size_t(robot.view().n_links) + 1, 0);
         for (const Sphere& sphere : spheres) ++first_[std::size_t(sphere.link) + 1];
@@ -101,7 +107,7 @@ class NearPairs {
     const RobotData& robot_;
     const Scene& scene_;
     const SceneData& data_;
-    double range_;
+    double range_, link_range_;
     PlacedSpheres placed_;
     std::vector<std::size_t> first_;  // sphere of each link
     std::vector<double> gradient_;
@@ -131,7 +137,7 @@ class NearPairs {
         const Vec3d &a = placed_.center(s), &b = placed_.center(t);
         const double grown = one.radius + other.radius + double(scene_.pair_margin);
         const Vec3d apart = a - b;
-        if (!(dot(apart, apart) < (range_ + grown) * (range_ + grown))) return;
+        if (!(dot(apart, apart) < (link_range_ + grown) * (link_range_ + grown))) return;
         const shapes::Distance d = shapes::from_place(a, b, 0);
         const std::span<double> gradient = clear_gradient();
         placed_.add_gradient(gradient, one.link, a, d.normal, 1);

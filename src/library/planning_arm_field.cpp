@@ -12,9 +12,9 @@ namespace {
 // The potential, and the motions that a descent may make.
 class ArmField : public ArmPotential {
   public:
-    ArmField(const ArmSpace& space, const GoalRows& goals, const search::Gains& gains, ArmEdges& edges,
+    ArmField(const ArmSpace& space, const GoalRows& goals, const FieldRule& rule, ArmEdges& edges,
              ArmStats& stats)
-        : ArmPotential(space.checker, goals, gains),
+        : ArmPotential(space.checker, goals, rule.gains, rule.rho_links),
           space_(space),
           goals_(goals),
           edges_(edges),
@@ -70,7 +70,7 @@ class FieldSearch {
         Row goal_rows;
         query_.each_goal([&](const float* q) { goal_rows.insert(goal_rows.end(), q, q + query_.width()); });
         const GoalRows goals(space_, goal_rows);
-        ArmField field(space_, goals, rule_.gains, query_.edges(), stats());
+        ArmField field(space_, goals, rule_, query_.edges(), stats());
         PlanStatus status = PlanStatus::resting;
         Row best;
         for (const auto& [start, row] : sort_starts(goals)) {
@@ -131,7 +131,7 @@ class FieldSearch {
                                                 std::span<const double> slope) {
             double square = 0;
             for (const double x : slope) square += x * x;
-            add_push(contact, -field.gains().repulsion_rate(rho) * std::sqrt(square), rho);
+            add_push(contact, -field.gains_of(contact).repulsion_rate(rho) * std::sqrt(square), rho);
         });
         std::stable_sort(rest_.pushes.begin(), rest_.pushes.end(),
                          [](const Push& a, const Push& b) { return a.force > b.force; });
@@ -151,12 +151,10 @@ class FieldSearch {
     }
 };
 
-void check_gains(const search::Gains& gains) {
-    require(gains.k > 0 && gains.k_r > 0 && gains.rho_0 > 0 && gains.cone > 0,
-            "gains and distances must be positive");
-}
 void check_rule(const FieldRule& rule) {
-    check_gains(rule.gains);
+    const search::Gains& gains = rule.gains;
+    require(gains.k > 0 && gains.k_r > 0 && gains.rho_0 > 0 && gains.cone > 0 && rule.rho_links >= 0,
+            "gains and distances must be positive");
     require(rule.step > 0 && std::isfinite(rule.step) && rule.looks >= 1,
             "the longest step must be positive, with one evaluation at least");
 }
@@ -175,12 +173,12 @@ std::vector<FieldPlan> plan_each_by_field(const ArmSpace& space, std::span<const
     return run_searches<FieldSearch>(space, problems, options, threads, rule);
 }
 
-void evaluate_potential(const ArmSpace& space, std::span<const double> goals, const search::Gains& gains,
+void evaluate_potential(const ArmSpace& space, std::span<const double> goals, const FieldRule& rule,
                         std::span<const double> rows, double* values, double* gradients) {
-    check_space(space), check_gains(gains), check_problem(space, {goals, goals});
+    check_space(space), check_rule(rule), check_problem(space, {goals, goals});
     const std::size_t n = std::size_t(space.checker.dof());
     const GoalRows targets(space, {goals.begin(), goals.end()});
-    ArmPotential potential(space.checker, targets, gains);
+    ArmPotential potential(space.checker, targets, rule.gains, rule.rho_links);
     for (std::size_t i = 0; i < rows.size() / n; ++i) {
         const ArmPotential::Look seen = potential.look(&rows[i * n]);
         values[i] = seen.value;

@@ -8,6 +8,7 @@ namespace cspace::planning {
 
 struct FieldRule {
     search::Gains gains;
+    double rho_links = 0.01;     // how far links repel each other [m]
     double step = 0.1;           // longest step [rad, m]
     std::int64_t looks = 20000;  // evaluations of the potential per start
 };
@@ -41,7 +42,7 @@ std::vector<FieldPlan> plan_each_by_field(const ArmSpace& space, std::span<const
                                           const ArmOptions& options, const FieldRule& rule, int threads);
 
 // The potential of goals (g, dof) at rows (n, dof), and its gradients (n, dof).
-void evaluate_potential(const ArmSpace& space, std::span<const double> goals, const search::Gains& gains,
+void evaluate_potential(const ArmSpace& space, std::span<const double> goals, const FieldRule& rule,
                         std::span<const double> rows, double* values, double* gradients);
 
 // The farthest that a sphere may be from the axis of a joint that moves it [m]; 1 at least with a prismatic

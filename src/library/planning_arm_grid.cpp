@@ -18,7 +18,8 @@ class GridEstimate {
           is_greedy_(GridOrder(rule.order) == GridOrder::best_first),
           goals_(goals),
           gains_{1, rule.k_r, rule.rho_0, 1},
-          pairs_(space.checker.robot_data(), space.checker.scene(), space.checker.scene_data(), rule.rho_0) {}
+          pairs_(space.checker.robot_data(), space.checker.scene(), space.checker.scene_data(), rule.rho_0,
+                 0.0) {}
 
     double operator()(const float* q) {
         if (GridOrder(rule_.order) == GridOrder::breadth_first) return goals_.find_nearest(q).second;

@@ -10,7 +10,7 @@ namespace cspace::planning {
 
 // The estimate of what is left is the distance to the nearest goal d, or of the potential
 //     U = d + min(½ k_r (1/ρ − 1/ρ₀)², cap),
-// ρ the least distance from what repels: min(scale · U, weight · d). By h alone (order 2) weight has no part.
+// ρ the least distance from obstacles: min(scale · U, weight · d). By h alone (order 2) weight has no part.
 struct GridRule {
     std::vector<std::int32_t> cells;  // per joint
     int order = 0;                    // 0: A*, 1: Dijkstra, 2: best first by h, 3: breadth first

@@ -1,9 +1,10 @@
 // The artificial potential of an arm (Khatib 1986) over its coordinates.
 //
 // The goal attracts by the distance of the joints (L2 norm), joints that wrap the short way. Every sphere that
-// a joint moves is a control point: each obstacle, and each sphere of a link that it is checked against,
-// repels it while nearer than rho_0. A force at a sphere acts on the joints by the transpose of its Jacobian,
-// which is the gradient of the distance.
+// a joint moves is a control point: each obstacle repels it while nearer than rho_0, and so does each sphere
+// of a link that it is checked against while nearer than rho_links. Some links are always close to each other,
+// so this is shorter. A force at a sphere acts on the joints by the transpose of its Jacobian, which is the
+// gradient of the distance.
 #pragma once
 
 #include <algorithm>
@@ -61,28 +62,38 @@ class GoalRows {
 
 class ArmPotential {
   public:
-    // Bodies that are near to each other, or to an obstacle (other < 0), and how near at least.
+    // The least distance of a body from an obstacle, or of two bodies and the gradient of that distance.
     struct Near {
-        int body, other;
+        int body, other;  // other < 0: an obstacle
         double rho;
+        std::vector<double> slope;
     };
     struct Look : FieldLook {
         std::vector<Near> near;
     };
 
-    ArmPotential(const collision::Checker& checker, const GoalRows& goals, const search::Gains& gains)
+    // Between links the repulsion k_r is less by the cube of rho_links / rho_0: it balances the same attraction
+    // at half of the distance.
+    ArmPotential(const collision::Checker& checker, const GoalRows& goals, const search::Gains& gains,
+                 double rho_links)
         : robot_(checker.robot()),
           goals_(goals),
           gains_(gains),
-          pairs_(checker.robot_data(), checker.scene(), checker.scene_data(), gains.rho_0) {}
+          link_gains_(gains),
+          pairs_(checker.robot_data(), checker.scene(), checker.scene_data(), gains.rho_0, rho_links) {
+        const double ratio = rho_links / gains.rho_0;
+        link_gains_.rho_0 = rho_links, link_gains_.k_r *= ratio * ratio * ratio;
+    }
 
-    const search::Gains& gains() const { return gains_; }
+    const search::Gains& gains_of(const collision::Contact& contact) const {
+        return contact.is_pair ? link_gains_ : gains_;
+    }
 
     // Calls visit(contact, ρ, gradient of ρ) for everything that repels at q.
     template <class Visit>
     void visit_near(const double* q, const Visit& visit) {
         pairs_.visit(q, [&](const collision::Contact& contact, double rho, std::span<const double> slope) {
-            visit(contact, std::max(rho, least_rho * gains_.rho_0), slope);
+            visit(contact, std::max(rho, least_rho * gains_of(contact).rho_0), slope);
         });
     }
     Look look(const double* q) {
@@ -91,28 +102,29 @@ class ArmPotential {
         seen.slope.assign(n, 0.0), seen.stiffness.assign(n * n, 0.0);
         attract(q, seen);
         visit_near(q, [&](const collision::Contact& contact, double rho, std::span<const double> slope) {
-            const double rate = gains_.repulsion_rate(rho), stiffness = gains_.repulsion_stiffness(rho);
-            seen.value += gains_.repulsion(rho);
+            const search::Gains& gains = gains_of(contact);
+            const double rate = gains.repulsion_rate(rho), stiffness = gains.repulsion_stiffness(rho);
+            seen.value += gains.repulsion(rho);
             for (std::size_t i = 0; i < n; ++i) {
                 seen.slope[i] += rate * slope[i];
-                for (std::size_t j = 0; j < n; ++j) seen.stiffness[i * n + j] += stiffness * slope[i] * slope[j];
+                for (std::size_t j = 0; j < n; ++j)
+                    seen.stiffness[i * n + j] += stiffness * slope[i] * slope[j];
             }
-            note_near(contact, rho, seen.near);
+            note_near(contact, rho, slope, seen.near);
         });
         return seen;
     }
-    // See JointDescent. What is not near is rho_0 away.
+    // See JointDescent: bounds for obstacles, of which those that are not near are rho_0 away, and the rates of
+    // approach of links.
     double free_share(const Look& look, const double* step) const {
         constexpr double half = 0.5;
-        double share = 1;
+        double share = 1, most = 0;
         const auto allow = [&](double rho, double moved) {
             if (moved * share > half * rho) share = half * rho / moved;
         };
-        double most = 0;
         for (int b = 1; b < robot_.n_bodies; ++b) most = std::max(most, reach_of(b, step));
-        allow(gains_.rho_0, 2 * most);  // two links may approach each other
-        for (const Near& near : look.near)
-            allow(near.rho, reach_of(near.body, step) + (near.other < 0 ? 0 : reach_of(near.other, step)));
+        allow(gains_.rho_0, most);
+        for (const Near& near : look.near) allow(near.rho, motion_of(near, step));
         return share;
     }
 
@@ -121,7 +133,7 @@ class ArmPotential {
 
     const collision::Robot& robot_;
     const GoalRows& goals_;
-    search::Gains gains_;
+    search::Gains gains_, link_gains_;
     collision::NearPairs pairs_;
 
     void attract(const double* q, FieldLook& seen) const {
@@ -138,12 +150,23 @@ class ArmPotential {
                 seen.stiffness[i * n + j] -= pull * (along / d) * (goals_.difference(goal, j, q[j]) / d);
         }
     }
-    void note_near(const collision::Contact& contact, double rho, std::vector<Near>& near) const {
+    void note_near(const collision::Contact& contact, double rho, std::span<const double> slope,
+                   std::vector<Near>& near) const {
         const int body = robot_.links[contact.link].body;
         const int other = contact.is_pair ? robot_.links[contact.other].body : -1;
-        for (Near& each : near)
-            if (each.body == body && each.other == other) return void(each.rho = std::min(each.rho, rho));
-        near.push_back({body, other, rho});
+        const auto is_same = [&](const Near& each) { return each.body == body && each.other == other; };
+        auto found = std::find_if(near.begin(), near.end(), is_same);
+        if (found == near.end()) found = near.insert(near.end(), {body, other, rho, {}});
+        if (rho <= found->rho) {
+            found->rho = rho;
+            if (contact.is_pair) found->slope.assign(slope.begin(), slope.end());
+        }
+    }
+    double motion_of(const Near& near, const double* step) const {
+        if (near.other < 0) return reach_of(near.body, step);
+        double rate = 0;
+        for (std::size_t k = 0; k < near.slope.size(); ++k) rate += near.slope[k] * step[k];
+        return std::fabs(rate);
     }
     // By how much a step moves any sphere of a body at most.
     double reach_of(int body, const double* step) const {

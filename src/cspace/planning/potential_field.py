@@ -4,8 +4,8 @@ Khatib 1986, "Real-time obstacle avoidance for manipulators and mobile robots". 
 (1/ρ − 1/ρ₀)² over the control points nearer than ρ₀ to something. d is the distance of the joints to the
 nearest goal (L2 norm); joints that wrap take the short way. U_goal is ½ k d² within `cone` of the goal and
 grows with the constant slope k · cone beyond it. Control points are all spheres of the links that move: each
-obstacle, and each sphere of a link that it is checked against, repels a sphere at the distance ρ. Forces act
-on the joints by the transpose of the Jacobian.
+obstacle repels a sphere at the distance ρ. Forces act on the joints by the transpose of the Jacobian. Spheres
+of links that are checked against each other repel too, within a shorter distance: some links are always close.
 """
 
 from __future__ import annotations
@@ -32,13 +32,16 @@ SAID: Final = {
     "minimum": "the potential rises in every direction",
     "saddle": "the force vanishes, and the potential is too flat to find a descent; try another rho_0=",
     "crease": "an obstacle that is not convex pushes from two sides",
-    "wall": "a motion further down is not free; a larger k_r= keeps the arm away from contacts",
+    "wall": "a motion further down is not free; a larger k_r= or rho_links= keeps links from contacts",
     "budget": "the budget of evaluations was used up; a larger looks= gets farther",
     "time": "the time limit was reached",
 }
 
 INFLUENCE: Final = 0.1
 """Share of the arm's reach within which obstacles repel, by default: some widths of a link."""
+
+LINK_INFLUENCE: Final = 0.1
+"""Share of rho_0 within which links repel each other by default: links of a wrist are a centimetre apart."""
 
 CONE: Final = 0.5
 """Distance from the goal [rad or m] beyond which the attraction is constant by default: half a radian."""
@@ -83,7 +86,7 @@ class PotentialRest(NamedTuple):
     values: Array
     """Their potentials (m,)."""
     gains: dict[str, float]
-    """k, k_r, rho_0, cone and step as they were used."""
+    """k, k_r, rho_0, cone, rho_links and step as they were used."""
 
 
 class Potential(NamedTuple):
@@ -99,8 +102,8 @@ class Potential(NamedTuple):
 class PotentialField(EdgePlanner):
     """Gradient descent on the potential from a start until the arm reaches a goal or stops (Khatib 1986).
 
-    In a step no sphere moves by more than half of its clearance, so nothing is jumped, and each step is
-    proved. Within `step` of the goal the arm goes there in a straight line if that is free. Joints stop at
+    In a step no sphere moves by more than half of its clearance from obstacles, so nothing is jumped, and each
+    step is proved. Within `step` of the goal the arm goes there in a straight line if that is free. Joints stop at
     their limits. The status is "local_minimum" where the arm stops away from the goal and the potential rises
     all around: all eigenvalues of its second derivative are positive ("minimum"), or the slopes around cancel
     each other ("crease"). Elsewhere it is "undetermined". plan.stats["rest"], a PotentialRest, says where the
@@ -131,6 +134,13 @@ class PotentialField(EdgePlanner):
         unit="rad or m",
         above=0,
     )
+    rho_links: float | None = option(
+        None,
+        "the distance of influence between links, 0 for none; by default a tenth of rho_0. Their k_r is less "
+        "by the cube of rho_links / rho_0",
+        unit="m",
+        minimum=0,
+    )
     step: float = option(0.1, "the longest step", unit="rad or m", above=0)
     looks: int = option(20000, "evaluations of the potential per start", minimum=1, maximum=1 << 40)
 
@@ -139,12 +149,17 @@ class PotentialField(EdgePlanner):
         rho_0 = INFLUENCE * space.reach if self.rho_0 is None else self.rho_0
         cone = CONE if self.cone is None else self.cone
         balanced = 0.25 * self.k * cone * rho_0**3 / space.reach
-        return self._in_force(k_r=balanced if self.k_r is None else self.k_r, rho_0=rho_0, cone=cone)
+        return self._in_force(
+            k_r=balanced if self.k_r is None else self.k_r,
+            rho_0=rho_0,
+            cone=cone,
+            rho_links=LINK_INFLUENCE * rho_0 if self.rho_links is None else self.rho_links,
+        )
 
     def _gains(self, space: ArmSpace) -> dict[str, float]:
-        """k, k_r, rho_0, cone and step as they are used."""
+        """k, k_r, rho_0, cone, rho_links and step as they are used."""
         given = self._fill_in(space).values
-        return {name: given[name] for name in ("k", "k_r", "rho_0", "cone", "step")}
+        return {name: given[name] for name in ("k", "k_r", "rho_0", "cone", "rho_links", "step")}
 
     def _make_rule(self, space: ArmSpace) -> FieldRule:
         """The options as the core takes them."""
@@ -228,14 +243,15 @@ def potential(
     k_r: float | None = None,
     rho_0: float | None = None,
     cone: float | None = None,
+    rho_links: float | None = None,
 ) -> Potential:
     """The potential of goals (dof,) or (g, dof) at q (..., dof) [rad or m], and its gradient.
 
-    k, k_r, rho_0, cone: as for the planner "potential_field". Margins of the space count. In contact the
+    k, k_r, rho_0, cone, rho_links: as for the planner "potential_field". Margins of the space count. In contact the
     value is that at a distance of 1e-9 rho_0.
     Raises InputError for configurations of another shape, or with NaN.
     """
-    planner = PotentialField(k=k, k_r=k_r, rho_0=rho_0, cone=cone)
+    planner = PotentialField(k=k, k_r=k_r, rho_0=rho_0, cone=cone, rho_links=rho_links)
     at = as_floats(q, "q", last=(space.dof,), largest=LARGEST_NUMBER)
     rows = np.ascontiguousarray(at.reshape(-1, space.dof))
     targets = space.as_rows(goals, "goals")
