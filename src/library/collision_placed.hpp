@@ -64,7 +64,7 @@ class PlacedSpheres {
 };
 
 // The pairs of a sphere that moves and a primitive that are nearer than a range, and those of two spheres that
-// are nearer than another, margins counted.
+// are nearer than another; the margin of the checks counts, what rounding costs does not.
 class NearPairs {
   public:
     NearPairs(const RobotData& robot, const Scene& scene, const SceneData& data, double range,
@@ -74,6 +74,7 @@ class NearPairs {
           data_(data),
           range_(range),
           link_range_(link_range),
+          margin_(double(scene.margin - robot.slack())),
           placed_(robot) {
         const auto spheres = robot.given_spheres();
         first_.assign(std::size_t(robot.view().n_links) + 1, 0);
@@ -107,7 +108,7 @@ class NearPairs {
     const RobotData& robot_;
     const Scene& scene_;
     const SceneData& data_;
-    double range_, link_range_;
+    double range_, link_range_, margin_;
     PlacedSpheres placed_;
     std::vector<std::size_t> first_;  // sphere of each link
     std::vector<double> gradient_;
@@ -120,7 +121,7 @@ class NearPairs {
     void visit_primitives(std::size_t s, const Visit& visit) {
         const Sphere& sphere = robot_.given_spheres()[s];
         const Vec3d& at = placed_.center(s);
-        const double grown = sphere.radius + double(scene_.margin), limit = range_ + grown;
+        const double grown = sphere.radius + margin_, limit = range_ + grown;
         data_.visit_near(
             at, [&] { return limit; },
             [&](int i) {
@@ -135,7 +136,7 @@ class NearPairs {
     void visit_spheres(std::size_t s, std::size_t t, const Visit& visit) {
         const Sphere &one = robot_.given_spheres()[s], &other = robot_.given_spheres()[t];
         const Vec3d &a = placed_.center(s), &b = placed_.center(t);
-        const double grown = one.radius + other.radius + double(scene_.pair_margin);
+        const double grown = one.radius + other.radius + margin_;
         const Vec3d apart = a - b;
         if (!(dot(apart, apart) < (link_range_ + grown) * (link_range_ + grown))) return;
         const shapes::Distance d = shapes::from_place(a, b, 0);

@@ -49,6 +49,9 @@ CONE: Final = 0.5
 MOST_NAMED: Final = 3
 """Pairs that a reason names: those that push most."""
 
+LEAST_NAMED: Final = 0.01
+"""Share of the strongest push that a pair must have to be named: others decide nothing."""
+
 
 @show_fields
 class Push(NamedTuple):
@@ -220,6 +223,7 @@ class PotentialField(EdgePlanner):
         pushes = [
             f"{each.other} pushes {each.link} from {1000 * each.distance:.3g} mm away"
             for each in rest.pushes[:MOST_NAMED]
+            if each.force > LEAST_NAMED * rest.pushes[0].force
         ]
         return status, f"{ended}: {why}" + (f"; {join_words(pushes)}" if pushes else "")
 
