@@ -42,8 +42,8 @@ BASE = "Dijkstra"
 SAME_COST = 1e-9
 """Relative difference of two costs of one path length, summed in another order."""
 
-GOAL_ROUNDING = 1e-6
-"""The search runs to the goal rounded to float; the path ends at the goal itself [rad]."""
+GOAL_ROUNDING = 1e-12
+"""A goal is reached exactly; a multiple of 2π rounds [rad]."""
 
 
 def problems(name: str, count: int) -> Iterator[tuple[ArmSpace, Any, Any]]:

@@ -68,7 +68,7 @@ class FieldSearch {
 
     PlanStatus search() {
         Row goal_rows;
-        query_.each_goal([&](const float* q) { goal_rows.insert(goal_rows.end(), q, q + query_.width()); });
+        query_.each_given_goal([&](const double* q) { goal_rows.insert(goal_rows.end(), q, q + query_.width()); });
         const GoalRows goals(space_, goal_rows);
         ArmField field(space_, goals, rule_, query_.edges(), stats());
         PlanStatus status = PlanStatus::resting;
@@ -97,7 +97,7 @@ class FieldSearch {
     // The nearest to a goal first.
     std::vector<std::pair<int, Row>> sort_starts(const GoalRows& goals) const {
         std::vector<std::pair<double, std::pair<int, Row>>> starts;
-        query_.each_start([&](const float* q) {
+        query_.each_given_start([&](const double* q) {
             starts.push_back({goals.find_nearest(q).second, {int(starts.size()), {q, q + goals.width()}}});
         });
         std::stable_sort(starts.begin(), starts.end(),

@@ -70,6 +70,16 @@ class ArmQuery {
         for (const int i : goals_) add(round_row(goal_row(i)).data());
     }
 
+    // The same in doubles, as given.
+    template <class Add>
+    void each_given_start(const Add& add) const {
+        for (const int i : starts_) add(start_row(i));
+    }
+    template <class Add>
+    void each_given_goal(const Add& add) const {
+        for (const int i : goals_) add(goal_row(i));
+    }
+
     // The path of a search, unwound: joints that wrap go on beyond ±π. Between a root of the starts and one
     // of the goals there are `inner` rows; copy(i, q) writes one of them.
     template <class CopyRow>
