@@ -80,6 +80,8 @@ class JointDescent {
     static constexpr double flat = 1e-7;         // of the largest curvature: differences find no sign below
     static constexpr double at_rest = 1e-4;      // [rad, m]: from a bottom that is farther the descent goes on
     static constexpr double stationary = 1e-6;   // of the slopes around a crease: their least one
+    static constexpr double crease_force = 1e-2;              // of the slopes around: more is no rest
+    static constexpr double neighbourhoods[] = {1e-3, 1e-4, 1e-5, 1e-6};  // of a crease, as the difference
     static constexpr double radii[] = {1e-3, 1e-2, 1e-1, 1};  // of the way to half the clearance
 
     Field& field_;
@@ -279,40 +281,47 @@ class JointDescent {
         return true;
     }
 
-    // Down the least of all slopes between those around, which leads along the crease.
+    // Down the least of all slopes between those around, which leads along the crease. Those of a smaller
+    // neighbourhood describe it better, those of a larger one see more of it.
     bool leave_crease(Rest& rest) {
-        std::vector<Row> slopes = {open_part(here_.slope)};
-        double largest = norm(slopes[0]);
-        for (const std::size_t k : open_) {
-            const Row e = unit(k);
-            const double h = difference * field_.free_share(here_, e.data());
-            for (const double sign : {1.0, -1.0}) {
-                const Row to = shifted(e, sign * h);
-                const Look seen = look(to);
-                slopes.push_back(open_part(seen.slope));
-                largest = std::max(largest, norm(slopes.back()));
-            }
+        double share = 0;
+        for (const double radius : neighbourhoods) {
+            const std::vector<Row> slopes = list_slopes(radius);
+            const Row least = least_between(slopes);
+            const double size = norm(least), largest = norm(*std::max_element(
+                slopes.begin(), slopes.end(), [](const Row& a, const Row& b) { return norm(a) < norm(b); }));
+            if (radius == neighbourhoods[0]) share = size / largest;
+            if (size > stationary * largest && descend_along(least, size)) return true;
         }
-        rest = Rest::crease;
-        const Row least = least_between(slopes);
-        const double size = norm(least);
-        if (size > stationary * largest)
-            for (double length = longest_; length > least_step; length *= 0.5) {
-                Row to = shifted(least, -length / size);
-                if (field_.free_share(here_, difference_to(to).data()) < 1) continue;
-                Look seen = look(to);
-                if (!(seen.value < here_.value - promise * length * size) ||
-                    !field_.is_free(at_.data(), to.data()))
-                    continue;
-                go(std::move(to), std::move(seen));
-                return true;
-            }
         for (const std::size_t k : open_)
             if (fall_along(unit(k))) return true;
-        if (size > crease_force * largest) rest = Rest::wall;
+        rest = share > crease_force ? Rest::wall : Rest::crease;
         return false;
     }
-    static constexpr double crease_force = 1e-2;  // of the slopes around: more is no rest
+    // Of this place, and on both sides of it along each open coordinate.
+    std::vector<Row> list_slopes(double radius) {
+        std::vector<Row> slopes = {open_part(here_.slope)};
+        for (const std::size_t k : open_) {
+            const Row e = unit(k);
+            const double h = radius * field_.free_share(here_, e.data());
+            for (const double sign : {1.0, -1.0}) slopes.push_back(open_part(look(shifted(e, sign * h)).slope));
+        }
+        return slopes;
+    }
+    // A step against a slope of this size that lowers the potential by a tenth of what the slope promises.
+    bool descend_along(const Row& slope, double size) {
+        for (double length = longest_; length > least_step; length *= 0.5) {
+            Row to = shifted(slope, -length / size);
+            if (field_.free_share(here_, difference_to(to).data()) < 1) continue;
+            Look seen = look(to);
+            if (!(seen.value < here_.value - promise * length * size) ||
+                !field_.is_free(at_.data(), to.data()))
+                continue;
+            go(std::move(to), std::move(seen));
+            return true;
+        }
+        return false;
+    }
     Row open_part(const Row& slope) const {
         Row part(n_, 0.0);
         for (const std::size_t k : open_) part[k] = slope[k];
