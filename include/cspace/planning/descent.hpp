@@ -75,6 +75,8 @@ class JointDescent {
     static constexpr double rounding = 1e-13;    // of the potential: a gain that rounding may have made
     static constexpr double clear_gain = 1e-12;  // of the potential: a gain that leaves a saddle
     static constexpr double promise = 0.1;       // share of what the slope promises that a step must keep
+    static constexpr double nearby = 4;          // steps: farther slopes say nothing of a crease here
+    static constexpr std::size_t most_recent = 8;  // trials whose slopes are kept
     static constexpr double difference = 1e-3;   // of the way to half the clearance: for second derivatives
     static constexpr double closer = 0.125;      // how much closer slopes are compared to find a jump
     static constexpr double flat = 1e-7;         // of the largest curvature: differences find no sign below
@@ -92,6 +94,10 @@ class JointDescent {
     Descent descent_;
     Row at_;
     Look here_;
+    struct Trial {
+        Row at, slope;
+    };
+    std::vector<Trial> recent_;
     std::vector<std::size_t> open_;  // coordinates that no limit holds
     std::vector<Row> matrix_;
 
@@ -153,25 +159,45 @@ class JointDescent {
         return std::sqrt(square);
     }
 
-    // A step down that lowers the potential by a tenth of what the slope promises.
+    // A step down that lowers the potential by a tenth of what the slope promises. Where slopes nearby oppose
+    // the one here, which happens across a crease, the step goes down the least one between them.
     bool descend() {
         find_open();
         for (;; step_ *= 0.5) {
-            Row step = damped_step(step_);
+            if (!(step_ > least_step)) return false;
+            const std::vector<Row> slopes = list_opposed();
+            const bool is_smooth = slopes.size() == 1;
+            const Row step = is_smooth ? damped_step(step_) : step_between(slopes);
             const double share = field_.free_share(here_, step.data()), length = share * norm(step);
-            if (!(length > least_step)) return false;
-            step_ = std::min(step_, length);
             Row to = shifted(step, share);
-            double promised = 0;
-            for (std::size_t k = 0; k < n_; ++k) promised -= here_.slope[k] * (to[k] - at_[k]);
-            if (!(promised > noise())) return false;
+            const double promised = -dot(here_.slope, difference_to(to));
+            if (is_smooth && (!(length > least_step) || !(promised > noise()))) return false;
+            if (length > 0) step_ = std::min(step_, length);
+            if (!(promised > noise())) continue;
             Look seen = look(to);
+            recent_.push_back({to, open_part(seen.slope)});
+            if (recent_.size() > most_recent) recent_.erase(recent_.begin());
             if (!(seen.value <= here_.value - promise * promised) || !field_.is_free(at_.data(), to.data()))
                 continue;
+            recent_.push_back({at_, open_part(here_.slope)});
             go(std::move(to), std::move(seen));
             step_ = std::min(2 * step_, longest_);
             return true;
         }
+    }
+    // The slope here, and those of the last trials nearby that point the other way.
+    std::vector<Row> list_opposed() const {
+        std::vector<Row> slopes = {open_part(here_.slope)};
+        for (const Trial& each : recent_)
+            if (dot(each.slope, slopes[0]) < 0 && norm(difference_to(each.at)) <= nearby * step_)
+                slopes.push_back(each.slope);
+        return slopes;
+    }
+    Row step_between(const std::vector<Row>& slopes) const {
+        Row step = least_between(slopes);
+        const double size = norm(step);
+        for (double& x : step) x *= size > 0 ? -step_ / size : 0;
+        return step;
     }
 
     Row damped_step(double longest) {
