@@ -162,7 +162,7 @@ def test_every_stop_has_its_name_and_every_step_is_free(seed):
         if plan:
             assert plan.certified
             np.testing.assert_array_equal(plan.path[0], a)
-            assert judge_path(robot, scene, plan.path[:: max(1, len(plan.path) // 10)][:1]) == np.inf
+            assert judge_path(robot, scene, plan.path[:40]) > -oracle.BAND
             assert plan.clearance > -oracle.BAND
             turns = (plan.path[-1] - b) / (2 * np.pi)
             np.testing.assert_allclose(turns, np.round(turns), atol=1e-12)

@@ -90,6 +90,7 @@ class JointDescent {
     const std::size_t n_;
     const double longest_;
     double step_;
+    bool is_blocked_ = false;  // the last step down is not free
     const std::int64_t budget_;
     Descent descent_;
     Row at_;
@@ -163,6 +164,7 @@ class JointDescent {
     // the one here, which happens across a crease, the step goes down the least one between them.
     bool descend() {
         find_open();
+        is_blocked_ = false;
         for (;; step_ *= 0.5) {
             if (!(step_ > least_step)) return false;
             const std::vector<Row> slopes = list_opposed();
@@ -177,8 +179,9 @@ class JointDescent {
             Look seen = look(to);
             recent_.push_back({to, open_part(seen.slope)});
             if (recent_.size() > most_recent) recent_.erase(recent_.begin());
-            if (!(seen.value <= here_.value - promise * promised) || !field_.is_free(at_.data(), to.data()))
-                continue;
+            if (!(seen.value <= here_.value - promise * promised)) continue;
+            is_blocked_ = !field_.is_free(at_.data(), to.data());
+            if (is_blocked_) continue;
             recent_.push_back({at_, open_part(here_.slope)});
             go(std::move(to), std::move(seen));
             step_ = std::min(2 * step_, longest_);
@@ -242,6 +245,7 @@ class JointDescent {
     // On from a place where no step leads down the slope: along a crease, or off a saddle. Else what it is.
     bool leave_rest(Rest& rest) {
         if (open_.empty()) return rest = Rest::minimum, false;
+        if (is_blocked_) return rest = Rest::wall, false;
         Row hessian(open_.size() * open_.size());
         double jump = 0, closer_jump = 0;
         for (std::size_t i = 0; i < open_.size(); ++i) {
