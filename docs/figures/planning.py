@@ -87,8 +87,8 @@ def potential_of_two_joints() -> Sequence[Any]:
     values = potential(space, goal, q).value.T
     levels = np.linspace(0.0, LEVELS_TO, 24)
     artists.append(axes[1].contour(cells, cells, values, levels=levels, cmap="Blues_r", linewidths=0.7))
-    artists += axes[1].plot(*rest.path.T, color="#b2182b", linewidth=2.0)
-    artists += axes[1].plot(*rest.q, "X", color="#b2182b", markersize=9)
+    artists += axes[1].plot(*rest.path.T, color="#1b7837", linewidth=2.0)
+    artists += axes[1].plot(*rest.q, "X", color="#1b7837", markersize=9)
     return artists
 
 

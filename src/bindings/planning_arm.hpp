@@ -34,14 +34,16 @@ struct NamedPlan {
     }
 };
 
-inline cspace::planning::ArmSpace read_space(const cspace::collision::Checker& checker, const ConstDoubles& bounds, const Bytes& wraps) {
+inline cspace::planning::ArmSpace read_space(const cspace::collision::Checker& checker,
+                                             const ConstDoubles& bounds, const Bytes& wraps) {
     require(bounds.ndim() == 2 && bounds.shape(0) == 2 && bounds.shape(1) == checker.dof(),
             "bounds must be an array (2, dof)");
     require(wraps.size == checker.dof(), "wraps must be an array (dof,)");
     const std::size_t n = std::size_t(checker.dof());
     return {checker, {bounds.data, n}, {bounds.data + n, n}, {wraps.data, n}};
 }
-inline std::span<const double> read_rows(const cspace::collision::Checker& checker, const ConstDoubles& rows) {
+inline std::span<const double> read_rows(const cspace::collision::Checker& checker,
+                                         const ConstDoubles& rows) {
     require(rows.ndim() == 2 && rows.shape(1) == checker.dof(), "configurations must be an array (n, dof)");
     return {rows.data, std::size_t(rows.size)};
 }

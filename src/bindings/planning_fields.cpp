@@ -25,9 +25,7 @@ struct NamedRest {
     const Checker* checker;
     int dof;
 
-    Doubles rows() const {
-        return Doubles({npy_intp(rest.values.size()), dof}, rest.rows.data());
-    }
+    Doubles rows() const { return Doubles({npy_intp(rest.values.size()), dof}, rest.rows.data()); }
     Doubles values() const { return Doubles({npy_intp(rest.values.size())}, rest.values.data()); }
     std::vector<std::tuple<std::optional<NamedContact>, double, double>> pushes() const {
         std::vector<std::tuple<std::optional<NamedContact>, double, double>> named;
@@ -55,8 +53,8 @@ auto plan_one(const Checker& checker, const ConstDoubles& bounds, const Bytes& w
     return name_plan(plan(space, problem), checker);
 }
 template <class Plan>
-auto plan_each(const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
-               const Problems& given, const Plan& plan) {
+auto plan_each(const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const Problems& given,
+               const Plan& plan) {
     const ArmSpace space = read_space(checker, bounds, wraps);
     std::vector<ArmProblem> problems;
     for (const auto& [starts, goals] : given)
@@ -78,12 +76,12 @@ GridRule read_grid_rule(const Plain<const std::int32_t>& cells, int order, int r
 }
 FieldRule read_field_rule(double k, double k_r, double rho_0, double cone, double rho_links, double step,
                           std::int64_t looks) {
-    return {{k, k_r, rho_0, cone}, rho_links, step, looks};
+    return {k, k_r, rho_0, rho_links, cone, step, looks};
 }
 
-std::pair<Doubles, Doubles> evaluate(const Checker& checker, const ConstDoubles& bounds,
-                                     const Bytes& wraps, const ConstDoubles& goals,
-                                     const FieldRule& rule, const ConstDoubles& q) {
+std::pair<Doubles, Doubles> evaluate(const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
+                                     const ConstDoubles& goals, const FieldRule& rule,
+                                     const ConstDoubles& q) {
     const ArmSpace space = read_space(checker, bounds, wraps);
     const auto rows = read_rows(checker, q), targets = read_rows(checker, goals);
     Doubles values({q.shape(0)}), gradients({q.shape(0), q.shape(1)});
@@ -99,7 +97,8 @@ void bind_planning_fields(nb::module_& m) {
         .def(nb::new_(&read_grid_rule), "cells"_a, "order"_a, "reach"_a, "weight"_a, "has_potential"_a,
              "scale"_a, "k_r"_a, "rho_0"_a, "cap"_a);
     nb::class_<FieldRule>(m, "FieldRule", "Options of a descent of a potential.")
-        .def(nb::new_(&read_field_rule), "k"_a, "k_r"_a, "rho_0"_a, "cone"_a, "rho_links"_a, "step"_a, "looks"_a);
+        .def(nb::new_(&read_field_rule), "k"_a, "k_r"_a, "rho_0"_a, "cone"_a, "rho_links"_a, "step"_a,
+             "looks"_a);
     nb::class_<NamedRest>(m, "FieldRest", "How a descent ended.")
         .def_prop_ro("kind", [](const NamedRest& r) { return r.rest.kind; })
         .def_prop_ro("rows", &NamedRest::rows, "The configurations of the descent (m, dof).")
@@ -110,9 +109,8 @@ void bind_planning_fields(nb::module_& m) {
         .def_prop_ro("pushes", &NamedRest::pushes, "What repels: the contact, the force, the distance.");
     m.def(
         "plan_on_grid",
-        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
-           const ConstDoubles& starts, const ConstDoubles& goals, const ArmOptions& options,
-           const GridRule& rule) {
+        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const ConstDoubles& starts,
+           const ConstDoubles& goals, const ArmOptions& options, const GridRule& rule) {
             return plan_one(checker, bounds, wraps, starts, goals,
                             [&](const ArmSpace& space, const ArmProblem& problem) {
                                 return plan_on_grid(space, problem, options, rule);
@@ -122,8 +120,8 @@ void bind_planning_fields(nb::module_& m) {
         nb::keep_alive<0, 1>(), "See plan_arm.");
     m.def(
         "plan_each_on_grid",
-        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
-           const Problems& given, const ArmOptions& options, const GridRule& rule, int threads) {
+        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const Problems& given,
+           const ArmOptions& options, const GridRule& rule, int threads) {
             return plan_each(checker, bounds, wraps, given, [&](const ArmSpace& space, const auto& problems) {
                 return plan_each_on_grid(space, problems, options, rule, threads);
             });
@@ -132,9 +130,8 @@ void bind_planning_fields(nb::module_& m) {
         "See plan_arms.");
     m.def(
         "plan_by_field",
-        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
-           const ConstDoubles& starts, const ConstDoubles& goals, const ArmOptions& options,
-           const FieldRule& rule) {
+        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const ConstDoubles& starts,
+           const ConstDoubles& goals, const ArmOptions& options, const FieldRule& rule) {
             return plan_one(checker, bounds, wraps, starts, goals,
                             [&](const ArmSpace& space, const ArmProblem& problem) {
                                 return plan_by_field(space, problem, options, rule);
@@ -144,8 +141,8 @@ void bind_planning_fields(nb::module_& m) {
         "A plan and how the descent ended; the checker must outlive them.");
     m.def(
         "plan_each_by_field",
-        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
-           const Problems& given, const ArmOptions& options, const FieldRule& rule, int threads) {
+        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const Problems& given,
+           const ArmOptions& options, const FieldRule& rule, int threads) {
             return plan_each(checker, bounds, wraps, given, [&](const ArmSpace& space, const auto& problems) {
                 return plan_each_by_field(space, problems, options, rule, threads);
             });

@@ -27,7 +27,8 @@ class Search {
             data_.visit_near(placed_.center(s), limit, [&](int i) {
                 if (scene_.allowed && scene_.allowed[link * scene_.n + i]) return;
                 const shapes::Distance d = data_.distance(i, placed_.center(s), limit());
-                offer({link, i, false, 0}, d.value - r, d.normal, placed_.center(s), link, placed_.center(s), -1);
+                offer({link, i, false, 0}, d.value - r, d.normal, placed_.center(s), link, placed_.center(s),
+                      -1);
             });
         }
         for (const auto& [a, b] : robot_.given_pairs())

@@ -63,8 +63,8 @@ class PlacedSpheres {
     }
 };
 
-// The pairs of a sphere that moves and a primitive that are nearer than a range, and those of two spheres that
-// are nearer than another; the margin of the checks counts, what rounding costs does not.
+// The pairs of a sphere that moves and a primitive that are nearer than a range, and those of two spheres
+// that are nearer than another; the margin of the checks counts, what rounding costs does not.
 class NearPairs {
   public:
     NearPairs(const RobotData& robot, const Scene& scene, const SceneData& data, double range,

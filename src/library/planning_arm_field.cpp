@@ -9,12 +9,14 @@ namespace cspace::planning {
 
 namespace {
 
+search::Gains read_gains(const FieldRule& rule) { return {rule.k, rule.k_r, rule.rho_0, rule.cone}; }
+
 // The potential, and the motions that a descent may make.
 class ArmField : public ArmPotential {
   public:
     ArmField(const ArmSpace& space, const GoalRows& goals, const FieldRule& rule, ArmEdges& edges,
              ArmStats& stats)
-        : ArmPotential(space.checker, goals, rule.gains, rule.rho_links),
+        : ArmPotential(space.checker, goals, read_gains(rule), rule.rho_links),
           space_(space),
           goals_(goals),
           edges_(edges),
@@ -68,7 +70,8 @@ class FieldSearch {
 
     PlanStatus search() {
         Row goal_rows;
-        query_.each_given_goal([&](const double* q) { goal_rows.insert(goal_rows.end(), q, q + query_.width()); });
+        query_.each_given_goal(
+            [&](const double* q) { goal_rows.insert(goal_rows.end(), q, q + query_.width()); });
         const GoalRows goals(space_, goal_rows);
         ArmField field(space_, goals, rule_, query_.edges(), stats());
         PlanStatus status = PlanStatus::resting;
@@ -125,13 +128,18 @@ class FieldSearch {
         return query_.finish_path([](std::size_t) {}) == ArmQuery::Finish::accepted;
     }
     void keep_rest(const Descent& descent, const GoalRows& goals, ArmField& field) {
-        rest_ = {int(descent.rest), descent.rows, descent.values,     descent.force,
-                 goals.find_nearest(last_row(descent)).second, descent.saddles, {}};
+        rest_ = {int(descent.rest),
+                 descent.rows,
+                 descent.values,
+                 descent.force,
+                 goals.find_nearest(last_row(descent)).second,
+                 descent.saddles,
+                 {}};
         field.visit_near(last_row(descent), [&](const collision::Contact& contact, double rho,
                                                 std::span<const double> slope) {
             double square = 0;
             for (const double x : slope) square += x * x;
-            add_push(contact, -field.gains_of(contact).repulsion_rate(rho) * std::sqrt(square), rho);
+            add_push(contact, -field.gains_for(contact).repulsion_rate(rho) * std::sqrt(square), rho);
         });
         std::stable_sort(rest_.pushes.begin(), rest_.pushes.end(),
                          [](const Push& a, const Push& b) { return a.force > b.force; });
@@ -152,8 +160,7 @@ class FieldSearch {
 };
 
 void check_rule(const FieldRule& rule) {
-    const search::Gains& gains = rule.gains;
-    require(gains.k > 0 && gains.k_r > 0 && gains.rho_0 > 0 && gains.cone > 0 && rule.rho_links >= 0,
+    require(rule.k > 0 && rule.k_r > 0 && rule.rho_0 > 0 && rule.cone > 0 && rule.rho_links >= 0,
             "gains and distances must be positive");
     require(rule.step > 0 && std::isfinite(rule.step) && rule.looks >= 1,
             "the longest step must be positive, with one evaluation at least");
@@ -178,7 +185,7 @@ void evaluate_potential(const ArmSpace& space, std::span<const double> goals, co
     check_space(space), check_rule(rule), check_problem(space, {goals, goals});
     const std::size_t n = std::size_t(space.checker.dof());
     const GoalRows targets(space, {goals.begin(), goals.end()});
-    ArmPotential potential(space.checker, targets, rule.gains, rule.rho_links);
+    ArmPotential potential(space.checker, targets, read_gains(rule), rule.rho_links);
     for (std::size_t i = 0; i < rows.size() / n; ++i) {
         const ArmPotential::Look seen = potential.look(&rows[i * n]);
         values[i] = seen.value;

@@ -1,16 +1,17 @@
 // Descents of the artificial potential of an arm.
 #pragma once
 
-#include "cspace/search/gains.hpp"
 #include "planning_arm.hpp"
 
 namespace cspace::planning {
 
+// The strengths are those of search::Gains.
 struct FieldRule {
-    search::Gains gains;
-    double rho_links = 0.01;     // how far links repel each other [m]
-    double step = 0.1;           // longest step [rad, m]
-    std::int64_t looks = 20000;  // evaluations of the potential per start
+    double k = 1, k_r = 1;
+    double rho_0 = 0.1, rho_links = 0.01;  // how far obstacles, and links, repel [m]
+    double cone = 0.5;                     // from how far on the goal attracts with the same force [rad, m]
+    double step = 0.1;                     // longest step [rad, m]
+    std::int64_t looks = 20000;            // evaluations of the potential per start
 };
 
 // What repels at a rest: the force on the joints, and the least distance [m].

@@ -1,10 +1,10 @@
 // The artificial potential of an arm (Khatib 1986) over its coordinates.
 //
-// The goal attracts by the distance of the joints (L2 norm), joints that wrap the short way. Every sphere that
-// a joint moves is a control point: each obstacle repels it while nearer than rho_0, and so does each sphere
-// of a link that it is checked against while nearer than rho_links. Some links are always close to each other,
-// so this is shorter. A force at a sphere acts on the joints by the transpose of its Jacobian, which is the
-// gradient of the distance.
+// The goal attracts by the distance of the joints (L2 norm), joints that wrap the short way. Every sphere
+// that a joint moves is a control point: each obstacle repels it while nearer than rho_0, and so does each
+// sphere of a link that it is checked against while nearer than rho_links. Some links are always close to
+// each other, so this is shorter. A force at a sphere acts on the joints by the transpose of its Jacobian,
+// which is the gradient of the distance.
 #pragma once
 
 #include <algorithm>
@@ -72,8 +72,8 @@ class ArmPotential {
         std::vector<Near> near;
     };
 
-    // Between links the repulsion k_r is less by the cube of rho_links / rho_0: it balances the same attraction
-    // at half of the distance.
+    // Between links the repulsion k_r is less by the cube of rho_links / rho_0: it balances the same
+    // attraction at half of the distance.
     ArmPotential(const collision::Checker& checker, const GoalRows& goals, const search::Gains& gains,
                  double rho_links)
         : robot_(checker.robot()),
@@ -85,7 +85,7 @@ class ArmPotential {
         link_gains_.rho_0 = rho_links, link_gains_.k_r *= ratio * ratio * ratio;
     }
 
-    const search::Gains& gains_of(const collision::Contact& contact) const {
+    const search::Gains& gains_for(const collision::Contact& contact) const {
         return contact.is_pair ? link_gains_ : gains_;
     }
 
@@ -93,7 +93,7 @@ class ArmPotential {
     template <class Visit>
     void visit_near(const double* q, const Visit& visit) {
         pairs_.visit(q, [&](const collision::Contact& contact, double rho, std::span<const double> slope) {
-            visit(contact, std::max(rho, least_rho * gains_of(contact).rho_0), slope);
+            visit(contact, std::max(rho, least_rho * gains_for(contact).rho_0), slope);
         });
     }
     Look look(const double* q) {
@@ -102,7 +102,7 @@ class ArmPotential {
         seen.slope.assign(n, 0.0), seen.stiffness.assign(n * n, 0.0);
         attract(q, seen);
         visit_near(q, [&](const collision::Contact& contact, double rho, std::span<const double> slope) {
-            const search::Gains& gains = gains_of(contact);
+            const search::Gains& gains = gains_for(contact);
             const double rate = gains.repulsion_rate(rho), stiffness = gains.repulsion_stiffness(rho);
             seen.value += gains.repulsion(rho);
             for (std::size_t i = 0; i < n; ++i) {
@@ -114,8 +114,8 @@ class ArmPotential {
         });
         return seen;
     }
-    // See JointDescent: bounds for obstacles, of which those that are not near are rho_0 away, and the rates of
-    // approach of links.
+    // See JointDescent: bounds for obstacles, of which those that are not near are rho_0 away, and the rates
+    // of approach of links.
     double free_share(const Look& look, const double* step) const {
         constexpr double half = 0.5;
         double share = 1, most = 0;

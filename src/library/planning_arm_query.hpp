@@ -271,14 +271,14 @@ inline void check_options(const ArmOptions& options) {
 // A Search is made of a space, a problem and further options, and has run().
 template <class Search, class... More>
 auto run_search(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options,
-                   const More&... more) {
+                const More&... more) {
     check_space(space), check_options(options), check_problem(space, problem);
     return Search(space, problem, options, more...).run();
 }
 // Each as if alone, on so many threads (0: all).
 template <class Search, class... More>
-auto run_searches(const ArmSpace& space, std::span<const ArmProblem> problems,
-                                  const ArmOptions& options, int threads, const More&... more) {
+auto run_searches(const ArmSpace& space, std::span<const ArmProblem> problems, const ArmOptions& options,
+                  int threads, const More&... more) {
     check_space(space), check_options(options);
     for (const ArmProblem& problem : problems) check_problem(space, problem);
     std::vector<decltype(std::declval<Search&>().run())> plans(problems.size());

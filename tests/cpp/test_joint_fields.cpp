@@ -250,7 +250,7 @@ TEST(descents_of_arms_are_free_and_their_gradients_are_right) {
         const Row start = free_configuration(cell, random), goal = free_configuration(cell, random);
         if (start.empty() || goal.empty() || cell.checker->base_contact().other >= 0) continue;
         const ArmSpace space{*cell.checker, cell.lower, cell.upper, {}};
-        const FieldRule rule = {{1, 1e-4, 0.1, 0.5}, 0.02, 0.1, 3000};
+        const FieldRule rule = {1, 1e-4, 0.1, 0.02, 0.5, 0.1, 3000};
         const FieldPlan found = plan_by_field(space, {start, goal}, {}, rule);
         const bool is_found = found.plan.status == PlanStatus::found;
         CHECK(is_found == (found.rest.kind == 0));

@@ -1,4 +1,4 @@
-"""Grid search: costs beside those of a slow search over the same grid, limits, wraps, and what is not there."""
+"""Grid search: costs beside those of a slow search over the same grid, limits, wraps, grids without a path."""
 
 import heapq
 import itertools

@@ -57,7 +57,11 @@ def slow_potential(space, goal, q, gains):
 
 def fixed_links(robot):
     """The links that no joint moves."""
-    rows = [robot.fk(q, frame=name) for q in robot.random_configuration(2, rng=1) for name in robot.collision.links]
+    rows = [
+        robot.fk(q, frame=name)
+        for q in robot.random_configuration(2, rng=1)
+        for name in robot.collision.links
+    ]
     first, second = rows[: len(rows) // 2], rows[len(rows) // 2 :]
     return {
         name
@@ -177,7 +181,10 @@ def test_planar_arms_come_to_rest_at_goals_and_minima(seed):
     q = robot.random_configuration(60, rng=seed)
     free = q[~robot.collides(q, scene)]
     space = ArmSpace(robot, scene)
-    kinds = [check_rest(space, b, PotentialField().plan(space, a, b)) for a, b in zip(free[:6], free[6:12], strict=True)]
+    kinds = [
+        check_rest(space, b, PotentialField().plan(space, a, b))
+        for a, b in zip(free[:6], free[6:12], strict=True)
+    ]
     assert set(kinds) <= {"goal", "minimum"}
 
 
@@ -201,7 +208,9 @@ def test_a_wall_across_the_way_is_a_minimum_that_names_it():
     # The attraction k · cone balances k_r (1/ρ − 1/ρ₀)/ρ², one force on one joint.
     rho = -0.05 - rest.q[0] - 0.05
     gains = rest.gains
-    assert gains["k_r"] * (1 / rho - 1 / gains["rho_0"]) / rho**2 == pytest.approx(gains["k"] * gains["cone"], rel=0.01)
+    assert gains["k_r"] * (1 / rho - 1 / gains["rho_0"]) / rho**2 == pytest.approx(
+        gains["k"] * gains["cone"], rel=0.01
+    )
     assert rest.pushes[0].distance == pytest.approx(rho, abs=1e-6)
 
 
@@ -296,7 +305,11 @@ BAD = {
     "shape": (lambda s: potential(s, [0.0, 0.0], [0.0, 0.0, 0.0]), InputError, "q has shape"),
     "goals": (lambda s: potential(s, [0.0], [0.0, 0.0]), InputError, "goals has shape"),
     "nan": (lambda s: potential(s, [0.0, np.nan], [0.0, 0.0]), InputError, "nan"),
-    "start": (lambda s: cs.plan(s.robot, [0, 0], [0.9, 0], s.scene, planner="potential_field"), InputError, "ball touches post"),
+    "start": (
+        lambda s: cs.plan(s.robot, [0, 0], [0.9, 0], s.scene, planner="potential_field"),
+        InputError,
+        "ball touches post",
+    ),
 }
 
 

@@ -18,7 +18,7 @@ struct SymmetricEigen {
 
 // A: n × n, both triangles.
 inline SymmetricEigen decompose_symmetric(std::vector<double> A, std::size_t n) {
-    constexpr int most_sweeps = 30;  // six are enough, for they converge quadratically
+    constexpr int most_sweeps = 30;       // six are enough, for they converge quadratically
     constexpr double negligible = 1e-32;  // of the sum of squares: what rounding leaves off the diagonal
     std::vector<double> V(n * n, 0.0);
     for (std::size_t k = 0; k < n; ++k) V[k * n + k] = 1;
@@ -32,8 +32,7 @@ inline SymmetricEigen decompose_symmetric(std::vector<double> A, std::size_t n) 
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
         double off = 0, all = 0;
         for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t j = 0; j < n; ++j)
-                (i == j ? all : off) += A[i * n + j] * A[i * n + j];
+            for (std::size_t j = 0; j < n; ++j) (i == j ? all : off) += A[i * n + j] * A[i * n + j];
         if (!(off > negligible * (all + off))) break;
         for (std::size_t p = 0; p + 1 < n; ++p)
             for (std::size_t q = p + 1; q < n; ++q) {

@@ -1,7 +1,7 @@
 // Descent of a potential over the joints, step by step, until it arrives or rests; where it rests is named.
 //
-// A step is −(λ I + H)⁻¹ g, with H what is positive in the second derivative: across a stiff valley it goes to
-// the bottom and no farther. λ bounds its length (Moré & Sorensen 1983, "Computing a trust region step").
+// A step is −(λ I + H)⁻¹ g, with H what is positive in the second derivative: across a stiff valley it goes
+// to the bottom and no farther. λ bounds its length (Moré & Sorensen 1983, "Computing a trust region step").
 // Joints at their limits that are pushed outwards stay there. Where the slope jumps, the step goes down the
 // least slope between those around (Burke, Lewis & Overton 2005, "A robust gradient sampling algorithm for
 // nonsmooth, nonconvex optimization"). A rest is a minimum if all eigenvalues of the second derivative, by
@@ -42,7 +42,8 @@ struct Descent {
 // A field offers
 //   width(), lower(k), upper(k)      bounds of the coordinates, infinite where there are none
 //   look(q)                          a FieldLook and what free_share needs
-//   free_share(look, step)           the share of a step, at most 1, over which nothing moves by more than half
+//   free_share(look, step)           the share of a step, at most 1, over which nothing moves by more than
+//   half
 //                                    of its clearance
 //   find_goal(q, to)                 the nearest goal, written to `to` at the turn nearest to q
 //   is_free(a, b), has_time()
@@ -72,19 +73,19 @@ class JointDescent {
     static constexpr double least_step = 1e-10;  // [rad, m]: shorter steps go nowhere
 
   private:
-    static constexpr double rounding = 1e-13;    // of the potential: a gain that rounding may have made
-    static constexpr double clear_gain = 1e-12;  // of the potential: a gain that leaves a saddle
-    static constexpr double promise = 0.1;       // share of what the slope promises that a step must keep
-    static constexpr double nearby = 4;          // steps: farther slopes say nothing of a crease here
+    static constexpr double rounding = 1e-13;      // of the potential: a gain that rounding may have made
+    static constexpr double clear_gain = 1e-12;    // of the potential: a gain that leaves a saddle
+    static constexpr double promise = 0.1;         // share of what the slope promises that a step must keep
+    static constexpr double nearby = 4;            // steps: farther slopes say nothing of a crease here
     static constexpr std::size_t most_recent = 8;  // trials whose slopes are kept
-    static constexpr double difference = 1e-3;   // of the way to half the clearance: for second derivatives
-    static constexpr double closer = 0.125;      // how much closer slopes are compared to find a jump
-    static constexpr double flat = 1e-7;         // of the largest curvature: differences find no sign below
-    static constexpr double at_rest = 1e-4;      // [rad, m]: from a bottom that is farther the descent goes on
-    static constexpr double stationary = 1e-6;   // of the slopes around a crease: their least one
-    static constexpr double crease_force = 1e-2;              // of the slopes around: more is no rest
+    static constexpr double difference = 1e-3;     // of the way to half the clearance: for second derivatives
+    static constexpr double closer = 0.125;        // how much closer slopes are compared to find a jump
+    static constexpr double flat = 1e-7;           // of the largest curvature: differences find no sign below
+    static constexpr double at_rest = 1e-4;     // [rad, m]: from a bottom that is farther the descent goes on
+    static constexpr double stationary = 1e-6;  // of the slopes around a crease: their least one
+    static constexpr double crease_force = 1e-2;  // of the slopes around: more is no rest
     static constexpr double neighbourhoods[] = {1e-3, 1e-4, 1e-5, 1e-6};  // of a crease, as the difference
-    static constexpr double radii[] = {1e-3, 1e-2, 1e-1, 1};  // of the way to half the clearance
+    static constexpr double radii[] = {1e-3, 1e-2, 1e-1, 1};              // of the way to half the clearance
 
     Field& field_;
     const std::size_t n_;
@@ -149,8 +150,7 @@ class JointDescent {
         open_.clear();
         for (std::size_t k = 0; k < n_; ++k) {
             const double g = here_.slope[k];
-            const bool is_held =
-                (g > 0 && at_[k] <= field_.lower(k)) || (g < 0 && at_[k] >= field_.upper(k));
+            const bool is_held = (g > 0 && at_[k] <= field_.lower(k)) || (g < 0 && at_[k] >= field_.upper(k));
             if (!is_held) open_.push_back(k);
         }
     }
@@ -205,8 +205,9 @@ class JointDescent {
 
     Row damped_step(double longest) {
         constexpr int most_rounds = 20;
-        constexpr double loose = 1e-3;  // of the length: the step is cut to it in the end
-        constexpr double singular = 1e-12;
+        constexpr double loose = 1e-3;        // of the length: the step is cut to it in the end
+        constexpr double singular = 1e-12;    // of the trace: what rounding makes of a zero pivot
+        constexpr double first_share = 1e-3;  // of the damping with which the slope alone bounds the step
         const std::size_t m = open_.size();
         Row step(n_, 0.0), x(m), bent(m);
         if (m == 0) return step;
@@ -217,7 +218,7 @@ class JointDescent {
         for (int round = 0; round < most_rounds; ++round) {
             fill_matrix(damping);
             if (!factor_ldl(matrix_, int(m), singular * trace)) {
-                damping = std::max(10 * damping, 1e-3 * first + 10 * singular * trace);
+                damping = std::max(10 * damping, first_share * first + 10 * singular * trace);
                 continue;
             }
             for (std::size_t i = 0; i < m; ++i) x[i] = -here_.slope[open_[i]];
@@ -318,8 +319,10 @@ class JointDescent {
         for (const double radius : neighbourhoods) {
             const std::vector<Row> slopes = list_slopes(radius);
             const Row least = least_between(slopes);
-            const double size = norm(least), largest = norm(*std::max_element(
-                slopes.begin(), slopes.end(), [](const Row& a, const Row& b) { return norm(a) < norm(b); }));
+            const double size = norm(least), largest = norm(*std::max_element(slopes.begin(), slopes.end(),
+                                                                              [](const Row& a, const Row& b) {
+                                                                                  return norm(a) < norm(b);
+                                                                              }));
             if (radius == neighbourhoods[0]) share = size / largest;
             if (size > stationary * largest && descend_along(least, size)) return true;
         }
@@ -334,7 +337,8 @@ class JointDescent {
         for (const std::size_t k : open_) {
             const Row e = unit(k);
             const double h = radius * field_.free_share(here_, e.data());
-            for (const double sign : {1.0, -1.0}) slopes.push_back(open_part(look(shifted(e, sign * h)).slope));
+            for (const double sign : {1.0, -1.0})
+                slopes.push_back(open_part(look(shifted(e, sign * h)).slope));
         }
         return slopes;
     }

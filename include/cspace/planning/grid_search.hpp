@@ -161,9 +161,12 @@ class GridSearch {
     search::Waiting rank(const Note& note, std::uint32_t node) const {
         const double h = double(note.estimate);
         switch (order_) {
-            case GridOrder::a_star: return {note.cost + h, note.estimate, node};
-            case GridOrder::dijkstra: return {note.cost, 0, node};
-            default: return {h, 0, node};
+            case GridOrder::a_star:
+                return {note.cost + h, note.estimate, node};
+            case GridOrder::dijkstra:
+                return {note.cost, 0, node};
+            default:
+                return {h, 0, node};
         }
     }
     double length_of(const float* a, const float* b) const {

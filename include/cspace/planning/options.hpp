@@ -25,15 +25,7 @@ struct ArmOptions {
 };
 
 // disconnected: the free edges of a graph join no start with a goal. resting: a descent does not arrive.
-enum class PlanStatus {
-    found,
-    edge_budget,
-    time_limit,
-    invalid_start,
-    invalid_goals,
-    disconnected,
-    resting
-};
+enum class PlanStatus { found, edge_budget, time_limit, invalid_start, invalid_goals, disconnected, resting };
 
 // A given start or goal; contact: what touches.
 enum class RowState { free, in_collision, out_of_bounds };

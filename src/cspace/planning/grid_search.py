@@ -56,8 +56,9 @@ class GridSearch(EdgePlanner):
     grid holds no path, that is the reason, with the status "undetermined".
 
     heuristic: "distance", the L2 norm of the joints to the nearest goal, d. Or "potential",
-    U = d + min(½ k_r (1/ρ − 1/ρ₀)², cap), with ρ the least distance of the arm from obstacles, and the diagonal of the space as cap: A* takes min(scale U, weight d), so its path is at most `weight`
-    times as long as the shortest over the grid; "best_first" takes U alone.
+    U = d + min(½ k_r (1/ρ − 1/ρ₀)², cap), with ρ the least distance of the arm from obstacles, and the
+    diagonal of the space as cap: A* takes min(scale U, weight d), so its path is at most `weight` times as
+    long as the shortest over the grid; "best_first" takes U alone.
 
     stats: "expansions" counts the nodes that were expanded, "grid_cost" is the length of the path before it
     was shortened, "cells" (dof,) the grid.

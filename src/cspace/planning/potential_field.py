@@ -4,8 +4,8 @@ Khatib 1986, "Real-time obstacle avoidance for manipulators and mobile robots". 
 (1/ρ − 1/ρ₀)² over the control points nearer than ρ₀ to something. d is the distance of the joints to the
 nearest goal (L2 norm); joints that wrap take the short way. U_goal is ½ k d² within `cone` of the goal and
 grows with the constant slope k · cone beyond it. Control points are all spheres of the links that move: each
-obstacle repels a sphere at the distance ρ. Forces act on the joints by the transpose of the Jacobian. Spheres
-of links that are checked against each other repel too, within a shorter distance: some links are always close.
+obstacle repels a sphere at the distance ρ. Forces act on the joints by the transpose of the Jacobian. Links
+that are checked against each other repel too, within a shorter distance: some links are always close.
 """
 
 from __future__ import annotations
@@ -105,13 +105,13 @@ class Potential(NamedTuple):
 class PotentialField(EdgePlanner):
     """Gradient descent on the potential from a start until the arm reaches a goal or stops (Khatib 1986).
 
-    In a step no sphere moves by more than half of its clearance from obstacles, so nothing is jumped, and each
-    step is proved. Within `step` of the goal the arm goes there in a straight line if that is free. Joints stop at
-    their limits. The status is "local_minimum" where the arm stops away from the goal and the potential rises
-    all around: all eigenvalues of its second derivative are positive ("minimum"), or the slopes around cancel
-    each other ("crease"). Elsewhere it is "undetermined". plan.stats["rest"], a PotentialRest, says where the
-    descent ended, why, and what pushes; its path is the descent. With several starts each is tried, the one
-    nearest to a goal first.
+    In a step no sphere moves by more than half of its clearance from obstacles, so nothing is jumped, and
+    each step is proved. Within `step` of the goal the arm goes there in a straight line if that is free.
+    Joints stop at their limits. The status is "local_minimum" where the arm stops away from the goal and the
+    potential rises all around: all eigenvalues of its second derivative are positive ("minimum"), or the
+    slopes around cancel each other ("crease"). Elsewhere it is "undetermined". plan.stats["rest"], a
+    PotentialRest, says where the descent ended, why, and what pushes; its path is the descent. With several
+    starts each is tried, the one nearest to a goal first.
     """
 
     name = "potential_field"
@@ -166,7 +166,16 @@ class PotentialField(EdgePlanner):
 
     def _make_rule(self, space: ArmSpace) -> FieldRule:
         """The options as the core takes them."""
-        return FieldRule(*self._gains(space).values(), self.looks)
+        given = self._gains(space)
+        return FieldRule(
+            given["k"],
+            given["k_r"],
+            given["rho_0"],
+            given["cone"],
+            given["rho_links"],
+            given["step"],
+            self.looks,
+        )
 
     def _plan_rows(self, space: ArmSpace, rows: tuple[Array, Array], rng: Seed) -> Any:
         """See EdgePlanner; with how the descent ended."""
@@ -251,8 +260,8 @@ def potential(
 ) -> Potential:
     """The potential of goals (dof,) or (g, dof) at q (..., dof) [rad or m], and its gradient.
 
-    k, k_r, rho_0, cone, rho_links: as for the planner "potential_field". Margins of the space count. In contact the
-    value is that at a distance of 1e-9 rho_0.
+    k, k_r, rho_0, cone, rho_links: as for the planner "potential_field". Margins of the space count. In
+    contact the value is that at a distance of 1e-9 rho_0.
     Raises InputError for configurations of another shape, or with NaN.
     """
     planner = PotentialField(k=k, k_r=k_r, rho_0=rho_0, cone=cone, rho_links=rho_links)
@@ -260,7 +269,5 @@ def potential(
     rows = np.ascontiguousarray(at.reshape(-1, space.dof))
     targets = space.as_rows(goals, "goals")
     rule = planner._make_rule(space)
-    values, gradients = evaluate_potential(
-        space.checker.core, space.bounds, space.wraps, targets, rule, rows
-    )
+    values, gradients = evaluate_potential(space.checker.core, space.bounds, space.wraps, targets, rule, rows)
     return Potential(values.reshape(at.shape[:-1]), gradients.reshape(at.shape))
