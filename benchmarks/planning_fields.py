@@ -1,10 +1,10 @@
 """Potential fields and grids of arms on random problems: how descents end, what searches cost.
 
 Usage: python benchmarks/planning_fields.py [--problems 1000]. Problems are random scenes of boxes, spheres
-and capsules around planar_2r, planar_3r, so101 and ur5, a quarter of all for each, with a free start and goal.
-Every stop of a descent is judged by values of the potential and differences of its gradients in numpy. On the
-planar arms the potential as the heuristic of A* and of best-first search is compared with A*, Dijkstra's
-search and breadth-first search over the same grid. Times are those of the thread's processor clock. Writes
+and capsules around planar_2r, planar_3r, so101 and ur5, as many for each, with a free start and goal. Every
+stop of a descent is judged by values of the potential around it in numpy. On the planar arms the potential as
+the heuristic of A* and of best-first search is compared with A*, Dijkstra's search and breadth-first search
+over the same grid. Times are those of the thread's processor clock. Writes
 benchmarks/results/planning_fields.json.
 """
 

@@ -1,4 +1,4 @@
-"""Grid search: costs beside those of a slow search over the same grid, limits, wraps, grids without a path."""
+"""Grid search: costs beside those of a slow search over the same grid, limits, wraps, and failures."""
 
 import heapq
 import itertools
