@@ -13,6 +13,10 @@ import cspace as cs
 from cspace import plot
 
 DPI = 80
+LINK_RADIUS = 0.04
+"""Of the links of planar_2r in its picture [m]."""
+LEVELS_TO = 2.5
+"""The highest band of a potential: beyond it, at obstacles, it rises without bound."""
 TOUCHED = ("wrist_1_link", "wrist_2_link", "wrist_3_link")
 
 
@@ -58,10 +62,41 @@ def plan_with_a_bottle() -> Sequence[Any]:
     return plot.plan(cs.plan(robot, start, ends[1], scene), title="ur5e: a bottle is carried over a divider")
 
 
+def potential_of_two_joints() -> Sequence[Any]:
+    """The example of the page: bands of the potential, a descent that stops, and the path of A*."""
+    from matplotlib import pyplot as plt
+
+    from cspace.planning import ArmSpace, GridSearch, PotentialField, potential
+
+    robot = cs.load_robot("planar_2r")
+    scene = cs.Scene(
+        [
+            cs.Box([0.5, 0.5, 0.5], [1.2, 1.3, 0], name="box"),
+            cs.Sphere(0.3, [-1.4, 0.6, 0], name="ball"),
+        ]
+    )
+    start, goal = np.array([0.2, 0.3]), np.array([1.8, 0.8])
+    space = ArmSpace(robot, scene)
+    path = GridSearch(step=0.05).plan(space, start, goal).path
+    rest = PotentialField().plan(space, start, goal).stats["rest"]
+    exact = cs.configuration_space(robot, scene, link_radius=LINK_RADIUS)
+    _, axes = plt.subplots(1, 2, figsize=(10, 5), layout="constrained")
+    artists = plot.configuration_space(exact, start=start, goals=goal, path=path, ax=axes)
+    cells = np.linspace(-np.pi, np.pi, 241)
+    q = np.stack(np.meshgrid(cells, cells, indexing="ij"), axis=-1)
+    values = potential(space, goal, q).value.T
+    levels = np.linspace(0.0, LEVELS_TO, 24)
+    artists.append(axes[1].contour(cells, cells, values, levels=levels, cmap="Blues_r", linewidths=0.7))
+    artists += axes[1].plot(*rest.path.T, color="#1b7837", linewidth=2.0)
+    artists += axes[1].plot(*rest.q, "X", color="#1b7837", markersize=9)
+    return artists
+
+
 PICTURES: tuple[Callable[[], Sequence[Any]], ...] = (
     plan_around_a_wall,
     spheres_of_an_arm,
     plan_with_a_bottle,
+    potential_of_two_joints,
 )
 
 

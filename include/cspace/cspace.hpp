@@ -49,6 +49,8 @@
 #include "cspace/navigation/visibility/search.hpp"
 #include "cspace/navigation/voronoi/roadmap.hpp"
 #include "cspace/planning/aorrtc.hpp"
+#include "cspace/planning/descent.hpp"
+#include "cspace/planning/grid_search.hpp"
 #include "cspace/planning/options.hpp"
 #include "cspace/planning/rrt_connect.hpp"
 #include "cspace/planning/simplify.hpp"

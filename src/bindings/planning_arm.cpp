@@ -1,5 +1,5 @@
 // The compiled half of cspace.planning: plans of arms.
-#include "library/planning_arm.hpp"
+#include "planning_arm.hpp"
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -8,7 +8,6 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
-#include "collision.hpp"
 #include "library/planning_arm_roadmap.hpp"
 
 namespace nb = nanobind;
@@ -17,29 +16,6 @@ using namespace cspace;
 using namespace cspace::planning;
 
 namespace {
-
-using Bytes = Plain<const std::uint8_t>;
-
-// A plan and the checker whose numbers its contacts have.
-struct NamedPlan {
-    ArmPlan plan;
-    const collision::Checker* checker;
-    int dof;
-
-    Doubles path() const { return rows_of(plan.path); }
-    Doubles rows_of(const std::vector<double>& values) const {
-        const std::size_t width = std::size_t(std::max(dof, 1));
-        return Doubles({npy_intp(values.size() / width), dof}, values.data());
-    }
-    // State and contact of each start or goal.
-    using Reports = std::vector<std::pair<int, std::optional<NamedContact>>>;
-    Reports name_rows(const std::vector<RowReport>& rows) const {
-        Reports named;
-        for (const RowReport& row : rows)
-            named.emplace_back(int(row.state), name_contact(*checker, row.contact));
-        return named;
-    }
-};
 
 // Numbers of a list or tuple of rows of equal length, one below the other; an array of no size for others.
 Doubles read_nested_rows(PyObject* value, npy_intp width) {
@@ -72,18 +48,6 @@ std::optional<ConstDoubles> as_rows(nb::handle value, int dof, double largest) {
     const bool all_fit = std::all_of(rows.data, rows.data + rows.size,
                                      [&](double number) { return std::fabs(number) <= largest; });
     return all_fit && rows.size > 0 ? std::optional(rows) : std::nullopt;
-}
-
-ArmSpace read_space(const collision::Checker& checker, const ConstDoubles& bounds, const Bytes& wraps) {
-    require(bounds.ndim() == 2 && bounds.shape(0) == 2 && bounds.shape(1) == checker.dof(),
-            "bounds must be an array (2, dof)");
-    require(wraps.size == checker.dof(), "wraps must be an array (dof,)");
-    const std::size_t n = std::size_t(checker.dof());
-    return {checker, {bounds.data, n}, {bounds.data + n, n}, {wraps.data, n}};
-}
-std::span<const double> read_rows(const collision::Checker& checker, const ConstDoubles& rows) {
-    require(rows.ndim() == 2 && rows.shape(1) == checker.dof(), "configurations must be an array (n, dof)");
-    return {rows.data, std::size_t(rows.size)};
 }
 
 ArmOptions read_options(bool proves_search, bool proves_answer, bool simplify, std::uint64_t seed,
@@ -180,7 +144,7 @@ nb::dict stats_of(const NamedPlan& named) {
     stats["removed"] = s.removed, stats["shortcuts"] = s.shortcuts, stats["proofs"] = s.proofs;
     stats["search_seconds"] = s.search_seconds, stats["simplify_seconds"] = s.simplify_seconds;
     stats["proof_seconds"] = s.proof_seconds, stats["improve_seconds"] = s.improve_seconds;
-    stats["improvements"] = s.improvements;
+    stats["improvements"] = s.improvements, stats["expansions"] = s.expansions;
     if (named.plan.status == PlanStatus::disconnected)
         stats["start_nodes"] = s.start_nodes, stats["goal_nodes"] = s.goal_nodes;
     return stats;

@@ -672,6 +672,67 @@ class TwoJointSpace:
     def find_path(self, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """A free path (m, 2); empty where none is known."""
 
+class GridRule:
+    """Options of a search over a grid of configurations."""
+
+    def __init__(self, cells: numpy.typing.NDArray[numpy.int32], order: int, reach: int, weight: float, has_potential: bool, scale: float, k_r: float, rho_0: float, cap: float) -> None: ...
+
+class FieldRule:
+    """Options of a descent of a potential."""
+
+    def __init__(self, k: float, k_r: float, rho_0: float, cone: float, rho_links: float, step: float, looks: int) -> None: ...
+
+class FieldRest:
+    """How a descent ended."""
+
+    @property
+    def kind(self) -> int: ...
+
+    @property
+    def rows(self) -> numpy.typing.NDArray[numpy.float64]:
+        """The configurations of the descent (m, dof)."""
+
+    @property
+    def values(self) -> numpy.typing.NDArray[numpy.float64]:
+        """Their potentials (m,)."""
+
+    @property
+    def force(self) -> float: ...
+
+    @property
+    def distance(self) -> float: ...
+
+    @property
+    def saddles(self) -> int: ...
+
+    @property
+    def pushes(self) -> list[tuple[tuple[bool, int, int] | None, float, float]]:
+        """What repels: the contact, the force, the distance."""
+
+def plan_on_grid(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions, rule: GridRule) -> ArmPlan:
+    """See plan_arm."""
+
+def plan_each_on_grid(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, rule: GridRule, threads: int) -> list[ArmPlan]:
+    """See plan_arms."""
+
+def plan_by_field(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions, rule: FieldRule) -> tuple[ArmPlan, FieldRest]:
+    """A plan and how the descent ended; the checker must outlive them."""
+
+def plan_each_by_field(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, rule: FieldRule, threads: int) -> list[tuple[ArmPlan, FieldRest]]:
+    """
+    A plan per problem, and how its descent ended; the checker must outlive them.
+    """
+
+def evaluate_potential(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], goals: numpy.typing.NDArray[numpy.float64], rule: FieldRule, q: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    The potentials (n,) of goals (g, dof) at q (n, dof), and their gradients (n, dof).
+    """
+
+def find_reach(checker: CollisionChecker) -> float:
+    """
+    The farthest that a sphere may be from the axis of a joint that moves it [m].
+    """
+
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...
 def _car_shortest(*arguments: Any) -> Any: ...

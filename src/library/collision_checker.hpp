@@ -47,6 +47,7 @@ class Checker {
     const Robot& robot() const { return view_; }
     const Scene& scene() const { return scene_; }
     const SceneData& scene_data() const { return *data_; }
+    const RobotData& robot_data() const { return *robot_; }
     int dof() const { return robot().n_coordinates; }
     // What touches before anything moves: a link of the base and an obstacle. other < 0: nothing.
     const Contact& base_contact() const { return base_contact_; }

@@ -159,6 +159,11 @@ class ArmEdges {
         is_late_ = is_late_ || Clock::now() >= deadline_;
         return !is_late_;
     }
+    // The same with a look at the clock in any case.
+    bool has_time_now() {
+        calls_left_ = 0;
+        return has_time();
+    }
     bool is_late() const { return is_late_; }
 
     std::int64_t blocks() const { return memory_->w.blocks; }

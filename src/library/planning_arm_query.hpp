@@ -93,6 +93,16 @@ class ArmQuery {
         for (std::size_t k = 0; k < order.size(); ++k) goals_[k] = order[k].second;
     }
 
+    // The same in doubles, as given.
+    template <class Add>
+    void each_given_start(const Add& add) const {
+        for (const int i : starts_) add(start_row(i));
+    }
+    template <class Add>
+    void each_given_goal(const Add& add) const {
+        for (const int i : goals_) add(goal_row(i));
+    }
+
     // The path of a search, unwound: joints that wrap go on beyond ±π. Between a root of the starts and one
     // of the goals there are `inner` rows; copy(i, q) writes one of them.
     template <class CopyRow>
@@ -291,18 +301,18 @@ inline void check_options(const ArmOptions& options) {
 
 // A Search is made of a space, a problem and further options, and has run().
 template <class Search, class... More>
-ArmPlan run_search(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options,
-                   const More&... more) {
+auto run_search(const ArmSpace& space, const ArmProblem& problem, const ArmOptions& options,
+                const More&... more) {
     check_space(space), check_options(options), check_problem(space, problem);
     return Search(space, problem, options, more...).run();
 }
 // Each as if alone, on so many threads (0: all).
 template <class Search, class... More>
-std::vector<ArmPlan> run_searches(const ArmSpace& space, std::span<const ArmProblem> problems,
-                                  const ArmOptions& options, int threads, const More&... more) {
+auto run_searches(const ArmSpace& space, std::span<const ArmProblem> problems, const ArmOptions& options,
+                  int threads, const More&... more) {
     check_space(space), check_options(options);
     for (const ArmProblem& problem : problems) check_problem(space, problem);
-    std::vector<ArmPlan> plans(problems.size());
+    std::vector<decltype(std::declval<Search&>().run())> plans(problems.size());
     over_rows(problems.size(), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
         for (; begin < end; ++begin) plans[begin] = Search(space, problems[begin], options, more...).run();
         return true;

@@ -48,6 +48,10 @@ def test_corners_are_printed_in_degrees_or_radians():
     np.testing.assert_allclose(np.array(rows, dtype=float), np.degrees(path), atol=6e-4)
     assert any(line.startswith("motions") and "proved free" in line for line in lines)
     assert "edges" in cspace(f"{LINE} {ENDS} --details").out
+    assert (
+        "samples"
+        in cspace("plan planar_2r --from 0.2 0.3 --to 1.8 0.8 --planner potential_field --details").out
+    )
 
 
 def test_named_poses_and_several_goals(robot):

@@ -32,8 +32,8 @@ struct TreeOptions {
     double goal_bias = 0.05;   // how often a goal is drawn while no path is known
 };
 
-// disconnected: the free edges of a roadmap join no start with a goal.
-enum class PlanStatus { found, edge_budget, time_limit, invalid_start, invalid_goals, disconnected };
+// disconnected: the free edges of a graph join no start with a goal. resting: a descent does not arrive.
+enum class PlanStatus { found, edge_budget, time_limit, invalid_start, invalid_goals, disconnected, resting };
 
 // A given start or goal; contact: what touches.
 enum class RowState { free, in_collision, out_of_bounds };
@@ -50,6 +50,7 @@ struct ArmStats {
                  proofs = 0;        // edges checked for simplification; of what was left of the trees
     std::int64_t improvements = 0;  // shorter paths after the first
     std::int64_t start_nodes = 0, goal_nodes = 0;  // of a roadmap: those that the ends are joined with
+    std::int64_t expansions = 0;                   // of nodes of a grid
     double search_seconds = 0, simplify_seconds = 0, proof_seconds = 0, improve_seconds = 0;
 };
 

@@ -3,12 +3,14 @@
 from cspace.planning.aorrtc import AORRTC
 from cspace.planning.arm_planner import ArmPlanner
 from cspace.planning.configuration_spaces import configuration_space
+from cspace.planning.grid_search import GridSearch
 from cspace.planning.joint_space.projections import Projection
 from cspace.planning.joint_space.slices import Slice
 from cspace.planning.joint_space.space import JointSpace
 from cspace.planning.joint_space.volumes import Volume
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
+from cspace.planning.potential_field import Potential, PotentialField, PotentialRest, Push, potential
 from cspace.planning.prm import PRM, LazyPRM, PRMStar
 from cspace.planning.region import Region
 from cspace.planning.roadmap import Roadmap
@@ -30,12 +32,17 @@ __all__ = [
     "ConfigurationSpace",
     "Connection",
     "FreeComponent",
+    "GridSearch",
     "InformedRRTStar",
     "JointSpace",
     "LazyPRM",
     "PRMStar",
     "Plan",
+    "Potential",
+    "PotentialField",
+    "PotentialRest",
     "Projection",
+    "Push",
     "RRTConnect",
     "RRTStar",
     "Region",
@@ -44,4 +51,5 @@ __all__ = [
     "Volume",
     "configuration_space",
     "find_planner",
+    "potential",
 ]

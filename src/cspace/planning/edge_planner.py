@@ -19,7 +19,15 @@ from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
 from cspace.tolerances import LARGEST_NUMBER
 
-ENDS = ("found", "edge budget", "time limit", "invalid start", "invalid goals", "disconnected")
+ENDS = (
+    "found",
+    "edge budget",
+    "time limit",
+    "invalid start",
+    "invalid goals",
+    "disconnected",
+    "resting",
+)
 """How the core ends, in its order."""
 
 
@@ -91,9 +99,9 @@ class EdgePlanner(ArmPlanner):
             self.resolution,
         )
 
-    def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> Plan:
-        """The Plan of what the core found."""
-        status, reason = explain_end(space, rows, found, self.approach)
+    def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: Any) -> Plan:
+        """The Plan of what the core found, an ArmPlan."""
+        status, reason = self._explain_end(space, rows, found)
         path = found.path
         return Plan(
             status=status,
@@ -103,10 +111,18 @@ class EdgePlanner(ArmPlanner):
             start=found.start,
             goal=found.goal,
             certified=found.certified,
-            stats=found.stats,
+            stats=self._list_stats(space, found),
             space=space,
             planner=self,
         )
+
+    def _explain_end(self, space: ArmSpace, rows: tuple[Array, Array], found: Any) -> tuple[str, str]:
+        """The status of a plan, and its reason in words."""
+        return explain_end(space, rows, found, self.approach)
+
+    def _list_stats(self, space: ArmSpace, found: Any) -> dict[str, Any]:
+        """What the search did."""
+        return dict(found.stats)
 
 
 def are_rows(space: ArmSpace, problems: Sequence[tuple[Any, Any]]) -> bool:
@@ -165,7 +181,12 @@ def explain_budget(space: ArmSpace, found: ArmPlan, end: str, approach: str) -> 
     distance, near, _ = found.approach
     if len(near):
         parts.append(approach.format(shown(distance)))
+    return join_words(parts + name_blocker(space, found))
+
+
+def name_blocker(space: ArmSpace, found: ArmPlan) -> list[str]:
+    """What was most in the way, in words; empty if nothing was."""
     contact, count = found.blocker
-    if contact is not None:
-        parts.append(f"{' and '.join(space.checker.name_pair(contact))} blocked {count} motions")
-    return join_words(parts)
+    if contact is None:
+        return []
+    return [f"{' and '.join(space.checker.name_pair(contact))} blocked {count} motions"]

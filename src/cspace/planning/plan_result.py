@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from cspace.planning.space import ArmSpace
     from cspace.search import Planner
 
-STATUSES = ("found", "unreachable", "undetermined", "invalid_start", "invalid_goal")
-"""What a plan can be: only "found" has a path; "unreachable" is proved; "undetermined" used up its budget."""
+STATUSES = ("found", "unreachable", "undetermined", "local_minimum", "invalid_start", "invalid_goal")
+"""What a plan can be: only "found" has a path; "unreachable" is proved; "undetermined" used up its budget;
+"local_minimum" is where the descent of a potential stopped away from the goal."""
 
 CLEARANCE_STEP = 1.0 / 32.0
 """Distance of the configurations at which `Plan.clearance` looks [L2 norm of the joints]."""

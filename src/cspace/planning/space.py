@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from cspace._core import as_rows
+from cspace._core import as_rows, find_reach
 from cspace.arrays import Array, as_floats
 from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
@@ -37,6 +39,11 @@ class ArmSpace:
             kept["bounds"] = find_bounds(self.geometry)
         self.bounds, self.wraps = kept["bounds"]
         self.lower, self.upper = self.bounds
+
+    @cached_property
+    def reach(self) -> float:
+        """The farthest that a sphere may be from the axis of a joint that moves it [m]."""
+        return find_reach(self.checker.core)
 
     def edge(self, a: ArrayLike, b: ArrayLike, *, resolution: float | None = None) -> Edge:
         """The motion from a to b (dof,), joints that wrap the short way; see collision.edge."""

@@ -327,7 +327,8 @@ def print_plan(args: argparse.Namespace, out: Output, robot: Robot, plan: Plan, 
         "time [ms]": f"{1e3 * seconds:.3f}",
     }
     if args.details:
-        facts |= {name.replace("_", " "): f"{value:.6g}" for name, value in plan.stats.items()}
+        numbers = {name: value for name, value in plan.stats.items() if isinstance(value, (int, float))}
+        facts |= {name.replace("_", " "): f"{value:.6g}" for name, value in numbers.items()}
     out.facts(facts)
     out.hint(
         f"angles in {'deg' if args.deg else 'rad'}" + (", slides in m" if "P" in robot.joint_types else "")
