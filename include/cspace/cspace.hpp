@@ -58,6 +58,7 @@
 #include "cspace/planning/two_joints/bitmap.hpp"
 #include "cspace/planning/two_joints/boundaries.hpp"
 #include "cspace/planning/two_joints/path.hpp"
+#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/cover.hpp"
 #include "cspace/shapes/triangle.hpp"
 #include "cspace/version.hpp"

@@ -25,17 +25,6 @@ std::vector<std::pair<int, int>> read_pairs(const Integers& given) {
     return pairs;
 }
 
-// Rows (16): 0 for a box, 1 a cylinder, 2 a capsule; half sides of a box, or radius twice and half length;
-// the pose in the frame of its body, R by rows, then p. A capsule lies along z like a cylinder.
-shapes::Convex read_solid(const double* row) {
-    const double* r = row + 4;
-    const Posed pose = {{{{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}}}, {r[9], r[10], r[11]}};
-    if (row[0] == 0) return shapes::make_box(pose, {row[1], row[2], row[3]});
-    if (row[0] == 1) return shapes::make_cylinder(pose, row[1], row[3]);
-    const Vec3d ends[] = {pose * Vec3d{0, 0, -row[3]}, pose * Vec3d{0, 0, row[3]}};
-    return shapes::make_points(ends, 2, row[1]);
-}
-
 // joints (n, 21): the pose T_parent_joint by rows, parent, coordinate, ratio, offset, prismatic.
 std::shared_ptr<RobotData> make_robot(const ConstDoubles& joints, const ConstDoubles& bounds,
                                       const Integers& link_bodies, const ConstDoubles& spheres,
@@ -60,7 +49,8 @@ std::shared_ptr<RobotData> make_robot(const ConstDoubles& joints, const ConstDou
             {{row[0], row[1], row[2]}, row[3], int(sphere_links.data[k]), int(sphere_solids.data[k])});
     }
     std::vector<shapes::Convex> exact;
-    for (npy_intp k = 0; k < solids.shape(0); ++k) exact.push_back(read_solid(solids.data + solid_width * k));
+    for (npy_intp k = 0; k < solids.shape(0); ++k)
+        exact.push_back(collision::read_solid(solids.data + solid_width * k));
     const std::vector<int> bodies(link_bodies.data, link_bodies.data + link_bodies.size);
     const std::size_t n = std::size_t(bounds.shape(1));
     return std::make_shared<RobotData>(read, int(n), std::span(bounds.data, n), std::span(bounds.data + n, n),

@@ -452,6 +452,7 @@ def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.floa
 @overload
 def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, threads: int, tree: TreeOptions) -> list[ArmPlan]:
     """The same by a tree from the starts."""
+
 class ArmRoadmap:
     """A roadmap of an arm."""
 

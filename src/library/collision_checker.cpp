@@ -6,6 +6,7 @@
 #include <new>
 
 #include "cspace/math/threads.hpp"
+#include "cspace/shapes/convex_distance.hpp"
 #include "kernels/collision.hpp"
 
 namespace cspace::collision {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "cspace/math/interrupts.hpp"
+#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/distance.hpp"
 
 namespace cspace::collision {
@@ -49,6 +50,17 @@ shapes::Distance CloudData::distance(const Vec3d& point, double limit) const {
     });
     if (found < 0) return {infinity, {0, 0, 1}};
     return shapes::from_place(point, place(found), radius_);
+}
+
+template <class Limit, class Visit>
+bool CloudData::visit_balls(const shapes::Convex& solid, const Limit& limit, const Visit& visit) const {
+    const double size = shapes::bound_size(solid) + radius_;
+    return visit_near(
+        nodes_, shapes::find_center(solid), [&] { return size + limit(); },
+        [&](int k) {
+            const double* p = &points_[3 * std::size_t(k)];
+            return visit(shapes::make_ball({p[0], p[1], p[2]}, radius_));
+        });
 }
 
 bool CloudData::is_within(const shapes::Convex& solid, double gap) const {

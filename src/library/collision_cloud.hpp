@@ -6,7 +6,7 @@
 
 #include "collision_grid.hpp"
 #include "collision_tree.hpp"
-#include "cspace/shapes/convex_distance.hpp"
+#include "cspace/shapes/plain.hpp"
 
 namespace cspace::collision {
 
@@ -34,15 +34,7 @@ class CloudData {
 
     // Calls visit(ball) for the balls that may be within limit() of a solid, until it returns true.
     template <class Limit, class Visit>
-    bool visit_balls(const shapes::Convex& solid, const Limit& limit, const Visit& visit) const {
-        const double size = shapes::bound_size(solid) + radius_;
-        return visit_near(
-            nodes_, shapes::find_center(solid), [&] { return size + limit(); },
-            [&](int k) {
-                const double* p = &points_[3 * std::size_t(k)];
-                return visit(shapes::make_ball({p[0], p[1], p[2]}, radius_));
-            });
-    }
+    bool visit_balls(const shapes::Convex& solid, const Limit& limit, const Visit& visit) const;
 };
 
 }  // namespace cspace::collision

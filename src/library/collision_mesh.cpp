@@ -6,6 +6,7 @@
 
 #include "cspace/collision/tree_gap.hpp"
 #include "cspace/math/interrupts.hpp"
+#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/triangle.hpp"
 #include "cspace/tolerances.hpp"
 

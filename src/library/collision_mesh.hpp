@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "collision_tree.hpp"
-#include "cspace/shapes/convex_distance.hpp"
+#include "cspace/shapes/plain.hpp"
 
 namespace cspace::collision {
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "cspace/shapes/convex.hpp"
 #include "cspace/shapes/smallest_ball.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -101,6 +102,15 @@ double travel_of(const model::Joint& joint, std::span<const double> lower, std::
 }
 
 }  // namespace
+
+shapes::Convex read_solid(const double* row) {
+    const double* r = row + 4;
+    const Posed pose = {{{{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}}}, {r[9], r[10], r[11]}};
+    if (row[0] == 0) return shapes::make_box(pose, {row[1], row[2], row[3]});
+    if (row[0] == 1) return shapes::make_cylinder(pose, row[1], row[3]);
+    const Vec3d ends[] = {pose * Vec3d{0, 0, -row[3]}, pose * Vec3d{0, 0, row[3]}};
+    return shapes::make_points(ends, 2, row[1]);
+}
 
 RobotData::RobotData(std::span<const model::Joint> joints, int n_coordinates, std::span<const double> lower,
                      std::span<const double> upper, std::span<const int> link_bodies,

@@ -6,7 +6,7 @@
 
 #include "cspace/collision/robot.hpp"
 #include "cspace/model/tree.hpp"
-#include "cspace/shapes/convex.hpp"
+#include "cspace/shapes/plain.hpp"
 
 namespace cspace::collision {
 
@@ -16,6 +16,10 @@ struct Sphere {
     int link;
     int solid = -1;  // the convex solid that it helps to cover, or −1 if it counts itself
 };
+
+// From 16 numbers: 0 for a box, 1 a cylinder, 2 a capsule; half sides of a box, or radius twice and half
+// length; the pose in the frame of its body, R by rows, then p. A capsule lies along z like a cylinder.
+shapes::Convex read_solid(const double* row);
 
 class RobotData {
   public:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/distance.hpp"
 #include "cspace/tolerances.hpp"
 

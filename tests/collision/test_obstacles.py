@@ -107,7 +107,7 @@ def test_paths_are_planned_around_meshes_and_clouds():
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_solids_are_the_same_beside_a_mesh_out_of_reach(seed):
-    """Scenes of solids alone are packed in the core, others by arrays; a base that is mounted counts in both."""
+    """Scenes of solids alone are packed in the core, others by arrays; a mounted base counts."""
     rng = np.random.default_rng(seed)
     robot = random_robot(seed).with_base(random_pose(rng, 0.5))
     solids = [

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "cspace/shapes/convex.hpp"
 #include "library/collision_checker.hpp"
 #include "random.hpp"
 

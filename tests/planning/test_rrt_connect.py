@@ -26,7 +26,11 @@ def judge_path(robot, scene, path):
         distances = robot.clearance(rows, scene).distance
         least = min(least, distances.min())
         middle = rows[int(np.argmin(distances))]
-        assert oracle.clearance(robot, middle, scene)[0] == pytest.approx(distances.min(), abs=1e-9)
+        by_spheres = oracle.clearance(robot, middle, scene)[0]
+        if len(robot.collision.solids):  # spheres only cover them
+            assert by_spheres < distances.min() + 1e-9
+        else:
+            assert by_spheres == pytest.approx(distances.min(), abs=1e-9)
     return least
 
 

@@ -239,7 +239,7 @@ class Block {
     struct Refined {
         unsigned stamp = 0;
         int one = -1, other = -1;
-        bool is_moving = false;
+        int kind = 0;  // of the motion
         unsigned tested = 0, touching = 0, near = 0;
     };
     static constexpr int first_pair = 1 << 30;
@@ -290,8 +290,14 @@ class Block {
             return;
         }
         FloatMask touching = gap < touching_square(marks, sum);
-        if constexpr (Motion::is_cell)
+        if constexpr (Motion::is_cell) {
             if (is_convex(scene, i)) touching = motion.refine_primitive(touching, x, i, at, gap, sum);
+            const unsigned suspects = bits_of(touching) & wanted;
+            if (!Motion::is_shrinking && is_cover(s)) {
+                if (suspects) refine_primitive(x, s, i, suspects, motion, marks);
+                return;
+            }
+        }
         marks.touching = marks.touching | touching;
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, sum);
@@ -324,7 +330,14 @@ class Block {
             return;
         }
         FloatMask touching = gap < touching_square(marks, r);
-        if constexpr (Motion::is_cell) touching = relative.refine(touching, at, other_at, gap, r);
+        if constexpr (Motion::is_cell) {
+            touching = relative.refine(touching, at, other_at, gap, r);
+            const unsigned suspects = bits_of(touching) & wanted;
+            if (!Motion::is_shrinking && (is_cover(s) || is_cover(other))) {
+                if (suspects) refine_pair(links, s, other, suspects, relative, marks);
+                return;
+            }
+        }
         marks.touching = marks.touching | touching;
         if constexpr (Motion::is_moving) {
             const FloatMask near = gap < square_of(marks.growth, r);
@@ -394,14 +407,14 @@ class Block {
         }
     };
     // Of lanes in which a cover may touch: those in which the solid does, or may on its way. The spheres of a
-    // solid come one after the other, so the last answer is kept.
-    template <class Motion, class Test>
+    // solid come one after the other, so the last answer is kept. way: null if nothing moves.
+    template <class Motion, class Test, class Way>
     void refine(int one, int other, unsigned suspects, const Test& test, const Way* way, float radius,
                 Marks<Motion>& marks) {
-        const bool is_moving = way != nullptr;
+        const int kind = Motion::is_moving ? 1 : Motion::is_cell ? 2 : 0;
         if (refined_.stamp != w.stamp || refined_.one != one || refined_.other != other ||
-            refined_.is_moving != is_moving)
-            refined_ = {w.stamp, one, other, is_moving, 0, 0, 0};
+            refined_.kind != kind)
+            refined_ = {w.stamp, one, other, kind, 0, 0, 0};
         for (unsigned bits = suspects & ~refined_.tested; bits; bits &= bits - 1) {
             const int lane = lowest_lane(bits);
             refined_.tested |= 1u << lane;
@@ -419,11 +432,11 @@ class Block {
         const int solid = robot.sphere_solids[s];
         const Ball& ball = robot.solid_balls[solid];
         const PrimitiveTest test = {*this, s, x, i};
-        if constexpr (Motion::is_moving) {
-            const Way way = motion.way_of(x, place_ball(frames[x], ball));
+        if constexpr (Motion::is_moving || Motion::is_cell) {
+            const auto way = motion.way_of(x, place_ball(frames[x], ball), ball.r);
             refine(solid, i, suspects, test, &way, ball.r, marks);
         } else {
-            refine(solid, i, suspects, test, nullptr, 0, marks);
+            refine(solid, i, suspects, test, static_cast<const Way*>(nullptr), 0, marks);
         }
     }
     // Sphere s is of link b of the pair, the other one of link a. Numbers below zero stand for spheres.
@@ -436,12 +449,12 @@ class Block {
         };
         const int one = number(s), two = first_pair + number(other) + robot.n_spheres;
         const PairTest test = {*this, s, x, other, other_x};
-        if constexpr (Motion::is_moving) {
+        if constexpr (Motion::is_moving || Motion::is_cell) {
             const Ball& ball = ball_around(s);
-            const Way way = relative.way_of(place_ball(frames[x], ball));
+            const auto way = relative.way_of(place_ball(frames[x], ball), ball.r);
             refine(one, two, suspects, test, &way, ball.r, marks);
         } else {
-            refine(one, two, suspects, test, nullptr, 0, marks);
+            refine(one, two, suspects, test, static_cast<const Way*>(nullptr), 0, marks);
         }
     }
     // The lanes in which a sphere, or the solid that it covers, touches a primitive.
@@ -469,7 +482,8 @@ class Block {
     template <class Motion>
     CSPACE_INLINE bool settle(const Marks<Motion>& marks) {
         if constexpr (Motion::is_moving) unsure |= (bits_of(marks.near) & wanted) | marks.exact_near;
-        const unsigned touching = (bits_of(marks.touching) & wanted) | marks.exact_touching;
+        unsigned touching = (bits_of(marks.touching) & wanted) | marks.exact_touching;
+        if constexpr (Motion::is_cell) touching |= marks.exact_near;
         hit |= touching;
         return touching != 0;
     }

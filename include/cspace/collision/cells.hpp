@@ -26,13 +26,16 @@ class CellMotion {
         : block_(block), half_(half), rounding_(rounding) {}
 
     // An upper bound on the motion of a place on body b against body a.
-    CSPACE_INLINE Floats bound(int a, int b, const Place& at) const {
+    CSPACE_INLINE Floats bound(int a, int b, const Place& at) const { return bound(a, b, at, 0); }
+    // The same of all places within a ball.
+    CSPACE_INLINE Floats bound(int a, int b, const Place& at, float radius) const {
         Floats one = fill_floats(0.0f), other = one;
         while (a != b) {
             int& body = b > a ? b : a;
             Floats& moved = b > a ? one : other;
             const Joint& joint = block_.robot.joints[body - 1];
-            if (const float h = half_of(joint); h > 0) moved = moved + lever(joint, body, at, moved) * h;
+            if (const float h = half_of(joint); h > 0)
+                moved = moved + lever(joint, body, at, moved + radius) * h;
             body = joint.parent;
         }
         return (one + other) * round_up + 2 * rounding_;
@@ -105,6 +108,16 @@ class CellMotion {
     }
 };
 
+// How far the places of a solid may move, in each lane.
+class CellWay {
+  public:
+    CSPACE_INLINE explicit CellWay(Floats growth) { store_floats(growth_, growth); }
+    bool may_close(int lane, float gap, float, const float*) const { return gap <= growth_[lane]; }
+
+  private:
+    alignas(32) float growth_[float_lanes];
+};
+
 // Balls grown by their motion: a lane in which none touches is free in its whole cell.
 struct GrownCells : Apart {
     static constexpr bool is_cell = true;
@@ -122,12 +135,19 @@ struct GrownCells : Apart {
         const Cells& cells;
         int p;
         CSPACE_INLINE auto growth(const Place& at) const { return cells.pair_growth(p, at); }
+        CSPACE_INLINE CellWay way_of(const Place& at, float radius) const {
+            const BodyPair& pair = cells.block.robot.pairs[p];
+            return CellWay(cells.motion.bound(pair.a, pair.b, at, radius));
+        }
         CSPACE_INLINE FloatMask refine(FloatMask touching, const Place& at, const Place& other, Floats gap,
                                        float r) const {
             return cells.refine_pair(touching, p, at, other, gap, r);
         }
     };
     RelativeOf<GrownCells> relative(int p) const { return {*this, p}; }
+    CSPACE_INLINE CellWay way_of(int x, const Place& at, float radius) const {
+        return CellWay(motion.bound(0, x, at, radius));
+    }
     CSPACE_INLINE CellMotion::Approach to_primitive(int x, int i, const Place& at, Floats gap) const {
         return motion.approach(0, x, at, gap,
                                [&](const Velocity& v) { return gap_rate(block.scene, i, at, v); });

@@ -117,7 +117,7 @@ class EdgeCheck {
             return distance * left < abs(rate) * edge.width_;
         }
         // How body x moves around a place.
-        CSPACE_INLINE Way way_of(int x, const Place& at) const {
+        CSPACE_INLINE Way way_of(int x, const Place& at, float) const {
             return {velocity_at(block.frames[x], block.rates[x], at), block.rates[x].w, edge.width_,
                     edge.width_2_ * edge.w_.kappa[x]};
         }
@@ -143,7 +143,7 @@ class EdgeCheck {
                 const Floats *w = rate.w, turn = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) * radius;
                 most_growth = growth + turn * motion.edge.width_;
             }
-            CSPACE_INLINE Way way_of(const Place& at) const {
+            CSPACE_INLINE Way way_of(const Place& at, float) const {
                 return {velocity_at(rate, at), rate.w, motion.edge.width_, bend};
             }
         };

@@ -7,18 +7,6 @@
 
 namespace cspace::shapes {
 
-// All places within `radius` of a core: one to three points, a box, or a cylinder along the z axis of its
-// pose. A sphere is a point with a radius, a capsule two points.
-struct Convex {
-    enum class Core { points, box, cylinder };
-    Core core;
-    double radius;
-    Posed pose;  // of a box or cylinder
-    Vec3d half;  // half sides of a box; of a cylinder its radius twice, and half its length
-    Vec3d points[3];
-    int n_points;
-};
-
 inline Convex make_points(const Vec3d* points, int count, double radius) {
     Convex solid = {Convex::Core::points, radius, identity_pose(), {0, 0, 0}, {}, count};
     for (int i = 0; i < count; ++i) solid.points[i] = points[i];

@@ -18,13 +18,6 @@
 
 namespace cspace::shapes {
 
-// normal: the unit gradient with respect to a translation of the first solid. first, second: the places that
-// are nearest to each other or, inside, deepest; the distance along the normal is theirs.
-struct ConvexDistance {
-    double value;
-    Vec3d normal, first, second;
-};
-
 inline ConvexDistance nothing_near(const Vec3d& center) {
     return {std::numeric_limits<double>::infinity(), {0, 0, 1}, center, center};
 }
@@ -49,10 +42,13 @@ class ConvexPair {
         return dot(apart, apart) > 0 ? -apart : Vec3d{1, 0, 0};
     }
     // What rounding may make of a distance.
-    double rounding() const { return 1e-12 * scale_; }
+    double rounding() const { return rounding_share * scale_; }
     double scale() const { return scale_; }
 
   private:
+    // Of the size of both solids: some thousand times what doubles round.
+    static constexpr double rounding_share = 1e-12;
+
     const Convex &a_, &b_;
     double scale_;
 };
@@ -218,10 +214,11 @@ class Polyhedron {
     // The face that is nearest to the origin, once the body reaches no farther along its normal.
     ConvexDistance find_depth() {
         constexpr int most_steps = 256;
+        constexpr double settled_depth = 1e-10;  // of the size of both solids
         Face best = nearest_face();
         for (int i = 0; i < most_steps; ++i) {
             const Difference next = pair_.find_farthest(best.normal);
-            if (dot(next.at, best.normal) - best.distance <= 1e-10 * pair_.scale()) break;
+            if (dot(next.at, best.normal) - best.distance <= settled_depth * pair_.scale()) break;
             if (!insert(next)) break;
             best = nearest_face();
         }
