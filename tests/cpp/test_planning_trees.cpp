@@ -29,7 +29,7 @@ struct SquareWithDisc {
     using Place = std::array<double, 2>;
     static constexpr double radius = 0.25, step = 0.1;
     check::Random random;
-    std::vector<Place> places, ends = {{0.9, 0.5}};
+    std::vector<Place> places = {}, ends = {{0.9, 0.5}};
     int edges = 0, rewired = 0;
 
     static double length(const Place& a, const Place& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }

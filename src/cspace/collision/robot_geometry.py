@@ -34,9 +34,6 @@ Integers = npt.NDArray[np.int64]
 NO_PAIRS: Final[Integers] = np.empty((0, 2), dtype=np.int64)
 """No links are checked against each other, or nothing may touch."""
 
-EMPTY_SCENE: Final = compile_solids((), SOLIDS, np.eye(4))
-"""No obstacles, compiled."""
-
 
 @dataclass(frozen=True, eq=False)
 class RobotGeometry:
@@ -269,7 +266,8 @@ def meets_always(geometry: RobotGeometry, pair: tuple[int, int], samples: Array)
         return True  # no checks are made for such a robot
     pairs = np.array([pair], dtype=np.int64)
     core = geometry.compile(geometry.link_bodies, geometry.shapes, geometry.sphere_links, pairs)
-    checker = CollisionChecker(core, EMPTY_SCENE, 0.0, NO_PAIRS)
+    nothing = compile_solids((), SOLIDS, np.eye(4))
+    checker = CollisionChecker(core, nothing, 0.0, NO_PAIRS)
     return bool(checker.check_rows(np.ascontiguousarray(samples), 1).all())
 
 
