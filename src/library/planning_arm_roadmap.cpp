@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "cspace/math/threads.hpp"
+#include "cspace/search/star_neighbours.hpp"
 #include "planning_arm_edges.hpp"
 #include "planning_arm_query.hpp"
 #include "planning_arm_roadmap_state.hpp"

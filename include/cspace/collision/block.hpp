@@ -6,6 +6,7 @@
 // something, the solid is tested exactly.
 #pragma once
 
+#include "cspace/collision/exact.hpp"
 #include "cspace/collision/gap.hpp"
 #include "cspace/collision/workspace.hpp"
 
@@ -235,17 +236,11 @@ class Block {
     }
 
   private:
-    // Solids and what they were tested against exactly, a primitive or, from `first_pair` on, another one.
-    struct Refined {
-        unsigned stamp = 0;
-        int one = -1, other = -1;
-        int kind = 0;  // of the motion
-        unsigned tested = 0, touching = 0, near = 0;
-    };
+    // Numbers of other spheres and solids among what solids are refined against, behind primitives.
     static constexpr int first_pair = 1 << 30;
 
     int placed_ = 0;  // bodies 0 … placed_ have their frames
-    Refined refined_;
+    LastRefined refined_;
 
     // Of several tests: the lanes in which something touches, or may within its motion.
     template <class Motion>
@@ -371,67 +366,19 @@ class Block {
         constexpr float share = 2;
         return bits_of((gap > fill_floats(sum * sum)) & (growth > fill_floats(share * excess)));
     }
-    // What a sphere covers against a primitive, in a lane.
-    struct PrimitiveTest {
-        const Block& block;
-        int s, x, i;
-        bool touches(int lane) const {
-            float frame[12];
-            copy_lane(block.frames[x], lane, frame);
-            const ExactTest& exact = block.scene.exact;
-            return exact.reaches_primitive(exact.owner, s, frame, i, block.scene.margin);
-        }
-        float measure(int lane, float* normal) const {
-            float frame[12];
-            copy_lane(block.frames[x], lane, frame);
-            const ExactTest& exact = block.scene.exact;
-            return exact.measure_primitive(exact.owner, s, frame, i, normal) - block.scene.margin;
-        }
-    };
-    // Two spheres, or what they cover, against each other.
-    struct PairTest {
-        const Block& block;
-        int s, x, other, other_x;
-        bool touches(int lane) const {
-            float frame[12], other_frame[12];
-            copy_lane(block.frames[x], lane, frame), copy_lane(block.frames[other_x], lane, other_frame);
-            const ExactTest& exact = block.scene.exact;
-            return exact.reaches_sphere(exact.owner, s, frame, other, other_frame, block.scene.pair_margin);
-        }
-        float measure(int lane, float* normal) const {
-            float frame[12], other_frame[12];
-            copy_lane(block.frames[x], lane, frame), copy_lane(block.frames[other_x], lane, other_frame);
-            const ExactTest& exact = block.scene.exact;
-            return exact.measure_sphere(exact.owner, s, frame, other, other_frame, normal) -
-                   block.scene.pair_margin;
-        }
-    };
-    // Of lanes in which a cover may touch: those in which the solid does, or may on its way. The spheres of a
-    // solid come one after the other, so the last answer is kept. way: null if nothing moves.
-    template <class Motion, class Test, class Way>
-    void refine(int one, int other, unsigned suspects, const Test& test, const Way* way, float radius,
+    template <class Motion, class Test, class AnyWay>
+    void refine(int one, int other, unsigned suspects, const Test& test, const AnyWay* way, float radius,
                 Marks<Motion>& marks) {
-        const int kind = Motion::is_moving ? 1 : Motion::is_cell ? 2 : 0;
-        if (refined_.stamp != w.stamp || refined_.one != one || refined_.other != other ||
-            refined_.kind != kind)
-            refined_ = {w.stamp, one, other, kind, 0, 0, 0};
-        for (unsigned bits = suspects & ~refined_.tested; bits; bits &= bits - 1) {
-            const int lane = lowest_lane(bits);
-            refined_.tested |= 1u << lane;
-            float normal[3];
-            if (test.touches(lane))
-                refined_.touching |= 1u << lane;
-            else if (way && way->may_close(lane, test.measure(lane, normal), radius, normal))
-                refined_.near |= 1u << lane;
-        }
-        marks.exact_touching |= refined_.touching & suspects, marks.exact_near |= refined_.near & suspects;
+        constexpr int kind = Motion::is_moving ? 1 : Motion::is_cell ? 2 : 0;
+        const RefinedLanes found = refined_.refine({w.stamp, kind, one, other}, suspects, test, way, radius);
+        marks.exact_touching |= found.touching, marks.exact_near |= found.near;
     }
     template <class Motion>
     CSPACE_COLD void refine_primitive(int x, int s, int i, unsigned suspects, const Motion& motion,
                                       Marks<Motion>& marks) {
         const int solid = robot.sphere_solids[s];
         const Ball& ball = robot.solid_balls[solid];
-        const PrimitiveTest test = {*this, s, x, i};
+        const PrimitiveTest test = {scene, frames[x], s, i};
         if constexpr (Motion::is_moving || Motion::is_cell) {
             const auto way = motion.way_of(x, place_ball(frames[x], ball), ball.r);
             refine(solid, i, suspects, test, &way, ball.r, marks);
@@ -448,7 +395,7 @@ class Block {
             return is_cover(sphere) ? robot.sphere_solids[sphere] : -1 - sphere;
         };
         const int one = number(s), two = first_pair + number(other) + robot.n_spheres;
-        const PairTest test = {*this, s, x, other, other_x};
+        const PairTest test = {scene, frames[x], frames[other_x], s, other};
         if constexpr (Motion::is_moving || Motion::is_cell) {
             const Ball& ball = ball_around(s);
             const auto way = relative.way_of(place_ball(frames[x], ball), ball.r);
@@ -465,7 +412,7 @@ class Block {
         unsigned lanes = touching_lanes(gap, r + radius);
         if (is_cover(s))
             for (unsigned bits = lanes; bits; bits &= bits - 1)
-                if (!PrimitiveTest{*this, s, x, i}.touches(lowest_lane(bits)))
+                if (!PrimitiveTest{scene, frames[x], s, i}.touches(lowest_lane(bits)))
                     lanes &= ~(1u << lowest_lane(bits));
         return lanes;
     }
@@ -475,7 +422,7 @@ class Block {
         unsigned lanes = touching_lanes(square_distance(at, other_at), r);
         if (is_cover(s) || is_cover(other))
             for (unsigned bits = lanes; bits; bits &= bits - 1)
-                if (!PairTest{*this, s, x, other, other_x}.touches(lowest_lane(bits)))
+                if (!PairTest{scene, frames[x], frames[other_x], s, other}.touches(lowest_lane(bits)))
                     lanes &= ~(1u << lowest_lane(bits));
         return lanes;
     }

@@ -18,8 +18,8 @@
 #include "cspace/search/configuration_tree.hpp"
 #include "cspace/search/halton.hpp"
 #include "cspace/search/nearest_row.hpp"
-#include "cspace/search/portable_log.hpp"
 #include "cspace/search/row_leaves.hpp"
+#include "cspace/search/star_neighbours.hpp"
 
 namespace cspace::planning {
 
@@ -91,7 +91,8 @@ class TreeSpace {
     }
     int find_nearest(const Place& place) { return edges_.find_nearest(nodes_, leaves_, place.data()).row; }
     void find_near(const Place& place, double, std::vector<int>& out) {
-        near_.resize(std::size_t(count_near()));
+        const std::size_t with_new = std::size_t(nodes_.size()) + 1;
+        near_.resize(std::size_t(search::star_neighbours(with_new, box_.width)));
         const int most = int(near_.size());
         near_.resize(std::size_t(edges_.find_nearest(nodes_, leaves_, place.data(), most, near_.data())));
         out.clear();
@@ -149,12 +150,6 @@ class TreeSpace {
 
     std::size_t pick(std::size_t count) {
         return std::min(std::size_t(samples_.uniform() * double(count)), count - 1);
-    }
-    // So many nodes must be joined for shortest ways to be found in the limit: above e (1 + 1/d) log n of n
-    // nodes in d dimensions (Karaman & Frazzoli 2011, theorem 35).
-    int count_near() const {
-        constexpr double e = 2.718281828459045;
-        return 1 + int(e * (1 + 1.0 / box_.width) * search::portable_log(std::size_t(nodes_.size()) + 1));
     }
     bool check_edge(const Place& a, const Place& b) {
         if (!edges_.has_time()) return false;

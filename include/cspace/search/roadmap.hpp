@@ -24,15 +24,6 @@ struct RoadmapArc {
     std::int32_t to, edge;
 };
 
-// Above e (1 + 1/d) log n nearest neighbours, shortest ways on a roadmap of n nodes in d dimensions approach
-// the shortest (Karaman & Frazzoli 2011, "Sampling-based algorithms for optimal motion planning", theorem
-// 35).
-inline int star_neighbours(std::size_t nodes, int dimensions) {
-    constexpr double e = 2.718281828459045;
-    const double factor = e * (1 + 1.0 / std::max(dimensions, 1));
-    return 1 + int(factor * std::log(double(std::max<std::size_t>(nodes, 2))));
-}
-
 // The pairs of nodes that may be joined: list(i, near) lists the nodes near to node i, which may include i.
 // is_mutual: i is near to j wherever j is near to i.
 template <class List>
