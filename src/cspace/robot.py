@@ -51,7 +51,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
     tip it may be a tree, whose frames are addressed by name. floating: the base moves freely, and six
     velocities precede those of the joints; None takes it from the description. locked: joint name → value
     [rad or m] of joints off the chain, zero unless given. geometry: "collision" or "skeleton", cover [m]:
-    what collision checks use, see `collision`. T_world_base, T_tip_tool (4, 4): the mounting of the base and
+    what collision checks use, see `collision`. described: a description whose shapes the spheres of this one
+    stand for, see `collision.deficits`. T_world_base, T_tip_tool (4, 4): the mounting of the base and
     the tool on the tip; both apply in every function. name: of the robot.
 
     dof: number of velocities. joint_names: the n coordinates of a configuration, in order; joint_types: "R"
@@ -75,6 +76,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         locked: Mapping[str, float] | None = None,
         geometry: str = "collision",
         cover: float = 0.01,
+        described: Description | None = None,
         T_world_base: PoseLike | None = None,
         T_tip_tool: PoseLike | None = None,
     ) -> None:
@@ -85,7 +87,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
             )
         self._ends = (base, tip)
         self._collision: RobotGeometry | None = None
-        self._geometry, self._cover = geometry, cover
+        self._geometry, self._cover, self._described = geometry, cover, described
         self._made_with: dict[str, Any] = {"floating": floating, "locked": dict(locked or {})}
         self._T_world_base = None if T_world_base is None else one_pose(T_world_base, "T_world_base").copy()
         self._T_tip_tool = None if T_tip_tool is None else one_pose(T_tip_tool, "T_tip_tool").copy()
@@ -248,9 +250,13 @@ class Robot(Renamed, RobotBase, KinematicModel):
         if self._collision is None:
             from cspace.collision import robot_geometry
 
-            geometry, cover, mount = self._geometry, self._cover, self._T_world_base
             self._collision = robot_geometry(
-                self, self.description, geometry=geometry, cover=cover, T_world_base=mount
+                self,
+                self.description,
+                geometry=self._geometry,
+                cover=self._cover,
+                described=self._described,
+                T_world_base=self._T_world_base,
             )
         return self._collision
 
@@ -264,9 +270,10 @@ class Robot(Renamed, RobotBase, KinematicModel):
 
         spheres: link → rows (n, 4) of centres in the frame of the link and radii [m], or the path of a file
         of them (.json, .toml, or a URDF whose collision elements are spheres); links that are not named have
-        none. cover: instead, the excess [m] of the spheres that cover the shapes of the description. Raises
-        UnknownNameError for a link that does not exist, DescriptionError for a file that cannot be read,
-        InputError for a radius that is not positive.
+        none. `collision.deficits` then measures what the spheres leave outside. cover: instead, the excess
+        [m] of the spheres that cover the shapes of the description. Raises UnknownNameError for a link that
+        does not exist, DescriptionError for a file that cannot be read, InputError for a radius that is not
+        positive.
         """
         if spheres is None:
             return self._constructor(geometry="collision", **({} if cover is None else {"cover": cover}))()
@@ -275,7 +282,9 @@ class Robot(Renamed, RobotBase, KinematicModel):
         from cspace.collision import replace_spheres
 
         return self._constructor(
-            description=replace_spheres(self.description, spheres), geometry="collision"
+            description=replace_spheres(self.description, spheres),
+            geometry="collision",
+            described=self._described or self.description,
         )()
 
     @property
@@ -338,6 +347,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
     def _constructor(self, **changes: Any) -> partial[Robot]:
         """The call that makes this robot, or one with other arguments."""
         kept = {**self._made_with, "geometry": self._geometry, "cover": self._cover}
+        kept["described"] = self._described
         kept |= {"T_world_base": self._T_world_base, "T_tip_tool": self._T_tip_tool}
         description = changes.pop("description", self.description)
         return partial(type(self), description, *self._ends, **(kept | changes))

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from cspace._core import CollisionChecker, CollisionRobot, compile_solids
 from cspace.arrays import Array, positive_number
+from cspace.collision.deficits import measure_deficits
 from cspace.collision.exact_solids import PlacedShapes, join_shapes, place_shape
 from cspace.collision.link_pairs import SAMPLES, Allowed, adjacent_pairs, always_touching
 from cspace.collision.link_shapes import Solids, described_solids, skeleton_solids
@@ -71,6 +72,7 @@ class RobotGeometry:
     joint_names: tuple[str, ...]
     T_world_base: Array
     frames: Mapping[str, tuple[int, Array]]
+    described: Description | None = None
     _kept: dict[Any, Any] = field(default_factory=dict, repr=False)
     """Compiled checks of the last scenes, see checker.py."""
 
@@ -105,6 +107,26 @@ class RobotGeometry:
     def compiled(self) -> CollisionRobot:
         """The compiled robot without attached objects."""
         return self.compile(self.link_bodies, self.shapes, self.sphere_links, self.pairs)
+
+    @property
+    def deficits(self) -> Mapping[str, float]:
+        """Link → the depth [m] up to which its shapes lie outside of given spheres, as an upper bound.
+
+        0: the spheres are proved to cover the shapes; inf: the link has shapes and no spheres. Empty if the
+        spheres were not given in place of shapes. Measured when first read, which takes seconds for meshes.
+        Raises DescriptionError for meshes that are not found or cannot be read.
+        """
+        if self.described is None:
+            return {}
+        if "deficits" not in self._kept:
+            rows = split_rows(self.spheres, self.sphere_links)
+            given = {}
+            for name, own in zip(self.links, rows, strict=True):
+                centers = transform_points(invert_pose(self.frames[name][1]), own[:, :3])
+                given[name] = np.column_stack([centers, own[:, 3]])
+            self._kept["deficits"] = measure_deficits(described_solids(self.described, self.frames), given)
+        found: Mapping[str, float] = self._kept["deficits"]
+        return found
 
     @property
     def shapes(self) -> PlacedShapes:
@@ -152,6 +174,7 @@ def robot_geometry(
     *,
     geometry: str = "collision",
     cover: float = 0.01,
+    described: Description | None = None,
     T_world_base: Array | None = None,
 ) -> RobotGeometry:
     """The collision geometry of a robot.
@@ -159,7 +182,8 @@ def robot_geometry(
     geometry: "collision" takes the collision elements of the description: spheres as they are, other shapes
     and meshes covered by spheres that stick out by at most `cover` [m]. "skeleton" takes capsules along the
     arm, which show how checks work but are not the shape of the robot. Links off the chain count at the
-    values at which their joints are locked. T_world_base (4, 4): the mount that the robot has.
+    values at which their joints are locked. described: the description whose shapes the spheres of this one
+    stand for. T_world_base (4, 4): the mount that the robot has.
 
     Links that a joint connects, and links that touch at each of 256 random configurations, are not checked
     against each other; nor are pairs that the description allows. Raises DescriptionError for meshes that
@@ -201,6 +225,7 @@ def robot_geometry(
         joint_names=robot.joint_names,
         T_world_base=mount,
         frames=frames,
+        described=described,
     )
     pairs, allowed = choose_pairs(description, without_pairs, adjacent, samples, centers, radii)
     rows = np.array(pairs, dtype=np.int64).reshape(-1, 2)
