@@ -21,6 +21,16 @@ SOURCES = {
         *("include/cspace/math", "include/cspace/maps", "include/cspace/navigation", "include/cspace/search"),
         *("src/cspace/maps", "src/cspace/navigation", "src/library"),
     ],
+    "planning": [
+        *(
+            "include/cspace/math",
+            "include/cspace/collision",
+            "include/cspace/planning",
+            "include/cspace/search",
+        ),
+        *("include/cspace/shapes", "src/cspace/collision", "src/cspace/planning", "src/cspace/plan_motion"),
+        *("src/kernels", "src/library"),
+    ],
     "": [
         *("include/cspace/math", "include/cspace/kinematics", "include/cspace/ik", "src/kernels"),
         *("src/library", "src/bindings", "src/cspace/ik", "src/cspace/kinematics"),

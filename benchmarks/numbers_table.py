@@ -8,6 +8,7 @@ from typing import Any
 import arms
 import further_tables
 import navigation_numbers
+import planning_tables
 from arms import CLASSIC as ARMS
 from rows import Row, row
 
@@ -297,4 +298,4 @@ ROWS: list[Callable[[Results], Row]] = [
 
 
 def table(results: Results) -> list[Row]:
-    return [build(results) for build in [*ROWS, *navigation_numbers.ROWS]]
+    return [build(results) for build in [*ROWS, *navigation_numbers.ROWS, *planning_tables.ROWS]]

@@ -119,7 +119,8 @@ def merge_vamp(rounds: list[dict[str, list[float]]]) -> dict[str, Any]:
 
 
 def measure_checks(name: str) -> dict[str, float]:
-    """Microseconds of one call, configurations per second of a batch on one core."""
+    """Microseconds of one call at the start of a problem and at random, configurations per second of a batch
+    on one core."""
     robot, _ = published_robot(name)
     _, _, scene, start, _ = next(iter(problems(name)))
     q, rows = np.array(start, dtype=float), robot.random_configuration(1 << 16, rng=0)
@@ -133,7 +134,18 @@ def measure_checks(name: str) -> dict[str, float]:
         begin = time.thread_time_ns()
         robot.collides(rows, scene, threads=1)
         batch.append(len(rows) / (time.thread_time_ns() - begin) * 1e9)
-    return {"one_us": float(np.median(single)), "rows_per_second": float(np.median(batch))}
+    drawn = list(rows[:2000])
+    random = []
+    for _ in range(50):
+        begin = time.thread_time_ns()
+        for q in drawn:
+            robot.collides(q, scene)
+        random.append((time.thread_time_ns() - begin) / 2000e3)
+    return {
+        "one_us": float(np.median(single)),
+        "one_random_us": float(np.median(random)),
+        "rows_per_second": float(np.median(batch)),
+    }
 
 
 def compare_trees(name: str) -> dict[str, Any]:

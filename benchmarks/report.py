@@ -22,6 +22,7 @@ import completeness_table  # noqa: E402
 import further_tables  # noqa: E402
 import navigation_tables  # noqa: E402
 import numbers_table  # noqa: E402
+import planning_tables  # noqa: E402
 from rows import Row  # noqa: E402
 
 NAMES = {
@@ -35,12 +36,13 @@ NAMES = {
 }
 NAVIGATION = ["grid", "any_angle", "polygons", "fields", "sampling", "bugs", "large", "curves", "exact"]
 NAVIGATION += ["degenerate"]
+PLANNING = [name for _, name, *_ in planning_tables.PARTS] + ["planning_goals", "planning_proofs"]
 
 
 def measured_names() -> list[str]:
     """The results that the page shows."""
     names = [*arms.SETS, "cpp", "recorded", "install", "derived", "completeness", "seven", "following"]
-    return [*names, "building", "soundness", *(f"navigation_{part}" for part in NAVIGATION)]
+    return [*names, "building", "soundness", *(f"navigation_{part}" for part in NAVIGATION), *PLANNING]
 
 
 def load() -> dict[str, Any]:
@@ -294,6 +296,10 @@ reachable position with an orientation that may be unreachable there.
 ## Navigation
 
 {navigation_tables.section(results)}
+
+## Collision and planning of arms
+
+{planning_tables.section(results)}
 
 ## Import
 
