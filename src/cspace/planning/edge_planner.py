@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +30,10 @@ ENDS = (
 )
 """How the core ends, in its order."""
 
+LEAST_MOTION: Final = 1e-6
+"""The least range and distance of samples [rad or m]: the trees keep configurations as floats of 32 bits, which
+resolve no less within a turn."""
+
 
 @dataclass(frozen=True, eq=False)
 class EdgePlanner(ArmPlanner):
@@ -46,7 +50,9 @@ class EdgePlanner(ArmPlanner):
     search: str = option(
         "proved", "how the search checks motions", choices=("proved", "sampled"), subject="kind of check"
     )
-    resolution: float = option(1.0 / 32.0, "distance of samples", unit="rad or m", above=0.0, maximum=1e3)
+    resolution: float = option(
+        1.0 / 32.0, "distance of samples", unit="rad or m", minimum=LEAST_MOTION, maximum=1e3
+    )
     certify: bool = option(True, "prove every motion of the answer; False samples them as the search does")
     simplify: bool = option(True, "shorten the path")
     edges: int = option(1 << 20, "motions that the search may check", minimum=0, maximum=1 << 40)
@@ -128,7 +134,7 @@ class EdgePlanner(ArmPlanner):
 def are_rows(space: ArmSpace, problems: Sequence[tuple[Any, Any]]) -> bool:
     """Whether all starts and goals are rows (n, dof) already, as the core takes them: checked in one go."""
     ends = [rows for problem in problems for rows in problem]
-    are_plain = all(
+    are_plain = bool(ends) and all(
         type(rows) is np.ndarray
         and rows.dtype == np.float64
         and rows.ndim == 2

@@ -46,6 +46,9 @@ LINK_INFLUENCE: Final = 0.1
 CONE: Final = 0.5
 """Distance from the goal [rad or m] beyond which the attraction is constant by default: half a radian."""
 
+LEAST_GAIN: Final = 1e-12
+"""The least gain, distance and step: products of a few stay far from the smallest double."""
+
 MOST_NAMED: Final = 3
 """Pairs that a reason names: those that push most."""
 
@@ -118,24 +121,27 @@ class PotentialField(EdgePlanner):
     summary = "descent of an attractive and repulsive potential"
 
     simplify: bool = option(False, "shorten the path")
-    k: float = option(1.0, "attraction", above=0)
+    k: float = option(1.0, "attraction", minimum=LEAST_GAIN, maximum=LARGEST_NUMBER)
     k_r: float | None = option(
         None,
         "repulsion; by default one sphere at the arm's reach balances the goal's attraction at half of rho_0",
         unit="rad² m²",
-        above=0,
+        minimum=LEAST_GAIN,
+        maximum=LARGEST_NUMBER,
     )
     rho_0: float | None = option(
         None,
         "the distance of influence of obstacles; by default a tenth of the arm's reach",
         unit="m",
-        above=0,
+        minimum=LEAST_GAIN,
+        maximum=LARGEST_NUMBER,
     )
     cone: float | None = option(
         None,
         "the distance from the goal beyond which the attractive force is constant; by default 0.5",
         unit="rad or m",
-        above=0,
+        minimum=LEAST_GAIN,
+        maximum=LARGEST_NUMBER,
     )
     rho_links: float | None = option(
         None,
@@ -143,8 +149,9 @@ class PotentialField(EdgePlanner):
         "by the cube of rho_links / rho_0",
         unit="m",
         minimum=0,
+        maximum=LARGEST_NUMBER,
     )
-    step: float = option(0.1, "the longest step", unit="rad or m", above=0)
+    step: float = option(0.1, "the longest step", unit="rad or m", minimum=LEAST_GAIN, maximum=LARGEST_NUMBER)
     looks: int = option(20000, "evaluations of the potential per start", minimum=1, maximum=1 << 40)
 
     def _fill_in(self, space: ArmSpace) -> PotentialField:

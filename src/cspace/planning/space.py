@@ -13,10 +13,18 @@ from cspace.arrays import Array, as_floats
 from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
 from cspace.collision.checks import HasGeometry
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
+
+
+def read_geometry(robot: HasGeometry) -> RobotGeometry:
+    """The collision geometry of a robot; InputTypeError for what is not one."""
+    if not hasattr(robot, "collision"):
+        kind = type(robot).__name__
+        raise InputTypeError(f"robot is a {kind}; it must be a Robot, as cs.load_robot gives")
+    return robot.collision
 
 
 class ArmSpace:
@@ -31,7 +39,7 @@ class ArmSpace:
     """
 
     def __init__(self, robot: HasGeometry, scene: Scene | None = None, margin: float = 0.0) -> None:
-        self.robot, self.geometry, self.scene, self.margin = robot, robot.collision, scene, margin
+        self.robot, self.geometry, self.scene, self.margin = robot, read_geometry(robot), scene, margin
         self.checker: Checker = checker_of(self.geometry, scene, margin)
         self.dof = self.geometry.dof
         kept = self.geometry._kept
@@ -73,7 +81,7 @@ class ArmSpace:
 
     def plain_rows(self, q: object) -> Array | None:
         """As as_rows for arrays of float64 and lists of numbers; None for anything else."""
-        return as_rows(q, self.dof, LARGEST_NUMBER)
+        return None if q is None else as_rows(q, self.dof, LARGEST_NUMBER)
 
     def as_rows(self, q: ArrayLike, subject: str) -> Array:
         """One configuration (dof,) or several (n, dof) as rows; InputError for another shape or NaN."""

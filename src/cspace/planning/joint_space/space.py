@@ -25,7 +25,7 @@ from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid, settle_grid
 from cspace.planning.joint_space.projections import Projection
 from cspace.planning.joint_space.slices import Slice, name_obstacles
 from cspace.planning.joint_space.volumes import Volume
-from cspace.planning.space import ArmSpace
+from cspace.planning.space import ArmSpace, read_geometry
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -64,14 +64,11 @@ class JointSpace(Renamed):
         margin: float = 0.0,
         limits: bool = True,
     ) -> None:
-        if not hasattr(robot, "collision"):
-            raise InputTypeError(
-                f"robot is a {type(robot).__name__}; it must be a Robot, as cs.load_robot gives"
-            )
         if not isinstance(limits, (bool, np.bool_)):
             raise InputTypeError(f"limits is a {type(limits).__name__}; it must be True or False")
         self.robot, self._limits = robot, bool(limits)
-        geometry = robot.collision if limits else without_limits(robot.collision)
+        own = read_geometry(robot)
+        geometry = own if limits else without_limits(own)
         self._arm = ArmSpace(geometry, scene, margin)
         self.scene, self.margin, self.dof = scene, self._arm.margin, self._arm.dof
         self.lower, self.upper = self._arm.lower, self._arm.upper
