@@ -1,4 +1,4 @@
-"""Solids of links of any size: flat, long, tiny and huge ones have covers, and checks that agree with them."""
+"""Solids of links of any size: flat, long, tiny and huge ones are covered, and checks agree with them."""
 
 from __future__ import annotations
 

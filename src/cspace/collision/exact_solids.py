@@ -16,8 +16,8 @@ SOLID_WIDTH: Final = 16
 """Numbers of a solid: its kind, three sizes, the rotation by rows and the place of its frame."""
 
 COVER_SHARE: Final = 0.02
-"""Share of the longest side of a solid by which its spheres may stick out where `cover` is less: they only tell
-where to look, and closer covers of a metre of a box take seconds."""
+"""Share of the longest side of a solid by which its spheres may stick out where `cover` is less: they only
+tell where to look, and closer covers of a metre of a box take seconds."""
 
 FLAT_SHARE: Final = 1e-3
 """The thickness of flat solids in their cover, as a share of the longest side: much less than COVER_SHARE."""
@@ -56,7 +56,7 @@ def solid_row(shape: Shape) -> Array | None:
 
 
 def cover_solid(shape: Box | Cylinder | Capsule, cover: float) -> Array:
-    """Spheres (n, 4) that contain a solid; they stick out by `cover` [m], or more from large and flat ones."""
+    """Spheres (n, 4) that contain a solid; they stick out by `cover` [m], of large ones by more."""
     sides = shape.size if isinstance(shape, Box) else np.array([2.0 * shape.radius, shape.length])
     longest = float(sides.max())
     thick = np.maximum(sides, max(FLAT_SHARE * longest, LEAST_COVERED))

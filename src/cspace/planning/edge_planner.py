@@ -31,7 +31,7 @@ ENDS = (
 """How the core ends, in its order."""
 
 LEAST_MOTION: Final = 1e-6
-"""The least range and distance of samples [rad or m]: the trees keep configurations as floats of 32 bits, which
+"""The least range and distance of samples [rad or m]: trees keep configurations as floats of 32 bits, which
 resolve no less within a turn."""
 
 

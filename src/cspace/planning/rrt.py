@@ -27,7 +27,9 @@ class RRT(EdgePlanner):
     kind: ClassVar[tuple[bool, bool]] = False, False
     """Whether it is optimal, and informed."""
 
-    range: float = option(1.0, "longest motion towards a sample", unit="rad or m", minimum=LEAST_MOTION, maximum=1e3)
+    range: float = option(
+        1.0, "longest motion towards a sample", unit="rad or m", minimum=LEAST_MOTION, maximum=1e3
+    )
     goal_bias: float = option(
         0.05, "how often a goal is the sample while no path is known, 0 to 1", minimum=0.0, maximum=1.0
     )
