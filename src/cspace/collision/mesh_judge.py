@@ -31,6 +31,9 @@ from cspace.tolerances import LARGEST_NUMBER, POINT_RADIUS
 VERIFY_STEP: Final = 0.005
 """Between two samples of a path no point of the robot moves by more [m]."""
 
+MOST_SAMPLES: Final = 1_000_000
+"""Samples of a path: minutes of work."""
+
 CHUNK: Final = 1024
 """Configurations whose distances are held at once."""
 
@@ -204,7 +207,7 @@ class MeshJudge:
         """Samples (n, dof) of a path and where they are (n,), 0 to 1 by its length."""
         levers = self._measure_levers()
         steps = np.diff(corners, axis=0)
-        counts = np.maximum(1, np.ceil(np.abs(steps) @ levers / step).astype(int))
+        counts = count_samples(np.abs(steps) @ levers, step)
         rows, places = [corners[:1]], [np.zeros(1)]
         lengths = np.linalg.norm(steps, axis=1)
         done, whole = np.concatenate([[0.0], np.cumsum(lengths)]), max(lengths.sum(), np.finfo(float).tiny)
@@ -283,6 +286,18 @@ class MeshJudge:
         if self._coal.collide(*solids, self._request, self._coal.CollisionResult()):
             return True
         return looks_inside and (is_inside(one, other, *placed) or is_inside(other, one, *placed[::-1]))
+
+
+def count_samples(travel: Array, step: float) -> np.ndarray[Any, np.dtype[np.int64]]:
+    """The samples of motions (n,) by how far points move at most (n,) [m]; InputError for too many."""
+    with np.errstate(over="ignore"):
+        counts = np.maximum(1.0, np.ceil(travel / step))
+    if counts.sum() > MOST_SAMPLES:
+        raise InputError(
+            f"step is {step:g} m; the path needs {counts.sum():.3g} samples, and {MOST_SAMPLES} at most are"
+            " checked; give a larger step, or a shorter path"
+        )
+    return counts.astype(np.int64)
 
 
 def import_coal() -> Any:

@@ -31,8 +31,11 @@ ENDS = (
 """How the core ends, in its order."""
 
 LEAST_MOTION: Final = 1e-6
-"""The least range and distance of samples [rad or m]: trees keep configurations as floats of 32 bits, which
-resolve no less within a turn."""
+"""The least range [rad or m]: trees keep configurations as floats of 32 bits, which resolve no less within a
+turn."""
+
+LEAST_SPACING: Final = 1e-4
+"""The least distance of samples [rad or m]: a motion through the whole space takes ten milliseconds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +54,7 @@ class EdgePlanner(ArmPlanner):
         "proved", "how the search checks motions", choices=("proved", "sampled"), subject="kind of check"
     )
     resolution: float = option(
-        1.0 / 32.0, "distance of samples", unit="rad or m", minimum=LEAST_MOTION, maximum=1e3
+        1.0 / 32.0, "distance of samples", unit="rad or m", minimum=LEAST_SPACING, maximum=1e3
     )
     certify: bool = option(True, "prove every motion of the answer; False samples them as the search does")
     simplify: bool = option(True, "shorten the path")
