@@ -16,11 +16,11 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, bounded_number, positive_number
 from cspace.collision.checker import touching_pairs
-from cspace.collision.checks import as_configurations, flat_rows, one_configuration
+from cspace.collision.checks import as_configurations, flat_rows, one_configuration, read_geometry
 from cspace.collision.link_shapes import described_solids, skeleton_solids
 from cspace.collision.robot_geometry import RobotGeometry
 from cspace.collision.scene import Scene
-from cspace.errors import InputError, MissingExtraError
+from cspace.errors import InputError, InputTypeError, MissingExtraError
 from cspace.kinematics import Assembly
 from cspace.model import Description
 from cspace.shapes import Box, Capsule, Cylinder, HalfSpace, PointCloud, Shape, Sphere
@@ -107,9 +107,11 @@ class MeshJudge:
     """
 
     def __init__(self, robot: HasShapes, scene: Scene | None = None, margin: float = 0.0) -> None:
-        geometry = robot.collision
+        geometry = read_geometry(robot)
         if not geometry:
             raise InputError(f"{geometry.robot} cannot be checked for collisions: {geometry.reason}")
+        if not isinstance(scene, Scene | None):
+            raise InputTypeError(f"scene is a {type(scene).__name__}; it must be a cspace.Scene")
         self._coal = import_coal()
         self._robot, self._geometry = robot, geometry
         self._scene = Scene() if scene is None else scene
@@ -193,6 +195,8 @@ class MeshJudge:
         by less than that.
         """
         corners = flat_rows(as_configurations(self._geometry, path, "path"))
+        if not len(corners):
+            raise InputError(f"path has shape {np.shape(path)}; it must have at least one corner")
         most = positive_number(step, "step", "it must be one positive length [m]")
         rows, places = self._sample(corners, most)
         for row, place, pair in zip(rows, places, self._contacts(rows), strict=True):

@@ -11,11 +11,11 @@ import numpy.typing as npt
 from cspace._core import ArmRoadmap, RoadmapWorld, make_roadmap, restore_roadmap
 from cspace.arrays import Array, bounded_number, whole_number
 from cspace.collision import RobotGeometry
-from cspace.collision.checks import HasGeometry
+from cspace.collision.checks import HasGeometry, read_geometry
 from cspace.errors import InputError, RoadmapError
 from cspace.planning.arm_planner import Seed
 from cspace.planning.roadmap_files import MOST_SAMPLES, read_roadmap, write_roadmap
-from cspace.planning.space import ArmSpace, read_geometry
+from cspace.planning.space import ArmSpace
 from cspace.search import draw_seed
 from cspace.tables import html_table, one_line
 from cspace.tolerances import LARGEST_NUMBER

@@ -12,19 +12,11 @@ from cspace._core import as_rows, find_reach
 from cspace.arrays import Array, as_floats
 from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
-from cspace.collision.checks import HasGeometry
-from cspace.errors import InputError, InputTypeError
+from cspace.collision.checks import HasGeometry, read_geometry
+from cspace.errors import InputError
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
-
-
-def read_geometry(robot: HasGeometry) -> RobotGeometry:
-    """The collision geometry of a robot; InputTypeError for what is not one."""
-    if not hasattr(robot, "collision"):
-        kind = type(robot).__name__
-        raise InputTypeError(f"robot is a {kind}; it must be a Robot, as cs.load_robot gives")
-    return robot.collision
 
 
 class ArmSpace:

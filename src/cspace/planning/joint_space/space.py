@@ -17,7 +17,7 @@ from cspace._core import CollisionChecker
 from cspace.arrays import Array, as_floats, as_generator, one_array, positive_number, whole_number
 from cspace.collision import RobotGeometry, Scene
 from cspace.collision.checker import checker_of
-from cspace.collision.checks import HasGeometry
+from cspace.collision.checks import HasGeometry, read_geometry
 from cspace.errors import InputError, InputTypeError, Renamed, suggest
 from cspace.kinematics.batch import thread_count
 from cspace.math.wrapping import TURN
@@ -25,7 +25,7 @@ from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid, settle_grid
 from cspace.planning.joint_space.projections import Projection
 from cspace.planning.joint_space.slices import Slice, name_obstacles
 from cspace.planning.joint_space.volumes import Volume
-from cspace.planning.space import ArmSpace, read_geometry
+from cspace.planning.space import ArmSpace
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
 
