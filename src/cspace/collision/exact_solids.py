@@ -11,6 +11,7 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.shapes import Box, Capsule, Cylinder, Shape, cover_shape
 from cspace.spatial.poses import transform_points
+from cspace.tolerances import FLAT_SHARE, LEAST_COVERED
 
 SOLID_WIDTH: Final = 16
 """Numbers of a solid: its kind, three sizes, the rotation by rows and the place of its frame."""
@@ -18,12 +19,6 @@ SOLID_WIDTH: Final = 16
 COVER_SHARE: Final = 0.02
 """Share of the longest side of a solid by which its spheres may stick out where `cover` is less: they only
 tell where to look, and closer covers of a metre of a box take seconds."""
-
-FLAT_SHARE: Final = 1e-3
-"""The thickness of flat solids in their cover, as a share of the longest side: much less than COVER_SHARE."""
-
-LEAST_COVERED: Final = 1e-9
-"""The least side of a solid in its cover [m]: far below the distance that checks keep."""
 
 NO_SOLIDS: Final = np.empty((0, SOLID_WIDTH))
 """The solids of a robot of spheres and meshes."""

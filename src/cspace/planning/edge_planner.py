@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +17,7 @@ from cspace.planning.plan_result import Plan
 from cspace.planning.space import ArmSpace
 from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
-from cspace.tolerances import LARGEST_NUMBER
+from cspace.tolerances import LARGEST_NUMBER, LEAST_SPACING
 
 ENDS = (
     "found",
@@ -29,13 +29,6 @@ ENDS = (
     "resting",
 )
 """How the core ends, in its order."""
-
-LEAST_MOTION: Final = 1e-6
-"""The least range [rad or m]: trees keep configurations as floats of 32 bits, which resolve no less within a
-turn."""
-
-LEAST_SPACING: Final = 1e-4
-"""The least distance of samples [rad or m]: a motion through the whole space takes ten milliseconds."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,7 @@ from cspace.planning.edge_planner import ENDS, EdgePlanner, name_blocker
 from cspace.planning.space import ArmSpace
 from cspace.search import option
 from cspace.tables import join_words, shown
-from cspace.tolerances import LARGEST_NUMBER
+from cspace.tolerances import LARGEST_NUMBER, LEAST_GAIN
 
 METHODS: Final[Mapping[str, int]] = MappingProxyType(
     {"a_star": 0, "dijkstra": 1, "best_first": 2, "breadth_first": 3}
@@ -34,9 +34,6 @@ MOST_JOINTS: Final = 3
 
 MOST_NODES: Final = 1 << 24
 """Nodes of a grid: three joints at 1.4°; a search that reaches all of them fills 400 MB."""
-
-LEAST_STEP: Final = 1e-12
-"""The least side of a cell and distance of influence: products of a few stay far from the smallest double."""
 
 INFLUENCE: Final = 0.1
 """Share of the arm's reach within which obstacles repel, by default: some widths of a link."""
@@ -84,7 +81,7 @@ class GridSearch(EdgePlanner):
         choices=HEURISTICS,
     )
     step: float = option(
-        0.1, "longest side of a cell", unit="rad or m", minimum=LEAST_STEP, maximum=LARGEST_NUMBER
+        0.1, "longest side of a cell", unit="rad or m", minimum=LEAST_GAIN, maximum=LARGEST_NUMBER
     )
     cells: ArrayLike | None = option(
         None, "the number of cells per joint, one for all or (dof,); by default that of step="
@@ -108,7 +105,7 @@ class GridSearch(EdgePlanner):
         None,
         "the distance of influence of obstacles; by default a tenth of the arm's reach",
         unit="m",
-        minimum=LEAST_STEP,
+        minimum=LEAST_GAIN,
         maximum=LARGEST_NUMBER,
     )
     scale: float = option(

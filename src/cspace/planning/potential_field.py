@@ -23,7 +23,7 @@ from cspace.planning.edge_planner import ENDS, EdgePlanner
 from cspace.planning.space import ArmSpace
 from cspace.search import option
 from cspace.tables import join_words, show_fields, shown
-from cspace.tolerances import LARGEST_NUMBER
+from cspace.tolerances import LARGEST_NUMBER, LEAST_GAIN
 
 RESTS: Final = ("goal", "minimum", "saddle", "crease", "wall", "budget", "time")
 """How a descent ends, in the order of the core."""
@@ -45,9 +45,6 @@ LINK_INFLUENCE: Final = 0.1
 
 CONE: Final = 0.5
 """Distance from the goal [rad or m] beyond which the attraction is constant by default: half a radian."""
-
-LEAST_GAIN: Final = 1e-12
-"""The least gain, distance and step: products of a few stay far from the smallest double."""
 
 MOST_NAMED: Final = 3
 """Pairs that a reason names: those that push most."""

@@ -8,9 +8,10 @@ from typing import ClassVar
 from cspace._core import ArmOptions, ArmPlan, TreeOptions, plan_arm, plan_arms
 from cspace.arrays import Array
 from cspace.planning.arm_planner import Seed
-from cspace.planning.edge_planner import LEAST_MOTION, EdgePlanner
+from cspace.planning.edge_planner import EdgePlanner
 from cspace.planning.space import ArmSpace
 from cspace.search import option
+from cspace.tolerances import LEAST_MOTION
 
 
 @dataclass(frozen=True, eq=False)
