@@ -485,4 +485,21 @@ POINT_RADIUS: Final = 1e-6
 """Radius [m] of the points of a cloud without one, where a check takes spheres: below the rounding of floats
 that other checks carry."""
 
+FLAT_SHARE: Final = 1e-3
+"""The thickness of flat solids in their cover, as a share of the longest side: much less than COVER_SHARE."""
+
+LEAST_COVERED: Final = 1e-9
+"""The least side of a solid in its cover [m]: far below the distance that checks keep."""
+
+LEAST_MOTION: Final = 1e-6
+"""The least range [rad or m]: trees keep configurations as floats of 32 bits, which resolve no less within a
+turn."""
+
+LEAST_SPACING: Final = 1e-4
+"""The least distance of samples [rad or m]: a motion through the whole space takes ten milliseconds."""
+
+LEAST_GAIN: Final = 1e-12
+"""The least gain, distance of influence, step and side of a cell of planners: products of a few stay far from
+the smallest double."""
+
 __all__ = [name for name in globals() if name.isupper()]

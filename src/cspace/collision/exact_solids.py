@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -11,9 +11,14 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.shapes import Box, Capsule, Cylinder, Shape, cover_shape
 from cspace.spatial.poses import transform_points
+from cspace.tolerances import FLAT_SHARE, LEAST_COVERED
 
 SOLID_WIDTH: Final = 16
 """Numbers of a solid: its kind, three sizes, the rotation by rows and the place of its frame."""
+
+COVER_SHARE: Final = 0.02
+"""Share of the longest side of a solid by which its spheres may stick out where `cover` is less: they only
+tell where to look, and closer covers of a metre of a box take seconds."""
 
 NO_SOLIDS: Final = np.empty((0, SOLID_WIDTH))
 """The solids of a robot of spheres and meshes."""
@@ -45,15 +50,33 @@ def solid_row(shape: Shape) -> Array | None:
     return np.array([*head, *shape.pose[:3, :3].ravel(), *shape.pose[:3, 3]])
 
 
+def cover_solid(shape: Box | Cylinder | Capsule, cover: float) -> Array:
+    """Spheres (n, 4) that contain a solid; they stick out by `cover` [m], of large ones by more."""
+    sides = shape.size if isinstance(shape, Box) else np.array([2.0 * shape.radius, shape.length])
+    longest = float(sides.max())
+    thick = np.maximum(sides, max(FLAT_SHARE * longest, LEAST_COVERED))
+    most = max(cover, COVER_SHARE * longest)
+    if isinstance(shape, Box):
+        return cover_shape(replace(shape, size=thick), most).spheres
+    length = shape.length if isinstance(shape, Capsule) else thick[1]
+    return cover_shape(replace(shape, radius=thick[0] / 2.0, length=length), most).spheres
+
+
 def place_shape(shape: Shape, cover: float, T_body_frame: Array) -> PlacedShapes:
     """A shape, given in a frame of a body, as checks take it. cover [m]: how far spheres may stick out."""
-    found, row = cover_shape(shape, cover), solid_row(shape.moved(T_body_frame))
-    spheres = found.spheres.copy()
-    spheres[:, :3] = transform_points(T_body_frame, spheres[:, :3])
-    count = len(spheres)
+    row = solid_row(shape.moved(T_body_frame))
     if row is None:
-        return PlacedShapes(spheres, NO_SOLIDS, np.full(count, -1, dtype=np.int64), found.excess)
-    return PlacedShapes(spheres, row[None], np.zeros(count, dtype=np.int64), 0.0)
+        found = cover_shape(shape, cover)
+        spheres = place_spheres(found.spheres, T_body_frame)
+        return PlacedShapes(spheres, NO_SOLIDS, np.full(len(spheres), -1, dtype=np.int64), found.excess)
+    assert isinstance(shape, (Box, Cylinder, Capsule))
+    spheres = place_spheres(cover_solid(shape, cover), T_body_frame)
+    return PlacedShapes(spheres, row[None], np.zeros(len(spheres), dtype=np.int64), 0.0)
+
+
+def place_spheres(spheres: Array, T: Array) -> Array:
+    """Spheres (n, 4) at a pose T (4, 4)."""
+    return np.column_stack([transform_points(T, spheres[:, :3]), spheres[:, 3]])
 
 
 def join_shapes(parts: list[PlacedShapes]) -> PlacedShapes:

@@ -16,11 +16,11 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, bounded_number, positive_number
 from cspace.collision.checker import touching_pairs
-from cspace.collision.checks import as_configurations, flat_rows, one_configuration
+from cspace.collision.checks import as_configurations, flat_rows, one_configuration, read_geometry
 from cspace.collision.link_shapes import described_solids, skeleton_solids
 from cspace.collision.robot_geometry import RobotGeometry
 from cspace.collision.scene import Scene
-from cspace.errors import InputError, MissingExtraError
+from cspace.errors import InputError, InputTypeError, MissingExtraError
 from cspace.kinematics import Assembly
 from cspace.model import Description
 from cspace.shapes import Box, Capsule, Cylinder, HalfSpace, PointCloud, Shape, Sphere
@@ -30,6 +30,9 @@ from cspace.tolerances import LARGEST_NUMBER, POINT_RADIUS
 
 VERIFY_STEP: Final = 0.005
 """Between two samples of a path no point of the robot moves by more [m]."""
+
+MOST_SAMPLES: Final = 1_000_000
+"""Samples of a path: minutes of work."""
 
 CHUNK: Final = 1024
 """Configurations whose distances are held at once."""
@@ -104,9 +107,11 @@ class MeshJudge:
     """
 
     def __init__(self, robot: HasShapes, scene: Scene | None = None, margin: float = 0.0) -> None:
-        geometry = robot.collision
+        geometry = read_geometry(robot)
         if not geometry:
             raise InputError(f"{geometry.robot} cannot be checked for collisions: {geometry.reason}")
+        if not isinstance(scene, Scene | None):
+            raise InputTypeError(f"scene is a {type(scene).__name__}; it must be a cspace.Scene")
         self._coal = import_coal()
         self._robot, self._geometry = robot, geometry
         self._scene = Scene() if scene is None else scene
@@ -190,6 +195,8 @@ class MeshJudge:
         by less than that.
         """
         corners = flat_rows(as_configurations(self._geometry, path, "path"))
+        if not len(corners):
+            raise InputError(f"path has shape {np.shape(path)}; it must have at least one corner")
         most = positive_number(step, "step", "it must be one positive length [m]")
         rows, places = self._sample(corners, most)
         for row, place, pair in zip(rows, places, self._contacts(rows), strict=True):
@@ -204,7 +211,7 @@ class MeshJudge:
         """Samples (n, dof) of a path and where they are (n,), 0 to 1 by its length."""
         levers = self._measure_levers()
         steps = np.diff(corners, axis=0)
-        counts = np.maximum(1, np.ceil(np.abs(steps) @ levers / step).astype(int))
+        counts = count_samples(np.abs(steps) @ levers, step)
         rows, places = [corners[:1]], [np.zeros(1)]
         lengths = np.linalg.norm(steps, axis=1)
         done, whole = np.concatenate([[0.0], np.cumsum(lengths)]), max(lengths.sum(), np.finfo(float).tiny)
@@ -283,6 +290,18 @@ class MeshJudge:
         if self._coal.collide(*solids, self._request, self._coal.CollisionResult()):
             return True
         return looks_inside and (is_inside(one, other, *placed) or is_inside(other, one, *placed[::-1]))
+
+
+def count_samples(travel: Array, step: float) -> np.ndarray[Any, np.dtype[np.int64]]:
+    """The samples of motions (n,) by how far points move at most (n,) [m]; InputError for too many."""
+    with np.errstate(over="ignore"):
+        counts = np.maximum(1.0, np.ceil(travel / step))
+    if counts.sum() > MOST_SAMPLES:
+        raise InputError(
+            f"step is {step:g} m; the path needs {counts.sum():.3g} samples, and {MOST_SAMPLES} at most are"
+            " checked; give a larger step, or a shorter path"
+        )
+    return counts.astype(np.int64)
 
 
 def import_coal() -> Any:

@@ -20,6 +20,7 @@ from cspace.collision.pack_scene import SOLIDS
 from cspace.errors import InputError, suggest
 from cspace.kinematics import Assembly, KinematicModel, random_configurations
 from cspace.model import Description
+from cspace.shapes import Shape
 from cspace.spatial.poses import invert_pose, transform_points
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
@@ -271,10 +272,18 @@ def place_links(
     owners: list[int] = []
     for number, name in enumerate(order):
         for solid in solids[name]:
-            parts.append(place_shape(solid, cover, frames[name][1]))
+            parts.append(place_solid(solid, cover, frames[name][1], name))
             owners += [number] * len(parts[-1].spheres)
     bodies = np.array([frames[name][0] + 1 for name in order], dtype=np.int64)
     return tuple(order), bodies, join_shapes(parts), np.array(owners, dtype=np.int64)
+
+
+def place_solid(solid: Shape, cover: float, T: Array, link: str) -> PlacedShapes:
+    """A solid of a link as checks take it; InputError, with the link, where it cannot be covered."""
+    try:
+        return place_shape(solid, cover, T)
+    except InputError as error:
+        raise InputError(f"collision geometry of link {link!r}: {error}") from error
 
 
 def split_rows(rows: Array, owners: Integers) -> list[Array]:

@@ -17,7 +17,7 @@ from cspace.planning.plan_result import Plan
 from cspace.planning.space import ArmSpace
 from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
-from cspace.tolerances import LARGEST_NUMBER
+from cspace.tolerances import LARGEST_NUMBER, LEAST_SPACING
 
 ENDS = (
     "found",
@@ -46,7 +46,9 @@ class EdgePlanner(ArmPlanner):
     search: str = option(
         "proved", "how the search checks motions", choices=("proved", "sampled"), subject="kind of check"
     )
-    resolution: float = option(1.0 / 32.0, "distance of samples", unit="rad or m", above=0.0, maximum=1e3)
+    resolution: float = option(
+        1.0 / 32.0, "distance of samples", unit="rad or m", minimum=LEAST_SPACING, maximum=1e3
+    )
     certify: bool = option(True, "prove every motion of the answer; False samples them as the search does")
     simplify: bool = option(True, "shorten the path")
     edges: int = option(1 << 20, "motions that the search may check", minimum=0, maximum=1 << 40)
@@ -128,7 +130,7 @@ class EdgePlanner(ArmPlanner):
 def are_rows(space: ArmSpace, problems: Sequence[tuple[Any, Any]]) -> bool:
     """Whether all starts and goals are rows (n, dof) already, as the core takes them: checked in one go."""
     ends = [rows for problem in problems for rows in problem]
-    are_plain = all(
+    are_plain = bool(ends) and all(
         type(rows) is np.ndarray
         and rows.dtype == np.float64
         and rows.ndim == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -19,6 +20,7 @@ from cspace.planning.edge_planner import ENDS, EdgePlanner, name_blocker
 from cspace.planning.space import ArmSpace
 from cspace.search import option
 from cspace.tables import join_words, shown
+from cspace.tolerances import LARGEST_NUMBER, LEAST_GAIN
 
 METHODS: Final[Mapping[str, int]] = MappingProxyType(
     {"a_star": 0, "dijkstra": 1, "best_first": 2, "breadth_first": 3}
@@ -78,7 +80,9 @@ class GridSearch(EdgePlanner):
         'what "a_star" and "best_first" take for the remaining cost: "distance" or "potential"',
         choices=HEURISTICS,
     )
-    step: float = option(0.1, "longest side of a cell", unit="rad or m", above=0)
+    step: float = option(
+        0.1, "longest side of a cell", unit="rad or m", minimum=LEAST_GAIN, maximum=LARGEST_NUMBER
+    )
     cells: ArrayLike | None = option(
         None, "the number of cells per joint, one for all or (dof,); by default that of step="
     )
@@ -88,20 +92,25 @@ class GridSearch(EdgePlanner):
         "w, the bound on the length relative to the shortest path over the grid, for A*; by default 1, with "
         "the potential 1.5",
         minimum=1,
+        maximum=LARGEST_NUMBER,
     )
     k_r: float | None = option(
         None,
         "repulsion; by default a node at half of rho_0 is four steps farther",
         unit="rad m²",
         minimum=0,
+        maximum=LARGEST_NUMBER,
     )
     rho_0: float | None = option(
         None,
         "the distance of influence of obstacles; by default a tenth of the arm's reach",
         unit="m",
-        above=0,
+        minimum=LEAST_GAIN,
+        maximum=LARGEST_NUMBER,
     )
-    scale: float = option(1.0, "the factor of the potential before it is compared", minimum=0)
+    scale: float = option(
+        1.0, "the factor of the potential before it is compared", minimum=0, maximum=LARGEST_NUMBER
+    )
 
     def _fill_in(self, space: ArmSpace) -> GridSearch:
         """The options as they are used in a space."""
@@ -130,7 +139,7 @@ class GridSearch(EdgePlanner):
             raise InputError(f"cells has shape {counts.shape}; give one number, or one per joint")
         if (counts != np.floor(counts)).any() or (counts < 1).any():
             raise InputError(f"cells is {self.cells}; the numbers must be whole and positive")
-        nodes = float(np.prod(np.broadcast_to(counts, space.dof) + 1.0))
+        nodes = math.prod((np.broadcast_to(counts, space.dof) + 1.0).tolist())
         if nodes > MOST_NODES:
             raise InputError(
                 f"the grid has {nodes:.3g} nodes, and {MOST_NODES} at most are searched; give a larger step= "

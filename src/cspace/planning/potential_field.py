@@ -23,7 +23,7 @@ from cspace.planning.edge_planner import ENDS, EdgePlanner
 from cspace.planning.space import ArmSpace
 from cspace.search import option
 from cspace.tables import join_words, show_fields, shown
-from cspace.tolerances import LARGEST_NUMBER
+from cspace.tolerances import LARGEST_NUMBER, LEAST_GAIN
 
 RESTS: Final = ("goal", "minimum", "saddle", "crease", "wall", "budget", "time")
 """How a descent ends, in the order of the core."""
@@ -118,24 +118,27 @@ class PotentialField(EdgePlanner):
     summary = "descent of an attractive and repulsive potential"
 
     simplify: bool = option(False, "shorten the path")
-    k: float = option(1.0, "attraction", above=0)
+    k: float = option(1.0, "attraction", minimum=LEAST_GAIN, maximum=LARGEST_NUMBER)
     k_r: float | None = option(
         None,
         "repulsion; by default one sphere at the arm's reach balances the goal's attraction at half of rho_0",
         unit="rad² m²",
-        above=0,
+        minimum=LEAST_GAIN,
+        maximum=LARGEST_NUMBER,
     )
     rho_0: float | None = option(
         None,
         "the distance of influence of obstacles; by default a tenth of the arm's reach",
         unit="m",
-        above=0,
+        minimum=LEAST_GAIN,
+        maximum=LARGEST_NUMBER,
     )
     cone: float | None = option(
         None,
         "the distance from the goal beyond which the attractive force is constant; by default 0.5",
         unit="rad or m",
-        above=0,
+        minimum=LEAST_GAIN,
+        maximum=LARGEST_NUMBER,
     )
     rho_links: float | None = option(
         None,
@@ -143,8 +146,9 @@ class PotentialField(EdgePlanner):
         "by the cube of rho_links / rho_0",
         unit="m",
         minimum=0,
+        maximum=LARGEST_NUMBER,
     )
-    step: float = option(0.1, "the longest step", unit="rad or m", above=0)
+    step: float = option(0.1, "the longest step", unit="rad or m", minimum=LEAST_GAIN, maximum=LARGEST_NUMBER)
     looks: int = option(20000, "evaluations of the potential per start", minimum=1, maximum=1 << 40)
 
     def _fill_in(self, space: ArmSpace) -> PotentialField:

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from cspace._core import ArmRoadmap, RoadmapWorld, make_roadmap, restore_roadmap
 from cspace.arrays import Array, bounded_number, whole_number
 from cspace.collision import RobotGeometry
-from cspace.collision.checks import HasGeometry
-from cspace.errors import InputError
+from cspace.collision.checks import HasGeometry, read_geometry
+from cspace.errors import InputError, RoadmapError
 from cspace.planning.arm_planner import Seed
 from cspace.planning.roadmap_files import MOST_SAMPLES, read_roadmap, write_roadmap
 from cspace.planning.space import ArmSpace
@@ -124,22 +124,16 @@ class Roadmap:
         Raises RoadmapError for a file that is damaged, incomplete or no roadmap, and for one of a robot with
         other joints, limits or spheres.
         """
-        geometry = robot.collision
+        geometry = read_geometry(robot)
         header, nodes, edges = read_roadmap(
             path, geometry.robot, fingerprint_geometry(geometry), geometry.dof
         )
-        rule = {name: header[name] for name in ("samples", "neighbours", "margin", "seed")}
-        space = ArmSpace(geometry, margin=rule["margin"])
-        core = restore_roadmap(
-            space.checker.core,
-            space.bounds,
-            space.wraps,
-            rule["samples"],
-            rule["neighbours"],
-            rule["seed"],
-            nodes,
-            edges,
-        )
+        try:
+            rule, core = restore_core(geometry, header, nodes, edges)
+        except ValueError as error:
+            raise RoadmapError(
+                f"the file is damaged: {error}; save the roadmap again", path=str(path)
+            ) from error
         return cls._restore(geometry, rule, core)
 
     def _world(self, space: ArmSpace, proves_search: bool, resolution: float) -> RoadmapWorld:
@@ -205,6 +199,18 @@ def make_core(space: ArmSpace, rule: Mapping[str, Any], part: ArmRoadmap | None,
     """The roadmap of a robot alone."""
     numbers = rule["samples"], rule["neighbours"], rule["seed"]
     return make_roadmap(space.checker.core, space.bounds, space.wraps, *numbers, part, threads)
+
+
+def restore_core(
+    geometry: RobotGeometry, header: Mapping[str, Any], nodes: Array, edges: npt.NDArray[np.int32]
+) -> tuple[dict[str, Any], ArmRoadmap]:
+    """What a saved roadmap is made of, and the roadmap; ValueError for numbers that no roadmap has."""
+    samples, neighbours, margin, seed = (header[key] for key in ("samples", "neighbours", "margin", "seed"))
+    rule = check_rule(samples, neighbours or None, margin, draw_seed(seed))
+    space = ArmSpace(geometry, margin=rule["margin"])
+    numbers = rule["samples"], rule["neighbours"], rule["seed"]
+    core = restore_roadmap(space.checker.core, space.bounds, space.wraps, *numbers, nodes, edges)
+    return rule, core
 
 
 def fingerprint_geometry(geometry: RobotGeometry) -> str:

@@ -11,6 +11,7 @@ from cspace.planning.arm_planner import Seed
 from cspace.planning.edge_planner import EdgePlanner
 from cspace.planning.space import ArmSpace
 from cspace.search import option
+from cspace.tolerances import LEAST_MOTION
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +28,9 @@ class RRT(EdgePlanner):
     kind: ClassVar[tuple[bool, bool]] = False, False
     """Whether it is optimal, and informed."""
 
-    range: float = option(1.0, "longest motion towards a sample", unit="rad or m", above=0.0, maximum=1e3)
+    range: float = option(
+        1.0, "longest motion towards a sample", unit="rad or m", minimum=LEAST_MOTION, maximum=1e3
+    )
     goal_bias: float = option(
         0.05, "how often a goal is the sample while no path is known, 0 to 1", minimum=0.0, maximum=1.0
     )

@@ -10,6 +10,7 @@ from cspace.planning.arm_planner import Seed
 from cspace.planning.edge_planner import EdgePlanner
 from cspace.planning.space import ArmSpace
 from cspace.search import option
+from cspace.tolerances import LEAST_MOTION
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +24,7 @@ class RRTConnect(EdgePlanner):
     name = "rrt_connect"
     summary = "two trees from start and goal; the default"
 
-    range: float = option(1.0, "longest motion of a tree", unit="rad or m", above=0.0, maximum=1e3)
+    range: float = option(1.0, "longest motion of a tree", unit="rad or m", minimum=LEAST_MOTION, maximum=1e3)
 
     def _plan_rows(self, space: ArmSpace, rows: tuple[Array, Array], rng: Seed) -> ArmPlan:
         """See EdgePlanner."""

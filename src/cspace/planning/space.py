@@ -12,7 +12,7 @@ from cspace._core import as_rows, find_reach
 from cspace.arrays import Array, as_floats
 from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
-from cspace.collision.checks import HasGeometry
+from cspace.collision.checks import HasGeometry, read_geometry
 from cspace.errors import InputError
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.tables import one_line
@@ -31,7 +31,7 @@ class ArmSpace:
     """
 
     def __init__(self, robot: HasGeometry, scene: Scene | None = None, margin: float = 0.0) -> None:
-        self.robot, self.geometry, self.scene, self.margin = robot, robot.collision, scene, margin
+        self.robot, self.geometry, self.scene, self.margin = robot, read_geometry(robot), scene, margin
         self.checker: Checker = checker_of(self.geometry, scene, margin)
         self.dof = self.geometry.dof
         kept = self.geometry._kept
@@ -73,7 +73,7 @@ class ArmSpace:
 
     def plain_rows(self, q: object) -> Array | None:
         """As as_rows for arrays of float64 and lists of numbers; None for anything else."""
-        return as_rows(q, self.dof, LARGEST_NUMBER)
+        return None if q is None else as_rows(q, self.dof, LARGEST_NUMBER)
 
     def as_rows(self, q: ArrayLike, subject: str) -> Array:
         """One configuration (dof,) or several (n, dof) as rows; InputError for another shape or NaN."""

@@ -17,7 +17,7 @@ from cspace._core import CollisionChecker
 from cspace.arrays import Array, as_floats, as_generator, one_array, positive_number, whole_number
 from cspace.collision import RobotGeometry, Scene
 from cspace.collision.checker import checker_of
-from cspace.collision.checks import HasGeometry
+from cspace.collision.checks import HasGeometry, read_geometry
 from cspace.errors import InputError, InputTypeError, Renamed, suggest
 from cspace.kinematics.batch import thread_count
 from cspace.math.wrapping import TURN
@@ -64,14 +64,11 @@ class JointSpace(Renamed):
         margin: float = 0.0,
         limits: bool = True,
     ) -> None:
-        if not hasattr(robot, "collision"):
-            raise InputTypeError(
-                f"robot is a {type(robot).__name__}; it must be a Robot, as cs.load_robot gives"
-            )
         if not isinstance(limits, (bool, np.bool_)):
             raise InputTypeError(f"limits is a {type(limits).__name__}; it must be True or False")
         self.robot, self._limits = robot, bool(limits)
-        geometry = robot.collision if limits else without_limits(robot.collision)
+        own = read_geometry(robot)
+        geometry = own if limits else without_limits(own)
         self._arm = ArmSpace(geometry, scene, margin)
         self.scene, self.margin, self.dof = scene, self._arm.margin, self._arm.dof
         self.lower, self.upper = self._arm.lower, self._arm.upper
