@@ -73,7 +73,7 @@ class ArmSpace:
 
     def plain_rows(self, q: object) -> Array | None:
         """As as_rows for arrays of float64 and lists of numbers; None for anything else."""
-        return as_rows(q, self.dof, LARGEST_NUMBER)
+        return None if q is None else as_rows(q, self.dof, LARGEST_NUMBER)
 
     def as_rows(self, q: ArrayLike, subject: str) -> Array:
         """One configuration (dof,) or several (n, dof) as rows; InputError for another shape or NaN."""

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats, one_array
+from cspace.arrays import Array, as_floats, one_array, shape_of
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial.checks import PoseLike, as_pose, one_pose
 from cspace.tables import one_line, shown
@@ -118,7 +118,10 @@ def check_place(value: Any, subject: str) -> Array:
     """A read-only pose (4, 4) from a pose or a position (3,) [m]; InputError as of spatial.as_pose."""
     if value is IDENTITY or value is ORIGIN:
         return IDENTITY
-    if np.shape(value) == (3,):
+    shape = shape_of(value, subject)
+    if len(shape) == 1 and shape != (3,):
+        raise InputError(f"{subject} has shape {shape}; it must be one pose (4, 4) or position (3,)")
+    if shape == (3,):
         T = np.eye(4)
         T[:3, 3] = one_array(value, subject.replace("pose", "position"), (3,), largest=LARGEST_NUMBER)
     else:

@@ -96,7 +96,7 @@ def add_region(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("region")
     text = "with --xyz: the tip may be anywhere in a box with these edges around it: 0.1, or 10cm"
     add_option(group, "--box SX SY SZ", text, read_length)
-    text = "with --direction or an orientation: by what angle it may deviate"
+    text = "with --direction or an orientation: by what angle it may deviate [rad, or degrees with --deg]"
     add_option(group, "--within ANGLE", text, read_number)
 
 
