@@ -191,6 +191,12 @@ BAD = {
     "shape": (lambda r, s: cs.plan(r, [0, 0, 0], [2, 0], s), InputError, "start has shape"),
     "nan": (lambda r, s: cs.plan(r, [0, 0], [np.nan, 0], s), InputError, "goal holds nan"),
     "word": (lambda r, s: cs.plan(r, [2, 0], "home", s), InputTypeError, "goal is a str"),
+    "none": (lambda r, s: cs.plan(r, [2, 0], None, s), InputTypeError, "goal is a NoneType"),
+    "no start": (lambda r, s: cs.plan(r, None, [2, 0], s), InputError, "start has shape"),
+    "ragged": (lambda r, s: cs.plan(r, [2, 0], [[1], [1, 2]], s), InputTypeError, "goal must be numbers"),
+    "position": (lambda r, s: cs.plan(r, [2, 0], [1, 0, 0], s), InputError, '{"position": goal}'),
+    "poses": (lambda r, s: cs.plan(r, [2, 0], np.tile(np.eye(4), (2, 1, 1)), s), InputTypeError, "one pose"),
+    "part": (lambda r, s: cs.plan(r, [2, 0], {"positon": [1, 0, 0]}, s), UnknownNameError, "'position'"),
     "planner": (
         lambda r, s: cs.plan(r, [2, 0], [2, 1], s, planner="rrt_conect"),
         UnknownNameError,

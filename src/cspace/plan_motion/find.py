@@ -14,6 +14,7 @@ from cspace.plan_motion.poses import solve_pose
 from cspace.plan_motion.regions import sample_region
 from cspace.planning import ArmSpace, Region
 from cspace.spatial import as_pose
+from cspace.spatial.checks import one_pose
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -42,6 +43,8 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals
     shape = () if isinstance(goal, str) else shape_of(goal, "goal")
     if shape == (4, 4) and (space.dof != POSE_ROWS or is_pose(goal)):
         return solve_pose(robot, space, starts[0], goal)
+    if not shape and is_pose(goal):  # an object that holds a pose, such as scipy's RigidTransform
+        return solve_pose(robot, space, starts[0], one_pose(goal, "goal"))
     check_kind(goal, shape, space.dof)
     return Goals(space.as_rows(goal, "goal"), is_given=True)
 
@@ -62,10 +65,10 @@ def check_kind(goal: Any, shape: tuple[int, ...], dof: int) -> None:
 
 
 def is_pose(goal: Any) -> bool:
-    """Whether (4, 4) numbers are a pose rather than four configurations of four joints."""
+    """Whether a goal is a pose: not four configurations of four joints, which are (4, 4) numbers too."""
     try:
         as_pose(goal)
-    except InputError:
+    except (InputError, InputTypeError):
         return False
     return True
 
