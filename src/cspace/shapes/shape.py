@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, one_array, shape_of
 from cspace.errors import InputError, InputTypeError
-from cspace.spatial.checks import PoseLike, as_pose, one_pose
+from cspace.spatial.checks import as_pose
 from cspace.tables import one_line, shown
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -76,9 +76,9 @@ class Shape:
         inside = np.asarray(self.distance(points)) <= 0.0
         return inside if inside.ndim else bool(inside)
 
-    def moved(self: S, T: PoseLike) -> S:
-        """The same shape moved by T (4, 4), a displacement in the frame where it is placed."""
-        return replace(self, pose=one_pose(T, "T") @ self.pose)  # type: ignore[type-var]
+    def moved(self: S, T: Any) -> S:
+        """The same shape moved by T (4, 4), or a translation (3,) [m], in the frame where it is placed."""
+        return replace(self, pose=check_place(T, "T") @ self.pose)  # type: ignore[type-var]
 
     def placed(self: S, pose: Any) -> S:
         """The same shape at another pose (4, 4) or position (3,)."""
