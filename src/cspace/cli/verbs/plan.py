@@ -301,9 +301,18 @@ def plan_document(
         "certified": plan.certified,
         "clearance": finite_number(plan.clearance),
         "seconds": seconds,
-        "stats": dict(plan.stats),
+        "stats": {name: name_fields(value) for name, value in plan.stats.items()},
         "written": written,
     }
+
+
+def name_fields(value: Any) -> Any:
+    """Named tuples as dicts, also inside of others: JSON would drop the names."""
+    if hasattr(value, "_asdict"):
+        return {name: name_fields(field) for name, field in value._asdict().items()}
+    if isinstance(value, (list, tuple)):
+        return [name_fields(each) for each in value]
+    return value
 
 
 def finite_number(value: float) -> float | None:
