@@ -215,6 +215,13 @@ BAD = {
     "robot": (lambda r, s: cs.plan("ur5e", [2, 0], [2, 1], s), InputTypeError, "it must be a cspace.Robot"),
     "pose": (lambda r, s: cs.plan(r, [2, 0], np.full((4, 4), np.nan), s), InputError, "nan"),
     "goals": (lambda r, s: cs.plan_many(r, [2, 0], 5, s), InputTypeError, "a list of goals"),
+    "one goal of many": (
+        lambda r, s: cs.plan_many(r, [[2, 0]] * 2, [2, 1], s),
+        InputError,
+        "one goal per problem",
+    ),
+    "space": (lambda r, s: ArmSpace("ur5e"), InputTypeError, "ArmSpace takes a cspace.Robot"),
+    "space of a planner": (lambda r, s: RRTConnect().plan(r, [2, 0], [2, 1]), InputTypeError, "ArmSpace"),
     "many": (lambda r, s: cs.plan_many(r, [[2, 0]] * 2, [[2, 1]] * 3, s), InputError, "2 starts and 3 goals"),
 }
 

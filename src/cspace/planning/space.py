@@ -13,7 +13,7 @@ from cspace.arrays import Array, as_floats
 from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
 from cspace.collision.checks import HasGeometry
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
@@ -31,7 +31,13 @@ class ArmSpace:
     """
 
     def __init__(self, robot: HasGeometry, scene: Scene | None = None, margin: float = 0.0) -> None:
-        self.robot, self.geometry, self.scene, self.margin = robot, robot.collision, scene, margin
+        geometry = getattr(robot, "collision", None)
+        if not isinstance(geometry, RobotGeometry):
+            raise InputTypeError(
+                f"robot is a {type(robot).__name__}; ArmSpace takes a cspace.Robot, such as"
+                " cs.load_robot('panda')"
+            )
+        self.robot, self.geometry, self.scene, self.margin = robot, geometry, scene, margin
         self.checker: Checker = checker_of(self.geometry, scene, margin)
         self.dof = self.geometry.dof
         kept = self.geometry._kept
