@@ -16,7 +16,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
-__all__ += ["bounded_number", "guard_memory", "one_array", "whole_number"]
+__all__ += ["bounded_number", "guard_memory", "one_array", "shape_of", "whole_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -50,6 +50,14 @@ def as_floats(
             f"{subject} {_entry(array, tuple(map(int, beyond)))}; the largest allowed value is ±{largest:g}"
         )
     return array
+
+
+def shape_of(value: Any, subject: str) -> tuple[int, ...]:
+    """The shape that numpy reads; InputTypeError for rows of different lengths."""
+    try:
+        return np.shape(value)
+    except ValueError:
+        return as_floats(value, subject).shape  # raises, with the subject
 
 
 def as_arrays(

@@ -240,6 +240,8 @@ def shorten(text: str, most: int = LONGEST) -> str:
 
 
 def _plural(noun: str) -> str:
+    if " or " in noun:
+        return " and ".join(map(_plural, noun.split(" or ")))
     if noun.endswith("is"):
         return noun[:-2] + "es"
     if noun.endswith("y") and noun[-2:-1] not in "aeiou":

@@ -60,8 +60,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
     base, tip, leaves: names of links. mass: of all links of the robot [kg]. floating, description: as
     given.
 
-    Raises UnknownNameError for a link or a locked joint that does not exist, InputError for a base= with
-    more than one possible tip, and for a locked joint that moves the tip.
+    Raises UnknownNameError for a link, a locked joint or a geometry that does not exist, InputError for a
+    base= with more than one possible tip, and for a locked joint that moves the tip.
     """
 
     description: Description
@@ -85,6 +85,10 @@ class Robot(Renamed, RobotBase, KinematicModel):
                 f"Robot needs a Description, got {type(description).__name__}; load_robot takes names and"
                 " paths, Robot.from_urdf, from_dh, from_screws and from_toml what their names say"
             )
+        if geometry != "collision":
+            from cspace.collision.robot_geometry import check_geometry
+
+            check_geometry(geometry)
         self._ends = (base, tip)
         self._collision: RobotGeometry | None = None
         self._geometry, self._cover, self._described = geometry, cover, described

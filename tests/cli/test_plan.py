@@ -108,6 +108,23 @@ def test_options_seed_and_margin(robot):
     assert cspace(f"{LINE} {ENDS} --json --margin 0.2cm").json["margin"] == 0.002
 
 
+def test_where_a_descent_ended_keeps_its_names(tmp_path):
+    boxes = cs.Scene([cs.Box([0.5, 0.5, 0.5], [1.2, 1.3, 0], name="box")])
+    boxes.save(tmp_path / "box.toml")
+    ends = f"--from 0.2 0.3 --to 1.8 0.8 --scene {tmp_path}/box.toml"
+    found = cspace(f"plan planar_2r {ends} --planner potential_field --json")
+    assert (found.code, found.err) == (Exit.NEGATIVE, "")
+    schema.check(found.json, "cspace.plan/1")
+    own = cs.plan(cs.load_robot("planar_2r"), [0.2, 0.3], [1.8, 0.8], boxes, planner="potential_field")
+    rest = found.json["stats"]["rest"]
+    assert rest["kind"] == own.stats["rest"].kind == "minimum"
+    assert rest["q"] == own.stats["rest"].q.tolist()
+    assert rest["pushes"][0]["other"] == "box"
+    array = cspace(f"plan planar_2r {ends} --planner grid_search --option cells=60")
+    assert array.code == Exit.USAGE
+    assert "cs.plan in Python" in array.err
+
+
 @pytest.mark.parametrize("ending", ["yaml", "yml", "json", "csv"])
 def test_files_of_paths_keep_every_digit(tmp_path, ending):
     file = tmp_path / f"way.{ending}"

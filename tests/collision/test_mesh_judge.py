@@ -169,6 +169,11 @@ def test_a_plan_is_verified_or_says_where_it_touches(arms):
     assert 0.0 < verdict.at < 1.0
 
 
+def test_a_judge_prints_what_it_checks(arms):
+    scene = cs.Scene([cs.Sphere(0.1, [9, 9, 9])])
+    assert "6 shapes" in repr(MeshJudge(arms["box"], scene))  # five links and a ball
+
+
 def test_faults_are_named(arms, monkeypatch):
     with pytest.raises(UnknownNameError, match="verification"):
         cs.plan(arms["box"], np.zeros(4), np.ones(4), verify="spheres")

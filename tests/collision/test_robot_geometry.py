@@ -132,7 +132,7 @@ def test_a_robot_without_geometry_says_so_and_has_a_skeleton_on_request():
     assert not thin.collides(thin.named_poses["home"], scene) or thin.contact(thin.named_poses["home"], scene)
     assert thin.collides(np.zeros(6), cs.Scene([cs.Box([0.2, 0.2, 0.2], thin.fk(np.zeros(6))[:3, 3])]))
     with pytest.raises(UnknownNameError, match="skeleton"):
-        assert cs.load_robot("ur5e", geometry="skeletton").collision
+        cs.load_robot("ur5e", geometry="skeletton")
 
 
 BAD = {

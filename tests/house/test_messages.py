@@ -63,7 +63,14 @@ def test_a_suggestion_is_a_sentence(name, known, text):
 
 
 @pytest.mark.parametrize(
-    ("noun", "plural"), [("link", "links"), ("branch", "branches"), ("axis", "axes"), ("body", "bodies")]
+    ("noun", "plural"),
+    [
+        ("link", "links"),
+        ("branch", "branches"),
+        ("axis", "axes"),
+        ("body", "bodies"),
+        ("link or body", "links and bodies"),
+    ],
 )
 def test_the_plural_of_a_subject_is_right(noun, plural):
     assert str(errors.suggest(noun, "x", ["a"])).endswith(f"; {plural}: a")

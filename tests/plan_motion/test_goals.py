@@ -99,3 +99,20 @@ def test_a_pose_that_few_samples_miss_is_sampled_densely():
             assert plan or "sampled IK solutions touch" in plan.reason or "used up" in plan.reason
     assert 0 < missed < 20
     assert found > 0.5 * missed
+
+
+class Held:
+    """An object with a 4×4 `.A`, as poses of other packages have."""
+
+    def __init__(self, T):
+        self.A = T
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("name", ["ur5e", "panda"])
+def test_an_object_that_holds_a_pose_is_a_goal_like_the_pose(name, seed):
+    robot = arm(name)
+    start, q = robot.random_configuration(2, rng=seed)
+    T = robot.fk(q)
+    rows = [find_goals(robot, ArmSpace(robot), start[None], goal).rows for goal in (T, Held(T))]
+    np.testing.assert_array_equal(*rows)

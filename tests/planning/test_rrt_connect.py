@@ -191,6 +191,13 @@ BAD = {
     "shape": (lambda r, s: cs.plan(r, [0, 0, 0], [2, 0], s), InputError, "start has shape"),
     "nan": (lambda r, s: cs.plan(r, [0, 0], [np.nan, 0], s), InputError, "goal holds nan"),
     "word": (lambda r, s: cs.plan(r, [2, 0], "home", s), InputTypeError, "goal is a str"),
+    "none": (lambda r, s: cs.plan(r, [2, 0], None, s), InputTypeError, "goal is a NoneType"),
+    "no start": (lambda r, s: cs.plan(r, None, [2, 0], s), InputError, "start has shape"),
+    "ragged": (lambda r, s: cs.plan(r, [2, 0], [[1], [1, 2]], s), InputTypeError, "goal must be numbers"),
+    "position": (lambda r, s: cs.plan(r, [2, 0], [1, 0, 0], s), InputError, '{"position": goal}'),
+    "poses": (lambda r, s: cs.plan(r, [2, 0], np.tile(np.eye(4), (2, 1, 1)), s), InputTypeError, "one pose"),
+    "step": (lambda r, s: cs.plan(r, [2, 0], [2, 1], s).sample(0), InputError, "step is 0; it must be"),
+    "part": (lambda r, s: cs.plan(r, [2, 0], {"positon": [1, 0, 0]}, s), UnknownNameError, "'position'"),
     "planner": (
         lambda r, s: cs.plan(r, [2, 0], [2, 1], s, planner="rrt_conect"),
         UnknownNameError,
@@ -208,6 +215,13 @@ BAD = {
     "robot": (lambda r, s: cs.plan("ur5e", [2, 0], [2, 1], s), InputTypeError, "it must be a cspace.Robot"),
     "pose": (lambda r, s: cs.plan(r, [2, 0], np.full((4, 4), np.nan), s), InputError, "nan"),
     "goals": (lambda r, s: cs.plan_many(r, [2, 0], 5, s), InputTypeError, "a list of goals"),
+    "one goal of many": (
+        lambda r, s: cs.plan_many(r, [[2, 0]] * 2, [2, 1], s),
+        InputError,
+        "one goal per problem",
+    ),
+    "space": (lambda r, s: ArmSpace("ur5e"), InputTypeError, "ArmSpace takes a cspace.Robot"),
+    "space of a planner": (lambda r, s: RRTConnect().plan(r, [2, 0], [2, 1]), InputTypeError, "ArmSpace"),
     "many": (lambda r, s: cs.plan_many(r, [[2, 0]] * 2, [[2, 1]] * 3, s), InputError, "2 starts and 3 goals"),
 }
 

@@ -80,6 +80,8 @@ def test_outlines_keep_the_radius(count):
 def test_arguments_that_cannot_be_drawn(space, axes):
     with pytest.raises(InputTypeError, match="space is a str"):
         cs.plot.configuration_space("space")
+    with pytest.raises(InputTypeError, match="space_slice"):
+        cs.plot.configuration_space(cs.configuration_space(cs.load_robot("planar_2r"), exact=False))
     with pytest.raises(InputError, match="ax has 1 axes"):
         cs.plot.configuration_space(space, ax=axes[0])
     with pytest.raises(InputError, match="start"):

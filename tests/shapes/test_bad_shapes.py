@@ -12,6 +12,8 @@ from shapes.solids import box_mesh
 NAN_POSE = np.diag([1.0, 1.0, 1.0, np.nan])
 CALLS = {
     "flat box": (lambda: shapes.Box([1, 0, 1]), "size of a box is [1.0, 0.0, 1.0]; each side"),
+    "box at two numbers": (lambda: shapes.Box([1, 1, 1], [0, 0]), "one pose (4, 4) or position (3,)"),
+    "box at ragged rows": (lambda: shapes.Box([1, 1, 1], [[0], [1, 2]]), "pose of a box must be numbers"),
     "box of two sides": (lambda: shapes.Box([1, 1]), "size of a box has shape (2,), expected (3,)"),
     "sphere of radius zero": (lambda: shapes.Sphere(0.0), "radius of a sphere is 0.0; it must be"),
     "NaN radius": (lambda: shapes.Sphere(np.nan), "radius of a sphere holds nan"),
@@ -58,3 +60,4 @@ def test_shapes_cannot_be_changed():
         box.size[0] = 2
     assert box.renamed("b").name == "b"
     assert repr(box) == "<Box 'a', 1 × 1 × 1 m, at (0, 0, 0)>"
+    assert "1 point," in repr(shapes.PointCloud([[0, 0, 0]]))

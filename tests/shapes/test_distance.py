@@ -55,6 +55,7 @@ def test_moving_shape_and_points_changes_nothing(kind):
     shape, rng = shape_of(kind)
     points, T = points_around(shape, rng), cs.random_pose(rng=rng)
     moved = shape.moved(T)
+    np.testing.assert_array_equal(shape.moved(T[:3, 3]).pose, shape.moved(cs.pose(T[:3, 3])).pose)
     assert np.abs(moved.distance(cs.transform_points(T, points)) - shape.distance(points)).max() < 1e-11
     turned = moved.gradient(cs.transform_points(T, points))
     assert np.abs(turned - cs.transform_directions(T, shape.gradient(points))).max() < 1e-7

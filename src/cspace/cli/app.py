@@ -30,7 +30,7 @@ VERBS: Final[Mapping[str, str]] = MappingProxyType(
         "nav": "a path through a map, by one planner or by all of them for comparison",
         "plan": "a free path of an arm among obstacles, every motion of it proved",
         "planners": "the planners of nav and plan, and their options",
-        "space": "the configuration space of a planar arm with two joints, and a path through it",
+        "space": "the configuration space: exact of a planar arm with two joints, else free share and slices",
         "export": "the inverse kinematics of an arm as C++, C or Python code that does not depend on cspace",
         "doctor": "versions, optional parts and a self-check",
     }

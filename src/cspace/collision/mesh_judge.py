@@ -128,6 +128,10 @@ class MeshJudge:
         """The joints of the configurations."""
         return self._geometry.joint_names
 
+    def __repr__(self) -> str:
+        counts = f"{len(self._pieces)} shapes, {len(self._pairs)} pairs checked"
+        return one_line("MeshJudge", f"of {self._geometry.robot}: {counts}")
+
     # --- what is checked --------------------------------------------------------------------------------
     def _list_pieces(self) -> Iterator[_Piece]:
         """The shapes of links, of attached objects and of obstacles."""

@@ -169,6 +169,12 @@ class RobotGeometry:
         )
 
 
+def check_geometry(geometry: object) -> None:
+    """Raises UnknownNameError for a name that is no source of collision geometry."""
+    if geometry not in GEOMETRIES:
+        raise suggest("geometry", geometry, GEOMETRIES)
+
+
 def robot_geometry(
     robot: KinematicModel,
     description: Description,
@@ -190,8 +196,7 @@ def robot_geometry(
     against each other; nor are pairs that the description allows. Raises DescriptionError for meshes that
     cannot be read, UnknownNameError for another geometry, InputError for a cover that is not positive.
     """
-    if geometry not in GEOMETRIES:
-        raise suggest("geometry", geometry, GEOMETRIES)
+    check_geometry(geometry)
     excess = positive_number(cover, "cover", "it must be one positive number [m]", largest=LARGEST_NUMBER)
     mount = np.eye(4) if T_world_base is None else T_world_base
     assembly = robot._assembly

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
-from cspace.arrays import Array
+from cspace.arrays import Array, shape_of
 from cspace.collision.checks import explain_contacts
 from cspace.errors import InputError, InputTypeError
 from cspace.plan_motion.goals import Goals
@@ -16,12 +14,16 @@ from cspace.plan_motion.poses import solve_pose
 from cspace.plan_motion.regions import sample_region
 from cspace.planning import ArmSpace, Region
 from cspace.spatial import as_pose
+from cspace.spatial.checks import one_pose
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
 POSE_ROWS: Final = 4
 """Rows of a pose: as many configurations of four joints have its shape."""
+
+POSITION_SIZE: Final = 3
+"""Values of a position, which is often given where a configuration is expected."""
 
 
 def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals:
@@ -38,21 +40,35 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals
         goal = goal.goal
     if isinstance(goal, Mapping):
         return solve_parts(robot, space, starts[0], goal)
-    if np.shape(goal) == (4, 4) and (space.dof != POSE_ROWS or is_pose(goal)):
+    shape = () if isinstance(goal, str) else shape_of(goal, "goal")
+    if shape == (4, 4) and (space.dof != POSE_ROWS or is_pose(goal)):
         return solve_pose(robot, space, starts[0], goal)
-    if isinstance(goal, str) or np.ndim(goal) not in (1, 2):
-        raise InputTypeError(
-            f"goal is a {type(goal).__name__}; it must be configurations (dof,) or (g, dof), a pose (4, 4), a"
-            " dict of keywords of robot.ik, or a cs.planning.Region"
-        )
+    if not shape and is_pose(goal):  # an object that holds a pose, such as scipy's RigidTransform
+        return solve_pose(robot, space, starts[0], one_pose(goal, "goal"))
+    check_kind(goal, shape, space.dof)
     return Goals(space.as_rows(goal, "goal"), is_given=True)
 
 
+def check_kind(goal: Any, shape: tuple[int, ...], dof: int) -> None:
+    """Raises InputTypeError or InputError for what is no goal, with the kind that was probably meant."""
+    if len(shape) not in (1, 2):
+        said = f"has shape {shape}" if shape else f"is a {type(goal).__name__}"
+        raise InputTypeError(
+            f"goal {said}; it must be configurations (dof,) or (g, dof), one pose (4, 4), a dict of keywords"
+            " of robot.ik, or a cs.planning.Region"
+        )
+    if shape == (POSITION_SIZE,) and dof != POSITION_SIZE:
+        raise InputError(
+            f"goal has shape {shape}; a configuration has {dof} values, and a position of the tip is"
+            ' {"position": goal}'
+        )
+
+
 def is_pose(goal: Any) -> bool:
-    """Whether (4, 4) numbers are a pose rather than four configurations of four joints."""
+    """Whether a goal is a pose: not four configurations of four joints, which are (4, 4) numbers too."""
     try:
         as_pose(goal)
-    except InputError:
+    except (InputError, InputTypeError):
         return False
     return True
 

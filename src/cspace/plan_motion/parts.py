@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import CspaceError, InputTypeError
+from cspace.errors import suggest
 from cspace.plan_motion.goals import Goals
 from cspace.plan_motion.poses import keep_solutions
 from cspace.plan_motion.regions import FIRST_POSES, POSE_JOINTS, sample_region, solve_poses
@@ -27,13 +28,14 @@ REGION_PARTS: Final = frozenset({"position", "direction", "rotation", "tool_axis
 
 
 def solve_parts(robot: Robot, space: ArmSpace, start: Array, goal: Mapping[str, Any]) -> Goals:
-    """The solutions of a goal by keywords of robot.ik, and samples of what it leaves free."""
-    try:
-        solutions = robot.ik(**goal)
-    except TypeError as error:
-        if isinstance(error, CspaceError):
-            raise
-        raise InputTypeError(f"goal: {error}; it must hold keywords of robot.ik, such as position") from error
+    """The solutions of a goal by keywords of robot.ik, and samples of what it leaves free.
+
+    Raises UnknownNameError for a key that is no keyword of robot.ik.
+    """
+    known = signature(robot.ik).parameters
+    if unknown := [key for key in goal if key not in known]:
+        raise suggest("keyword", unknown[0], known, owner="robot.ik, which the goal names")
+    solutions = robot.ik(**goal)
     if not solutions.freedom or "near" in goal:
         return keep_solutions(robot, space, start, solutions)
     region = region_of(space, goal)

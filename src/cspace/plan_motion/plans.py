@@ -100,6 +100,7 @@ def plan_many(
             f"goals is a {type(goals).__name__}; it must be a list of goals, one per problem"
         )
     wanted = list(goals)
+    _check_each(wanted, space.dof)
     rows = space.as_rows(starts, "starts")
     if len(rows) not in (1, len(wanted)):
         raise InputError(f"there are {len(rows)} starts and {len(wanted)} goals; give one start, or as many")
@@ -120,6 +121,15 @@ def plan_many(
         if plans[k].status == "invalid_goal" and not each.is_given:
             plans[k] = _plan_to_more(chosen, space, rows[k : k + 1], each, rng)
     return Plans(plans)
+
+
+def _check_each(goals: Sequence[Any], dof: int) -> None:
+    """Raises InputError where the goals are the numbers of one configuration."""
+    if any(isinstance(goal, (int, float, np.number)) for goal in goals):
+        raise InputError(
+            f"goals are {len(goals)} numbers; give one goal per problem: configurations (n, {dof}), poses"
+            " (n, 4, 4), or a list of goals"
+        )
 
 
 def _find_judge(robot: Robot, space: ArmSpace, verify: str | MeshJudge) -> MeshJudge:
@@ -198,7 +208,9 @@ class Plans(Sequence[Plan]):
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{n} {status}" for status, n in Counter(self.status).items())
-        return one_line("Plans", f"of {len(self)} problems{': ' if counts else ''}{counts}")
+        return one_line(
+            "Plans", f"of {len(self)} problem{'' if len(self) == 1 else 's'}{': ' if counts else ''}{counts}"
+        )
 
     def _repr_html_(self) -> str:
         rows = [(str(k), p.status, str(len(p)), shown(p.cost)) for k, p in enumerate(self._plans)]

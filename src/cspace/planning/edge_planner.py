@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from cspace._core import ArmOptions, ArmPlan
 from cspace.arrays import Array
+from cspace.errors import InputTypeError
 from cspace.planning.arm_planner import ArmPlanner, Seed
 from cspace.planning.plan_result import Plan
 from cspace.planning.space import ArmSpace
@@ -44,7 +45,7 @@ class EdgePlanner(ArmPlanner):
     """What a failed search says of its closest approach."""
 
     search: str = option(
-        "proved", "how the search checks motions", choices=("proved", "sampled"), subject="kind of check"
+        "proved", "how the search checks motions", choices=("proved", "sampled"), subject="search"
     )
     resolution: float = option(
         1.0 / 32.0, "distance of samples", unit="rad or m", minimum=LEAST_SPACING, maximum=1e3
@@ -63,8 +64,12 @@ class EdgePlanner(ArmPlanner):
     def plan(self, space: ArmSpace, starts: ArrayLike, goals: ArrayLike, *, rng: Seed = 0) -> Plan:
         """From starts (dof,) or (s, dof) to goals (dof,) or (g, dof); see ArmPlanner.plan.
 
-        Raises InputError for configurations of another shape, or with NaN.
+        Raises InputError for configurations of another shape, or with NaN, InputTypeError for another space.
         """
+        if not isinstance(space, ArmSpace):
+            raise InputTypeError(
+                f"space is a {type(space).__name__}; planners take an ArmSpace, ArmSpace(robot, scene)"
+            )
         rows = space.as_rows(starts, "start"), space.as_rows(goals, "goal")
         return self._name_plan(space, rows, self._plan_rows(space, rows, rng))
 

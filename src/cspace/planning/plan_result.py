@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cspace.arrays import Array
+from cspace.arrays import Array, positive_number
 from cspace.tables import one_line, shown
 
 if TYPE_CHECKING:
@@ -54,7 +54,11 @@ class Plan:
         return len(self.path)
 
     def sample(self, step: float = CLEARANCE_STEP) -> Array:
-        """Configurations (k, dof) along the path, at most `step` apart (L2 norm), corners included."""
+        """Configurations (k, dof) along the path, at most `step` apart (L2 norm), corners included.
+
+        Raises InputError for a step that is not positive.
+        """
+        step = positive_number(step, "step", "it must be one positive number [rad or m]")
         if not len(self.path):
             return self.path
         rows = [self.path[:1]]

@@ -52,7 +52,8 @@ def configuration_space(
     """
     if not hasattr(space, "obstacle_map"):
         raise InputTypeError(
-            f"space is a {type(space).__name__}; configuration_space draws what cs.configuration_space gives"
+            f"space is a {type(space).__name__}; configuration_space draws a ConfigurationSpace, that of a"
+            " planar arm with two joints. Draw a JointSpace by cs.plot.space_slice(space.slice((0, 1)))"
         )
     plane, joints = two_axes(ax)
     tints = colors.make_palette(len(space.obstacles))

@@ -55,4 +55,4 @@ class PointCloud(Shape):
 
     def _sizes(self) -> str:
         thick = f", radius {shown(self.radius)} m" if self.radius else ""
-        return f"{len(self.points)} points{thick}"
+        return f"{len(self.points)} point{'' if len(self.points) == 1 else 's'}{thick}"

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats, one_array
+from cspace.arrays import Array, as_floats, one_array, shape_of
 from cspace.errors import InputError, InputTypeError
-from cspace.spatial.checks import PoseLike, as_pose, one_pose
+from cspace.spatial.checks import as_pose
 from cspace.tables import one_line, shown
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -76,9 +76,9 @@ class Shape:
         inside = np.asarray(self.distance(points)) <= 0.0
         return inside if inside.ndim else bool(inside)
 
-    def moved(self: S, T: PoseLike) -> S:
-        """The same shape moved by T (4, 4), a displacement in the frame where it is placed."""
-        return replace(self, pose=one_pose(T, "T") @ self.pose)  # type: ignore[type-var]
+    def moved(self: S, T: Any) -> S:
+        """The same shape moved by T (4, 4), or a translation (3,) [m], in the frame where it is placed."""
+        return replace(self, pose=check_place(T, "T") @ self.pose)  # type: ignore[type-var]
 
     def placed(self: S, pose: Any) -> S:
         """The same shape at another pose (4, 4) or position (3,)."""
@@ -118,7 +118,10 @@ def check_place(value: Any, subject: str) -> Array:
     """A read-only pose (4, 4) from a pose or a position (3,) [m]; InputError as of spatial.as_pose."""
     if value is IDENTITY or value is ORIGIN:
         return IDENTITY
-    if np.shape(value) == (3,):
+    shape = shape_of(value, subject)
+    if len(shape) == 1 and shape != (3,):
+        raise InputError(f"{subject} has shape {shape}; it must be one pose (4, 4) or position (3,)")
+    if shape == (3,):
         T = np.eye(4)
         T[:3, 3] = one_array(value, subject.replace("pose", "position"), (3,), largest=LARGEST_NUMBER)
     else:

@@ -96,7 +96,7 @@ def add_region(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("region")
     text = "with --xyz: the tip may be anywhere in a box with these edges around it: 0.1, or 10cm"
     add_option(group, "--box SX SY SZ", text, read_length)
-    text = "with --direction or an orientation: by what angle it may deviate"
+    text = "with --direction or an orientation: by what angle it may deviate [rad, or degrees with --deg]"
     add_option(group, "--within ANGLE", text, read_number)
 
 
@@ -301,9 +301,18 @@ def plan_document(
         "certified": plan.certified,
         "clearance": finite_number(plan.clearance),
         "seconds": seconds,
-        "stats": dict(plan.stats),
+        "stats": {name: name_fields(value) for name, value in plan.stats.items()},
         "written": written,
     }
+
+
+def name_fields(value: Any) -> Any:
+    """Named tuples as dicts, also inside of others: JSON would drop the names."""
+    if hasattr(value, "_asdict"):
+        return {name: name_fields(field) for name, field in value._asdict().items()}
+    if isinstance(value, (list, tuple)):
+        return [name_fields(each) for each in value]
+    return value
 
 
 def finite_number(value: float) -> float | None:

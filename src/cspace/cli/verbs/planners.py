@@ -152,5 +152,6 @@ def value_of(option: Option, text: str) -> Any:
             except (ValueError, KeyError):
                 raise UsageError(f"option {option.name!r} is {text!r}; it must be {rule}") from None
     raise UsageError(
-        f"option {option.name!r} is an array, which the command line cannot take; use cs.navigate in Python"
+        f"option {option.name!r} is an array, which the command line cannot take; use cs.navigate"
+        " or cs.plan in Python"
     )

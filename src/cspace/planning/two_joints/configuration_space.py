@@ -220,7 +220,7 @@ def exact_space(
     if not isinstance(obstacles, (PolygonWorld, list, tuple)):
         raise InputTypeError(
             f"obstacles is a {type(obstacles).__name__}; it must be a Scene, a PolygonWorld or a list of"
-            " polygons (n, 2)"
+            " polygons (n, 2); without obstacles it is cs.Scene()"
         )
     return ConfigurationSpace(arm, cut_polygons(obstacles), radius)
 

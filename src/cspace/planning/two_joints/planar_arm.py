@@ -83,9 +83,10 @@ def read_planar_arm(robot: Any, use_limits: bool) -> PlanarArm:
     chain = robot.chain
     if chain.joint_types != "RR" or chain.dof != 2:
         raise InputError(
-            f"{robot.name} has {chain.dof} joints of types {chain.joint_types!r}; the configuration space can"
-            " be drawn for two revolute joints ('RR'): use a robot such as planar_2r, or Robot(description,"
-            " base=, tip=) for a part of one"
+            f"{robot.name} has {chain.dof} joints of types {chain.joint_types!r}; an exact"
+            " configuration space, and obstacles as polygons, need two revolute joints ('RR'): give the"
+            " obstacles as a cs.Scene and leave exact= out, or use Robot(description, base=, tip=)"
+            " for a part of the robot"
         )
     if np.abs(np.cross(*chain.axes)).max() > PLANAR_AXES:
         angle = np.degrees(np.arccos(np.clip(np.abs(chain.axes[0] @ chain.axes[1]), 0.0, 1.0)))

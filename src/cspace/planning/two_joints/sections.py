@@ -84,7 +84,8 @@ def cut_shape(shape: Shape, plane: Plane) -> list[Piece]:
             return cut(shape, plane)
     raise InputTypeError(
         f"obstacle {shape.name!r} is a {type(shape).__name__}; sections are known of "
-        f"{', '.join(kind.__name__ for kind in CUTS)}: give a Hull, or its section as a polygon"
+        f"{', '.join(kind.__name__ for kind in CUTS)}: give a Hull, its section as a polygon,"
+        " or exact=False for slices of the space with any shape"
     )
 
 
