@@ -153,3 +153,11 @@ def test_steps_of_a_judge_that_need_too_many_samples_are_refused():
     assert time.perf_counter() - began < 5.0
     with pytest.raises(InputTypeError, match="scene is a int"):
         MeshJudge(ROBOT, 5)
+
+
+@pytest.mark.parametrize("check", ["collides", "contact", "clearance", "escape"])
+def test_checks_refuse_what_is_no_robot(check):
+    with pytest.raises(InputTypeError, match="robot is a NoneType"):
+        getattr(cs.collision, check)(None, [0.0])
+    with pytest.raises(InputTypeError, match="robot is a str"):
+        cs.collision.edge("ur5e", [0.0], [1.0])

@@ -220,7 +220,7 @@ BAD = {
         InputError,
         "one goal per problem",
     ),
-    "space": (lambda r, s: ArmSpace("ur5e"), InputTypeError, "ArmSpace takes a cspace.Robot"),
+    "space": (lambda r, s: ArmSpace("ur5e"), InputTypeError, "robot is a str; it must be a Robot"),
     "space of a planner": (lambda r, s: RRTConnect().plan(r, [2, 0], [2, 1]), InputTypeError, "ArmSpace"),
     "many": (lambda r, s: cs.plan_many(r, [[2, 0]] * 2, [[2, 1]] * 3, s), InputError, "2 starts and 3 goals"),
 }

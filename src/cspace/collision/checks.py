@@ -105,7 +105,7 @@ def collides(
     Raises InputError for a robot without collision geometry, a wrong shape, NaN, a negative margin, and for
     names of the scene that do not fit the robot.
     """
-    geometry = robot.collision
+    geometry = read_geometry(robot)
     checker = checker_of(geometry, scene, margin)
     rows = as_configurations(geometry, q)
     if checker.margin == 0.0 and isinstance(robot, RobotBase):
@@ -124,7 +124,7 @@ def contact(
 
     Of several contacts it is the one that was found first. margin and errors as of collides.
     """
-    geometry = robot.collision
+    geometry = read_geometry(robot)
     checker = checker_of(geometry, scene, margin)
     found = checker.core.find_contact(one_configuration(geometry, q, "q"))
     return None if found is None else checker.name_pair(found)
@@ -137,7 +137,7 @@ def clearance(robot: HasGeometry, q: ArrayLike, scene: Scene | None = None) -> C
     ∂d/∂q_j = n · (z_j × (c − o_j)) for a revolute joint and n · z_j for a prismatic one; of a pair of links
     only the joints between them count. Errors as of collides.
     """
-    geometry = robot.collision
+    geometry = read_geometry(robot)
     checker = checker_of(geometry, scene, 0.0)
     rows = as_configurations(geometry, q)
     found = [checker.core.find_clearance(row) for row in flat_rows(rows)]
@@ -167,7 +167,7 @@ def edge(
     wrap: the motion goes from one value to the other. resolution: check samples instead, at most so far apart
     [L2 norm of the joints]; then a contact between samples is missed. margin and errors as of collides.
     """
-    geometry = robot.collision
+    geometry = read_geometry(robot)
     checker = checker_of(geometry, scene, margin)
     step = 0.0
     if resolution is not None:
@@ -187,7 +187,7 @@ def edge(
 
 def explain_contacts(robot: HasGeometry, rows: Array, scene: Scene | None, margin: float = 0.0) -> str:
     """What configurations (n, dof) touch, the most frequent pairs first, in words."""
-    checker = checker_of(robot.collision, scene, margin)
+    checker = checker_of(read_geometry(robot), scene, margin)
     found = (checker.core.find_contact(q) for q in rows)
     pairs = Counter(" touches ".join(checker.name_pair(pair)) for pair in found if pair is not None)
     named = ", ".join(f"{name} ({n})" for name, n in pairs.most_common(MOST_CAUSES))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, bounded_number, positive_number
-from cspace.collision.checks import HasGeometry, clearance, one_configuration
+from cspace.collision.checks import HasGeometry, clearance, one_configuration, read_geometry
 from cspace.collision.scene import Scene
 from cspace.tables import one_line, shown
 from cspace.tolerances import BEYOND_MARGIN, FLAT_CLEARANCE, LARGEST_NUMBER
@@ -55,7 +55,7 @@ def escape(
 
     Raises InputError for a robot without collision geometry, a wrong shape, NaN and a negative margin.
     """
-    geometry = robot.collision
+    geometry = read_geometry(robot)
     at = one_configuration(geometry, q, "q").copy()
     gap = bounded_number(margin, "margin", 0.0, "it must be a length [m], 0 or more", largest=LARGEST_NUMBER)
     left = positive_number(most, "most", "it must be one positive number", largest=LARGEST_NUMBER)
