@@ -454,6 +454,9 @@ operations lose less than sixteen times 2^-53."""
 MESH_BYTES: Final = 256 * 2**20
 """Largest mesh file that is read (bytes): five million triangles, a hundred times a detailed robot link."""
 
+DEFICIT_ACCURACY: Final = 2e-4
+"""How far the bounds of what spheres leave outside may be apart [m]: robots are built less accurately."""
+
 MEASURE_TOLERANCE: Final = 1.0 / 2000.0
 """Share of the diagonal of a mesh by which the bounds of a measured cover may be apart: 0.1 mm of a link of
 20 cm, below the tolerance of its casting."""

@@ -11,12 +11,10 @@ from cspace.arrays import Array
 from cspace.collision.link_shapes import Solids
 from cspace.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere, measure_cover
 from cspace.spatial.poses import transform_points
+from cspace.tolerances import DEFICIT_ACCURACY
 
 SIDES: Final = 24
 """Sides of the polygons around circles: they are at most 2 % wider."""
-
-ACCURACY: Final = 2e-4
-"""How far the bounds of a depth may be apart [m]: robots are built less accurately."""
 
 
 def measure_deficits(solids: Solids, spheres: Mapping[str, Array]) -> dict[str, float]:
@@ -36,7 +34,7 @@ def measure_shape(shape: Shape, spheres: Array | None) -> float:
     if spheres is None or not len(spheres):
         return np.inf
     surface, (centers, radii) = surround_shape(shape), (spheres[:, :3], spheres[:, 3])
-    return measure_cover(surface, centers, radii, tolerance=ACCURACY).uncovered_depth.upper
+    return measure_cover(surface, centers, radii, tolerance=DEFICIT_ACCURACY).uncovered_depth.upper
 
 
 def surround_shape(shape: Shape) -> Shape:
