@@ -101,7 +101,8 @@ class JointDescent {
     };
     std::vector<Trial> recent_;
     std::vector<std::size_t> open_;  // coordinates that no limit holds
-    std::vector<Row> matrix_;
+    Row matrix_;
+    std::vector<double*> rows_;  // of the matrix
 
     Look look(const Row& q) {
         ++descent_.looks;
@@ -216,31 +217,33 @@ class JointDescent {
         const double first = open_force() / longest;
         double damping = 0, size = 0;
         for (int round = 0; round < most_rounds; ++round) {
-            fill_matrix(damping);
-            if (!factor_ldl(matrix_, int(m), singular * trace)) {
+            double** matrix = fill_matrix(damping);
+            if (!factor_ldl(matrix, int(m), singular * trace)) {
                 damping = std::max(10 * damping, first_share * first + 10 * singular * trace);
                 continue;
             }
             for (std::size_t i = 0; i < m; ++i) x[i] = -here_.slope[open_[i]];
-            solve_ldl(matrix_, int(m), x.data());
+            solve_ldl(matrix, int(m), x.data());
             size = norm(x);
             if (!(size > longest * (1 + loose))) break;
             bent = x;
-            solve_ldl(matrix_, int(m), bent.data());
+            solve_ldl(matrix, int(m), bent.data());
             damping += (size / longest - 1) * size * size / dot(x, bent);
         }
         const double cut = size > longest ? longest / size : 1;
         for (std::size_t i = 0; i < m; ++i) step[open_[i]] = cut * x[i];
         return step;
     }
-    void fill_matrix(double damping) {
+    // Its rows.
+    double** fill_matrix(double damping) {
         const std::size_t m = open_.size();
-        matrix_.resize(n_);
+        matrix_.resize(m * m), rows_.resize(m);
         for (std::size_t i = 0; i < m; ++i) {
-            matrix_[i].resize(n_);
+            rows_[i] = &matrix_[i * m];
             for (std::size_t j = 0; j < m; ++j)
-                matrix_[i][j] = here_.stiffness[open_[i] * n_ + open_[j]] + (i == j ? damping : 0.0);
+                rows_[i][j] = here_.stiffness[open_[i] * n_ + open_[j]] + (i == j ? damping : 0.0);
         }
+        return rows_.data();
     }
 
     // On from a place where no step leads down the slope: along a crease, or off a saddle. Else what it is.
