@@ -10,6 +10,7 @@
 #include "cspace/search/configuration_tree.hpp"
 #include "cspace/search/roadmap.hpp"
 #include "cspace/search/shortest_way.hpp"
+#include "cspace/search/star_neighbours.hpp"
 #include "kernels/search.hpp"
 #include "library/planning_arm_roadmap.hpp"
 #include "random_scenes.hpp"
