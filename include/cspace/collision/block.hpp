@@ -179,9 +179,11 @@ class Block {
                     if (!(bits_of(from_a < reach) & wanted)) continue;
                 }
                 const Place* all = static_cast<Place*>(w.sphere_places);
+                if (Motion::is_shrinking && is_hollow(group.first + s)) continue;
+                const float own = radius_of<Motion>(group.first + s) + scene.pair_margin;
                 for (int k = 0; k < count; ++k) {
                     const int other = w.near_spheres[k];
-                    compare_balls(links, group.first + s, at, other, all[other], relative, marks);
+                    compare_balls(links, group.first + s, at, own, other, all[other], relative, marks);
                 }
                 if (settle(marks) && motion.is_done(*this))
                     return record_pair(links, group.first + s, at, count);
@@ -239,6 +241,7 @@ class Block {
     // Numbers of other spheres and solids among what solids are refined against, behind primitives.
     static constexpr int first_pair = 1 << 30;
 
+    const bool has_covers_ = robot.sphere_solids != nullptr;
     int placed_ = 0;  // bodies 0 … placed_ have their frames
     LastRefined refined_;
 
@@ -267,7 +270,7 @@ class Block {
         float radius;
         const Floats gap = square_gap(scene, i, at, Mover{r, marks.growth, wanted}, radius);
         const float sum = r + radius;
-        if (!Motion::is_cell && is_cover(s)) {
+        if (!Motion::is_cell && has_covers_ && is_cover(s)) {
             const unsigned near = bits_of(gap < square_of(marks.growth, sum)) & wanted;
             if (!near) return;
             // The gaps of others are exact only as far as they compare with this radius.
@@ -288,7 +291,7 @@ class Block {
         if constexpr (Motion::is_cell) {
             if (is_convex(scene, i)) touching = motion.refine_primitive(touching, x, i, at, gap, sum);
             const unsigned suspects = bits_of(touching) & wanted;
-            if (!Motion::is_shrinking && is_cover(s)) {
+            if (!Motion::is_shrinking && has_covers_ && is_cover(s)) {
                 if (suspects) refine_primitive(x, s, i, suspects, motion, marks);
                 return;
             }
@@ -303,12 +306,12 @@ class Block {
     }
     // The same for a sphere of body b of a pair against one of body a.
     template <class Motion, class Relative>
-    CSPACE_INLINE void compare_balls(const LinkPair& links, int s, const Place& at, int other,
+    CSPACE_INLINE void compare_balls(const LinkPair& links, int s, const Place& at, float own, int other,
                                      const Place& other_at, const Relative& relative, Marks<Motion>& marks) {
-        const float r = radius_of<Motion>(s) + scene.pair_margin + radius_of<Motion>(other);
-        if (Motion::is_shrinking && (is_hollow(s) || is_hollow(other))) return;
+        const float r = own + radius_of<Motion>(other);
+        if (Motion::is_shrinking && is_hollow(other)) return;
         const Floats gap = square_distance(at, other_at);
-        if (!Motion::is_cell && (is_cover(s) || is_cover(other))) {
+        if (!Motion::is_cell && has_covers_ && (is_cover(s) || is_cover(other))) {
             const unsigned near = bits_of(gap < square_of(marks.growth, r)) & wanted;
             if (!near) return;
             const float inner = robot.inner_radii[s], other_inner = robot.inner_radii[other];
@@ -328,7 +331,7 @@ class Block {
         if constexpr (Motion::is_cell) {
             touching = relative.refine(touching, at, other_at, gap, r);
             const unsigned suspects = bits_of(touching) & wanted;
-            if (!Motion::is_shrinking && (is_cover(s) || is_cover(other))) {
+            if (!Motion::is_shrinking && has_covers_ && (is_cover(s) || is_cover(other))) {
                 if (suspects) refine_pair(links, s, other, suspects, relative, marks);
                 return;
             }
