@@ -50,7 +50,7 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals
 
 
 def check_kind(goal: Any, shape: tuple[int, ...], dof: int) -> None:
-    """Raises InputTypeError or InputError for what is no goal, with the kind that was probably meant."""
+    """Raises InputTypeError or InputError for a value that is not a goal; names the kind that it is like."""
     if len(shape) not in (1, 2):
         said = f"has shape {shape}" if shape else f"is a {type(goal).__name__}"
         raise InputTypeError(

@@ -66,7 +66,7 @@ class PlanarArm:
 
 
 def is_planar_arm(robot: Any) -> bool:
-    """Whether a robot has two revolute joints about parallel axes; True for what is no robot."""
+    """Whether a robot has two revolute joints about parallel axes; True for a value that is not a robot."""
     if not isinstance(robot, KinematicModel):
         return not hasattr(robot, "collision")
     if robot.tip is None or robot.chain.joint_types != "RR" or robot.chain.dof != 2:
