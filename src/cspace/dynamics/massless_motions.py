@@ -18,6 +18,9 @@ BASE: Final = "the base"
 TAKES_PART: Final = 0.01
 """Share of a unit motion from which on a joint counts as one of those that move."""
 
+ROUNDING: Final = 64.0 * np.finfo(float).eps
+"""Of a product of a dozen poses, relative to the reach of the robot."""
+
 REACH: Final = 1.0
 """Range of prismatic joints without limits [m], of which one value is drawn."""
 
@@ -35,11 +38,19 @@ def massless_motions(assembly: Assembly) -> tuple[str, ...]:
     q = random_configurations(assembly.limits, assembly.coordinate_types, rng=0, reach=REACH)
     A = energy_factor(assembly, q)
     sizes = np.linalg.norm(A, axis=0)
-    still = sizes == 0.0
-    _, sigma, Vt = np.linalg.svd(A / np.where(still, 1.0, sizes), full_matrices=False)
+    still = sizes <= column_rounding(assembly, q)
+    _, sigma, Vt = np.linalg.svd(A / np.where(still, np.inf, sizes), full_matrices=False)
     null = Vt[sigma <= MASSLESS_MOTION * max(float(sigma[0]), np.finfo(float).tiny)]
     moving = (np.abs(null) > TAKES_PART).any(axis=0)
     return tuple(dict.fromkeys(name for name, moves in zip(names, moving, strict=True) if moves))
+
+
+def column_rounding(assembly: Assembly, q: Array) -> float:
+    """Rounding of the columns of the energy factor: that of velocities of centres far from the base."""
+    steps = np.linalg.norm(assembly.T_parent_joint[:, :3, 3], axis=1).sum()
+    slides = np.abs(assembly.prismatic * (assembly.ratio * q[assembly.coordinate] + assembly.offset)).sum()
+    reach = steps + slides + np.linalg.norm(assembly.center, axis=1).max()
+    return float(ROUNDING * np.sqrt(assembly.mass.sum()) * reach)
 
 
 def energy_factor(assembly: Assembly, q: Array) -> Array:

@@ -26,7 +26,7 @@ def require_limits(robot: KinematicModel, kind: str, given: ArrayLike | None = N
     given limits of another length, NaN, or not above zero.
     """
     if kind not in MAGNITUDES:
-        raise suggest("kind of limit", kind, MAGNITUDES)
+        raise suggest("limit", kind, MAGNITUDES)
     n = len(robot.joint_names)
     if given is None:
         own: Array = getattr(robot.limits, kind)
@@ -37,7 +37,7 @@ def require_limits(robot: KinematicModel, kind: str, given: ArrayLike | None = N
         return own
     row = as_floats(given, kind, finite=False)
     if row.shape not in ((), (n,)):
-        raise InputError(f"{kind} has shape {row.shape}, expected () or ({n},): one per joint of {robot.name}")
+        raise InputError(f"{kind} has shape {row.shape}, expected () or ({n},), one per joint")
     if not (row > 0.0).all():
         raise InputError(f"{kind} contains {float(row[~(row > 0.0)].flat[0]):g}; it must be above zero")
     return np.array(np.broadcast_to(row, (n,)))
