@@ -29,11 +29,10 @@ def read_armatures(root: Element, joints: Collection[str]) -> dict[str, float]:
     """
     found: dict[str, float] = {}
     for transmission in root.all("transmission"):
-        inertia = sum(
-            read_actuator(actuator) for actuator in transmission.all("actuator") if actuator.first(ROTOR)
-        )
-        if not inertia:
+        actuators = [actuator for actuator in transmission.all("actuator") if actuator.first(ROTOR)]
+        if not actuators:
             continue
+        inertia = sum(map(read_actuator, actuators))
         names = [text_of(joint, "name") for joint in transmission.all("joint")]
         for name in names:
             if name not in joints:
