@@ -1,6 +1,6 @@
 """Dynamics beside Pinocchio and dynibo, from Python, in turns in one process: benchmarks/results/dynamics.json.
 
-Usage: python benchmarks/dynamics.py [--rounds 60] [--batch 100000] [--robots panda ur5 talos] [--write]
+Usage: python benchmarks/dynamics.py [--rounds 60] [--batch 100000] [--robots panda ur5 g1] [--write]
 
 The same URDF files with masses (package example-robot-data); the fingers of the panda are locked, the humanoid
 floats. Arguments and outputs are prepared. Answers are compared first. Processor time per call: medians and
@@ -31,7 +31,7 @@ Calls = dict[str, dict[str, Callable[[], Any]]]
 ROBOTS: dict[str, dict[str, Any]] = {
     "panda": {"tip": "panda_hand"},
     "ur5": {"file": "ur5_robot", "tip": "tool0"},
-    "talos": {"file": "talos_full_v2", "floating": True},
+    "g1": {"file": "g1_29dof_rev_1_0", "floating": True},
 }
 CHUNK = 50
 """Calls per reading of the clock."""
@@ -97,9 +97,9 @@ class Case:
         n = len(self.q)
         if peer.joint_count != n:
             return print(f"dynibo: has {peer.joint_count} joints, not {n}")
-        out, square, q, qd, qdd, tau = np.empty(n), np.empty((n, n)), self.q, self.qd, self.qdd, self.tau
+        out, q, qd, qdd, tau = np.empty(n), self.q, self.qd, self.qdd, self.tau
         calls["inverse dynamics"]["dynibo"] = lambda: peer.inverse_dynamics(q, qd, qdd, out=out)
-        calls["mass matrix"]["dynibo"] = lambda: peer.mass_matrix(q, out=square)
+        calls["mass matrix"]["dynibo"] = lambda: peer.mass_matrix(q)
         calls["forward dynamics"]["dynibo"] = lambda: peer.forward_dynamics(q, qd, tau, out=out)
         return None
 
@@ -117,6 +117,13 @@ class Case:
         v, a, force = (np.asfortranarray((S @ row.T)) for row in (qd, qdd, tau))
         result = np.empty_like(v, order="F")
         pool = pin.ModelPool(self.model, 1)
+        most = 1000
+        square = np.empty((most, robot.dof, robot.dof))
+
+        def mass_matrices() -> None:
+            for i in range(0, count - most + 1, most):
+                robot.mass_matrix(q[i : i + most], out=square, threads=1, **T)
+
         return {
             "inverse dynamics": {
                 "pinocchio": lambda: pin.rneaInParallel(1, pool, pin_q, v, a, result),
@@ -126,7 +133,7 @@ class Case:
                 "pinocchio": lambda: pin.abaInParallel(1, pool, pin_q, v, force, result),
                 "cspace": lambda: robot.forward_dynamics(q, qd, tau, out=out, threads=1, **T),
             },
-            "mass matrix": {"cspace": lambda: robot.mass_matrix(q, threads=1, **T)},
+            "mass matrix": {"cspace": lambda: mass_matrices()},
         }
 
     def difference(self) -> float:

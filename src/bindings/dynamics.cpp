@@ -2,6 +2,8 @@
 
 #include <nanobind/stl/string.h>
 
+#include "cspace/kinematics/forward.hpp"
+#include "cspace/tolerances.hpp"
 #include "kernels/dynamics.hpp"
 #include "rows.hpp"
 
@@ -10,7 +12,7 @@ using namespace nb::literals;
 using namespace cspace;
 
 const char inverse_dynamics_doc[] =
-    R"doc(inverse_dynamics($self, q, qd, qdd, *, gravity=(0, 0, -9.81), wrenches=None, friction=True, T_world_base=None, out=None, threads=None)
+    R"doc(inverse_dynamics($self, q, qd, qdd, *, gravity=(0, 0, -9.81), wrenches=None, expressed_in='base', friction=True, T_world_base=None, out=None, threads=None)
 --
 
 The joint torques and forces behind a motion (inverse dynamics).
@@ -20,7 +22,7 @@ tau = M(q) q̈ + C(q, q̇) q̇ + g(q) + friction − Σ Jᵀ w.
 q (..., n): joint coordinates [rad or m]. qd, qdd (..., dof): velocities and accelerations; of a floating base
 [v; ω] and [v̇; ω̇] come first, of its origin in world axes. gravity (3,) [m/s²] in the axes of the base, of the
 world for a robot that is mounted. wrenches: frame → (..., 6), force and torque [N, N·m] of the world on the
-robot at the origin of that frame, in the same axes. friction: with damping and dry friction of the joints;
+robot at the origin of that frame, in the same axes, or with expressed_in="tip" in those of the frame. friction: with damping and dry friction of the joints;
 their armature always counts. T_world_base (..., 4, 4): where the base is. out (..., dof): float64 array to
 write into. threads: as in fk.
 
@@ -31,14 +33,14 @@ unknown frame.
 Luh, Walker and Paul 1980; Featherstone 2008, section 5.3.)doc";
 
 const char forward_dynamics_doc[] =
-    R"doc(forward_dynamics($self, q, qd, tau, *, gravity=(0, 0, -9.81), wrenches=None, friction=True, T_world_base=None, out=None, threads=None)
+    R"doc(forward_dynamics($self, q, qd, tau, *, gravity=(0, 0, -9.81), wrenches=None, expressed_in='base', friction=True, T_world_base=None, out=None, threads=None)
 --
 
 The accelerations of the joints under given torques (forward dynamics).
 
 q̈ = M(q)⁻¹ (tau − C(q, q̇) q̇ − g(q) − friction + Σ Jᵀ w).
 
-q, qd, gravity, wrenches, friction, T_world_base, threads: as in inverse_dynamics. tau (..., dof) [N·m or N]:
+q, qd, gravity, wrenches, expressed_in, friction, T_world_base, threads: as in inverse_dynamics. tau (..., dof) [N·m or N]:
 of a floating base the wrench [f; n] on it comes first. out (..., dof): float64 array to write into.
 
 Returns qdd (..., dof) [rad/s² or m/s²]. Raises InputError for a wrong shape or NaN, and where a joint moves no
@@ -78,30 +80,52 @@ constexpr Vec3d earth = {0.0, 0.0, -9.81};
 constexpr const char* words = "cspace.dynamics";
 
 // The largest number of joints for which a single call works on the stack.
-constexpr int stack_links = 32, stack_dof = stack_links + 6;
+constexpr int stack_links = 64, stack_dof = stack_links + 6;
 struct alignas(64) Stack {
-    double values[64 * stack_links + stack_dof * (stack_dof + 5) + 8];
+    double values[80 * stack_links + stack_dof * (stack_dof + 5) + 8];
 };
 
-// A call with as many configurations, velocities and forces as `count`, all of one row and nothing else: its
-// arguments as rows.
+// Whether the rotation of T (4, 4) is one within tolerance::rotation_error and the rest fits, as in
+// cspace.spatial.
+bool is_pose(const double* T) {
+    const Posed pose = kinematics::read_matrix(T);
+    const Mat3d square = transpose(pose.R) * pose.R;
+    double error = 0.0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) error = std::max(error, std::fabs(square.m[i][j] - (i == j)));
+    return error <= tolerance::rotation_error && norm(pose.t) < HUGE_VAL && T[12] == 0.0 && T[13] == 0.0 &&
+           T[14] == 0.0 && T[15] == 1.0 &&
+           dot(column(pose.R, 0), cross(column(pose.R, 1), column(pose.R, 2))) > 0.0;
+}
+
+// A call with as many configurations, velocities and forces as `count`, all of one row, and at most
+// T_world_base besides: its arguments as rows.
 struct Single {
     dynamics::Rows rows{};
-    double copies[3][stack_links];
+    double copies[3][stack_dof], base[16];
+
+    bool read_keywords(PyObject* const* values, PyObject* kwnames) {
+        if (!kwnames || PyTuple_GET_SIZE(kwnames) == 0) return true;
+        if (PyTuple_GET_SIZE(kwnames) > 1 ||
+            PyUnicode_CompareWithASCIIString(PyTuple_GET_ITEM(kwnames, 0), "T_world_base") != 0)
+            return false;
+        rows.T_world_base = read_in_place(values[0], 4, 4, base);
+        return rows.T_world_base && is_pose(rows.T_world_base);
+    }
     bool read(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames, Py_ssize_t count) {
         KinematicsObject* robot = kinematics_of(self);
-        if (!robot->model || robot->floating || nargs != count || (kwnames && PyTuple_GET_SIZE(kwnames)))
-            return false;
-        const int n = robot->model->n_coordinates();
+        if (!robot->model || nargs != count || !read_keywords(args + nargs, kwnames)) return false;
+        const int n = robot->model->n_coordinates(), dof = velocities_of(*robot);
         if (n > stack_links || robot->model->n_joints() > stack_links || robot->model->mass() == 0.0)
             return false;
         const double* given[3] = {};
         for (Py_ssize_t k = 0; k < count; ++k) {
-            given[k] = read_in_place(args[k], 0, n, copies[k]);
+            given[k] = read_in_place(args[k], 0, k == 0 ? n : dof, copies[k]);
             if (!given[k]) return false;
         }
         rows.bodies = multibody_of(*robot);
         rows.gravity = earth;
+        rows.floating = robot->floating;
         rows.rubs = true;
         rows.q = given[0];
         rows.qd = given[1];
@@ -116,7 +140,7 @@ PyObject* answer_call(PyObject* self, PyObject* const* args, Py_ssize_t nargs, P
                       Py_ssize_t count, bool square, Kernel kernel, const char* name) {
     Single call;
     if (call.read(self, args, nargs, kwnames, count)) {
-        const npy_intp n = call.rows.bodies.n_coordinates;
+        const npy_intp n = velocities_of(*kinematics_of(self));
         PyObject* result = square ? new_array({n, n}) : new_array({n});
         if (!result) return nullptr;
         call.rows.result = data_of(result);
@@ -163,14 +187,25 @@ bool dynamics_rows(nb::handle robot, const std::string& what, const ConstDoubles
     rows.qd = values_of(qd, count, dof);
     rows.force = values_of(force, count, dof);
     rows.T_world_base = shared_values(T_world_base, count, 16, rows.base_stride);
-    const bool is_mass = what == "mass_matrix", is_forward = what == "forward_dynamics";
-    if (result.size != count * dof * (is_mass ? dof : 1)) throw nb::value_error("the result has the wrong size");
-    if (is_forward && !rows.force) throw nb::value_error("forward dynamics needs torques");
     rows.result = result.data;
-    return run_kernel(rows, count, threads,
-                      is_mass      ? kernels::mass_rows
-                      : is_forward ? kernels::forward_rows
-                                   : kernels::inverse_rows);
+    const auto run = [&](npy_intp size, auto kernel) {
+        if (result.size != count * size) throw nb::value_error("the result has the wrong size");
+        return run_kernel(rows, count, threads, kernel);
+    };
+    if (what == "inverse_dynamics") return run(dof, kernels::inverse_rows);
+    if (what == "mass_matrix") return run(dof * dof, kernels::mass_rows);
+    if (what == "forward_dynamics" && rows.force) return run(dof, kernels::forward_rows);
+    const auto run_spatial = [&](dynamics::What which, npy_intp size) {
+        rows.what = which;
+        return run(size, kernels::spatial_rows);
+    };
+    if (what == "coriolis_matrix") return run_spatial(dynamics::What::coriolis, dof * dof);
+    if (what == "derivatives") return run_spatial(dynamics::What::derivatives, 2 * dof * dof);
+    if (what == "momentum") return run_spatial(dynamics::What::momentum, 6);
+    if (what == "momentum_matrix") return run_spatial(dynamics::What::momentum_matrix, 6 * dof);
+    if (what == "kinetic_energy" && rows.qd) return run_spatial(dynamics::What::kinetic, 1);
+    if (what == "potential_energy") return run_spatial(dynamics::What::potential, 1);
+    throw nb::value_error(("unknown or incomplete: " + what).c_str());
 }
 
 }  // namespace

@@ -231,7 +231,14 @@ class Robot(Renamed, RobotBase, KinematicModel):
         ik_numeric = ik.ik_numeric
         ik_plan = ik.ik_plan
         ik_tasks = ik.ik_tasks
+        centroidal_momentum = dynamics.centroidal_momentum
+        centroidal_momentum_matrix = dynamics.centroidal_momentum_matrix
+        coriolis_matrix = dynamics.coriolis_matrix
+        forward_dynamics_derivatives = dynamics.forward_dynamics_derivatives
         inertia_report = dynamics.inertia_report
+        inverse_dynamics_derivatives = dynamics.inverse_dynamics_derivatives
+        kinetic_energy = dynamics.kinetic_energy
+        potential_energy = dynamics.potential_energy
         redundancy = ik.redundancy
         resolved_rate = ik.resolved_rate
         task_velocity = ik.task_velocity
@@ -249,7 +256,11 @@ class Robot(Renamed, RobotBase, KinematicModel):
     else:
         clearance, contact, edge, escape = (_Later("cspace.collision") for _ in range(4))
         export = _Later("cspace.export")
-        inertia_report = _Later("cspace.dynamics")
+        centroidal_momentum, centroidal_momentum_matrix = (_Later("cspace.dynamics") for _ in range(2))
+        coriolis_matrix, inertia_report = (_Later("cspace.dynamics") for _ in range(2))
+        forward_dynamics_derivatives = _Later("cspace.dynamics")
+        inverse_dynamics_derivatives = _Later("cspace.dynamics")
+        kinetic_energy, potential_energy = (_Later("cspace.dynamics") for _ in range(2))
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
 

@@ -1,8 +1,11 @@
 #include "dynamics.hpp"
 
+#include "cspace/dynamics/coriolis.hpp"
+#include "cspace/dynamics/derivatives.hpp"
 #include "cspace/dynamics/forward_dynamics.hpp"
 #include "cspace/dynamics/inverse_dynamics.hpp"
 #include "cspace/dynamics/mass_matrix.hpp"
+#include "cspace/dynamics/momentum.hpp"
 #include "cspace/math/linear.hpp"
 #include "row_memory.hpp"
 
@@ -16,7 +19,8 @@ using kinematics::take_array;
 template <class V>
 struct Arguments {
     V *q, *qd, *force, *result;  // qd and force: null where not given
-    Mat3<V> R;                   // the axes of the base in those of the world
+    Pose<V> T;                   // of the base
+    Mat3<V> R;                   // its axes in those of the world
     int n, first, dof;
 };
 
@@ -39,11 +43,13 @@ CSPACE_INLINE bool read_arguments(const Rows& rows, Scratch& scratch, std::size_
         load_rows(rows.force + at, std::size_t(dof), count, dof, force);
         finite = kinematics::all_finite(force, dof) && finite;
     }
+    const auto T = kinematics::load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
     given = {q,
              rows.qd ? qd : nullptr,
              rows.force ? force : nullptr,
              take_array<V>(scratch, width),
-             kinematics::load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count).R,
+             T,
+             T.R,
              n,
              first,
              dof};
@@ -190,6 +196,57 @@ bool forward_pack(const Rows& rows, void* memory, std::size_t i, int count) {
     return regular;
 }
 
+template <class V>
+bool spatial_pack(const Rows& rows, void* memory, std::size_t i, int count) {
+    Scratch scratch{static_cast<char*>(memory)};
+    Arguments<V> given;
+    const int dof = rows.bodies.n_coordinates + (rows.floating ? 6 : 0), square = dof * dof;
+    const int sizes[] = {square, 2 * square, 6, 6 * dof, 1, 1};
+    const int size = sizes[int(rows.what)];
+    if (!read_arguments(rows, scratch, i, count, size, given)) return false;
+    auto* links = take_array<SpatialLink<V>>(scratch, rows.bodies.n_links);
+    const V zero = fill<V>(0.0);
+    Twist<V> base = {{zero, zero, zero}, {zero, zero, zero}}, change = {-fill3<V>(rows.gravity), base.w};
+    if (given.first && given.qd) base = {vector_at(given.qd), vector_at(given.qd + 3)};
+    if (given.first && given.force) {
+        change.v = change.v + vector_at(given.force);
+        change.w = vector_at(given.force + 3);
+    }
+    change.v = change.v - cross(base.w, base.v);
+    const bool slopes = rows.what == What::derivatives;
+    const V* qd = given.qd ? given.qd + given.first : nullptr;
+    const V* qdd = given.force ? given.force + given.first : nullptr;
+    const SpatialBody<V> whole =
+        place_links(rows.bodies, given.R, base, slopes ? &change : nullptr, given.q, qd, qdd, links);
+    V* result = given.result;
+    switch (rows.what) {
+        case What::coriolis:
+            coriolis_matrix(rows.bodies, base, rows.floating, links, whole, result);
+            break;
+        case What::derivatives:
+            torque_derivatives(rows.bodies, base, change, rows.floating, rows.rubs, links, whole, result,
+                               result + square);
+            break;
+        case What::momentum: {
+            const Vec3<V> center = (1.0 / rows.bodies.mass) * whole.first;
+            const Wrench<V> about = momentum_about(whole.momentum, center);
+            set_vector(result, about.f);
+            set_vector(result + 3, about.n);
+            break;
+        }
+        case What::momentum_matrix:
+            momentum_matrix(rows.bodies, rows.floating, links, whole, result);
+            break;
+        case What::kinetic:
+            *result = kinetic_energy(rows.bodies, base, qd, links, whole);
+            break;
+        case What::potential:
+            *result = potential_energy(rows.bodies, fill3<V>(rows.gravity), given.T.t, whole);
+    }
+    store_rows(result, size, rows.result + i * std::size_t(size), std::size_t(size), count);
+    return true;
+}
+
 // Packs as wide as the registers; one row alone is computed without lanes.
 template <class One, class Many>
 CSPACE_INLINE bool over_rows(std::size_t begin, std::size_t end, const One& one, const Many& many) {
@@ -214,6 +271,11 @@ bool mass_rows(const Rows& rows, std::size_t begin, std::size_t end, void* memor
     return over_rows(
         begin, end, [&](std::size_t i) { return mass_pack<double>(rows, memory, i, 1); },
         [&](std::size_t i, int count) { return mass_pack<Wide>(rows, memory, i, count); });
+}
+bool spatial_rows(const Rows& rows, std::size_t begin, std::size_t end, void* memory) {
+    return over_rows(
+        begin, end, [&](std::size_t i) { return spatial_pack<double>(rows, memory, i, 1); },
+        [&](std::size_t i, int count) { return spatial_pack<Wide>(rows, memory, i, count); });
 }
 bool forward_rows(const Rows& rows, std::size_t begin, std::size_t end, void* memory) {
     return over_rows(

@@ -6,12 +6,21 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace import InputError
+from cspace.errors import InputError
 from cspace.model import Description, Inertial, Joint, Link
 from kinematics.robots import arm, random_q, tree
 from model.random_robots import random_pose
 
-TREES = [tree(seed) for seed in range(6)]
+def massive_tree(seed):
+    """A random tree whose every joint moves some inertia."""
+    while True:
+        robot = tree(seed)
+        if not robot.inertia_report().singular:
+            return robot
+        seed += 100
+
+
+TREES = [massive_tree(seed) for seed in range(6)]
 ARMS = [arm(1), arm(2, "RPRPRR"), arm(3, "PPP"), arm(4, "R"), arm(5, "RRRRRRRRR")]
 ROBOTS = [*TREES, *ARMS]
 ids = [robot.name for robot in ROBOTS]

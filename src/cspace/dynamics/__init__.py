@@ -1,17 +1,32 @@
 """Dynamics: the masses of a robot, which torques make a motion, and how it moves under given torques."""
 
+from cspace.dynamics.coriolis import coriolis_matrix
+from cspace.dynamics.derivatives import forward_dynamics_derivatives, inverse_dynamics_derivatives
 from cspace.dynamics.forward import forward_dynamics
 from cspace.dynamics.inertia_checks import InertiaFault
 from cspace.dynamics.inertia_report import InertiaReport, inertia_report
 from cspace.dynamics.inverse import gravity_torques, inverse_dynamics
 from cspace.dynamics.mass_matrix import mass_matrix
+from cspace.dynamics.momentum import (
+    centroidal_momentum,
+    centroidal_momentum_matrix,
+    kinetic_energy,
+    potential_energy,
+)
 
 __all__ = [
     "InertiaFault",
     "InertiaReport",
+    "centroidal_momentum",
+    "centroidal_momentum_matrix",
+    "coriolis_matrix",
     "forward_dynamics",
+    "forward_dynamics_derivatives",
     "gravity_torques",
     "inertia_report",
     "inverse_dynamics",
+    "inverse_dynamics_derivatives",
+    "kinetic_energy",
     "mass_matrix",
+    "potential_energy",
 ]

@@ -6,7 +6,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
-from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, run_rows, torques_of_wrenches
+from cspace.dynamics.rows import (
+    EARTH,
+    Wrenches,
+    check_gravity,
+    dynamic_rows,
+    fill_rows,
+    run_rows,
+    torques_of_wrenches,
+)
 from cspace.kinematics.batch import check_output, refuse_infinite
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
@@ -62,7 +70,5 @@ def gravity_torques(
     Raises InputError for a wrong shape or NaN and where no link has a mass.
     """
     batch = dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads)
-    tau = check_output(out, (*batch.shape, robot.dof))
-    if not run_rows(robot, "inverse_dynamics", batch, None, tau, check_gravity(gravity), False):
-        refuse_infinite(batch)
-    return tau
+    down = check_gravity(gravity)
+    return fill_rows(robot, "inverse_dynamics", batch, None, (robot.dof,), down, False, out)

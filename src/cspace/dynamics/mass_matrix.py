@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
-from cspace.dynamics.rows import dynamic_rows, run_rows
-from cspace.kinematics.batch import check_output, refuse_infinite
+from cspace.dynamics.rows import NO_GRAVITY, dynamic_rows, fill_rows
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
@@ -27,7 +25,4 @@ def mass_matrix(
     Raises InputError for a wrong shape or NaN and where no link has a mass.
     """
     batch = dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads)
-    M = check_output(out, (*batch.shape, robot.dof, robot.dof))
-    if not run_rows(robot, "mass_matrix", batch, None, M, np.zeros(3), False):
-        refuse_infinite(batch)
-    return M
+    return fill_rows(robot, "mass_matrix", batch, None, (robot.dof, robot.dof), NO_GRAVITY, False, out)

@@ -12,11 +12,13 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import jacobian
-from cspace.kinematics.batch import Batch, check_robot, rows_of
+from cspace.kinematics.batch import Batch, check_output, check_robot, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 
 EARTH: Final = (0.0, 0.0, -9.81)
 """Gravity on Earth [m/s²], down along z."""
+
+NO_GRAVITY: Final = np.zeros(3)
 
 Wrenches = Mapping[str, ArrayLike]
 """Frame → (..., 6): force and torque [N, N·m] of the world on the robot at the origin of that frame."""
@@ -60,6 +62,23 @@ def run_rows(
         result,
         batch.threads,
     )
+
+
+def fill_rows(
+    robot: KinematicModel,
+    what: str,
+    batch: Batch,
+    force: Array | None,
+    last: tuple[int, ...],
+    gravity: Array,
+    friction: bool,
+    out: Array | None,
+) -> Array:
+    """The results (..., *last) of a call whose only fault can be a configuration that is not finite."""
+    result = check_output(out, (*batch.shape, *last))
+    if not run_rows(robot, what, batch, force, result, gravity, friction):
+        refuse_infinite(batch)
+    return result
 
 
 def torques_of_wrenches(

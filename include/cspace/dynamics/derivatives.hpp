@@ -1,0 +1,116 @@
+// The first derivatives of inverse dynamics by positions and velocities, in closed form.
+//
+// Carpentier and Mansard 2018; in the order of Singh, Russell and Wensing 2022 (Efficient analytical
+// derivatives of rigid-body dynamics using spatial vector algebra), where every entry is a product of a
+// motion and a wrench in common axes.
+#pragma once
+
+#include "cspace/dynamics/spatial_links.hpp"
+
+namespace cspace::dynamics::inline CSPACE_ISA {
+
+// What an entry needs of the joint that moves: the motion by which the velocities (rate) and the accelerations
+// (bend) behind it grow.
+template <class V>
+struct Growth {
+    Twist<V> axis, rate, bend;
+};
+
+// dq and dqd (columns, columns), row by row: the derivatives of tau by the positions and velocities of the
+// joints, and by a displacement of a floating base, [v; ω] in the axes of the world, that leaves its
+// velocities and accelerations in these axes as they are. base, change: its motion and the time derivative of
+// that, less gravity. links, whole: as of place_links with change.
+template <class V>
+CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& base, const Twist<V>& change,
+                                      bool floating, bool rubs, const SpatialLink<V>* links,
+                                      const SpatialBody<V>& whole, V* dq, V* dqd) {
+    const int first = floating ? 6 : 0, columns = first + bodies.n_coordinates;
+    const auto add = [&](V* matrix, int row, int column, V value) {
+        V& entry = matrix[row * columns + column];
+        entry = entry + value;
+    };
+    const auto growth_of = [&](int k) -> Growth<V> {
+        const int parent = bodies.links[k].parent;
+        const SpatialLink<V>& state = links[k];
+        return {state.axis, state.axis_rate,
+                cross_motion(parent < 0 ? change : links[parent].change, state.axis) +
+                    cross_motion(parent < 0 ? base : links[parent].motion, state.axis_rate)};
+    };
+    for (int i = 0; i < columns * columns; ++i) dq[i] = dqd[i] = fill<V>(0.0);
+    for (int k = 0; k < bodies.n_links; ++k) {
+        const Link& link = bodies.links[k];
+        const SpatialLink<V>& state = links[k];
+        const int column = first + link.coordinate;
+        const Growth<V> own = growth_of(k);
+        const auto inertial = [&](const Twist<V>& motion) {
+            return momentum_of(link.carried_mass, state.all, motion);
+        };
+        // The wrench on all that the joint moves, where the joint and its velocity grow.
+        const Wrench<V> by_position = scale(2.0, velocity_product(state.all, own.rate)) + inertial(own.bend) +
+                                      cross_wrench(own.axis, state.all.wrench);
+        const Wrench<V> by_velocity =
+            scale(2.0, velocity_product(state.all, own.axis) + inertial(own.rate));
+        // The force of the joint, where those before it and their velocities grow.
+        const Wrench<V> unit = inertial(own.axis);
+        const Vec3<V> turning = 2.0 * transposed_velocity_product(state.all, own.axis);
+        const double square = link.ratio * link.ratio;
+        add(dq, column, column, square * power(own.axis, by_position));
+        add(dqd, column, column, square * power(own.axis, by_velocity));
+        if (rubs) add(dqd, column, column, fill<V>(square * link.damping));
+        for (int i = link.parent; i >= 0; i = bodies.links[i].parent) {
+            const Link& before = bodies.links[i];
+            const Growth<V> other = growth_of(i);
+            const double ratio = before.ratio * link.ratio;
+            const int row = first + before.coordinate;
+            add(dq, row, column, ratio * power(other.axis, by_position));
+            add(dqd, row, column, ratio * power(other.axis, by_velocity));
+            add(dq, column, row, ratio * (dot(turning, other.rate.w) + power(other.bend, unit)));
+            add(dqd, column, row, ratio * (dot(turning, other.axis.w) + 2.0 * power(other.rate, unit)));
+        }
+        if (!floating) continue;
+        const Wrench<V> at_base[2] = {scale(link.ratio, by_position), scale(link.ratio, by_velocity)};
+        for (int which = 0; which < 2; ++which) {
+            const Vec3<V>&f = at_base[which].f, &n = at_base[which].n;
+            const V rows[6] = {f.x, f.y, f.z, n.x, n.y, n.z};
+            for (int i = 0; i < 6; ++i) add(which ? dqd : dq, i, column, rows[i]);
+        }
+    }
+    if (!floating) return;
+    // Turning the base by e and all motion and gravity with it changes no joint force and turns the wrench on
+    // the base. Turning motion and gravity back again is a change of velocity and acceleration.
+    const V zero = fill<V>(0.0), one = fill<V>(1.0), mass = fill<V>(bodies.mass);
+    const Vec3<V> none = {zero, zero, zero}, unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+    const Vec3<V> point_change = change.v + cross(base.w, base.v);  // of the origin, not of the spatial motion
+    const auto by_turning_faster = [&](const Vec3<V>& w) -> Growth<V> {
+        return {{none, w}, {cross(base.v, w), none}, {2.0 * cross(base.v, w), cross(base.w, w)}};
+    };
+    for (int j = 0; j < 3; ++j) {
+        const Vec3<V>& e = unit[j];
+        const Growth<V> faster = by_turning_faster(e), undone = by_turning_faster(cross(e, base.w));
+        const Twist<V> lost = {cross(e, point_change), cross(e, change.w)};
+        const auto wrench_of = [&](const Growth<V>& growth) {
+            return scale(2.0, velocity_product(whole, growth.axis)) + momentum_of(mass, whole, growth.bend);
+        };
+        const Wrench<V> velocity = wrench_of(faster), undoing = wrench_of(undone) + momentum_of(mass, whole, lost);
+        const Vec3<V> f = cross(e, whole.wrench.f) - undoing.f, n = cross(e, whole.wrench.n) - undoing.n;
+        const V positions[6] = {f.x, f.y, f.z, n.x, n.y, n.z};
+        const V velocities[6] = {velocity.f.x, velocity.f.y, velocity.f.z, velocity.n.x, velocity.n.y, velocity.n.z};
+        for (int i = 0; i < 6; ++i) {
+            add(dq, i, 3 + j, positions[i]);
+            add(dqd, i, 3 + j, velocities[i]);
+        }
+        for (int k = 0; k < bodies.n_links; ++k) {
+            const Link& link = bodies.links[k];
+            const SpatialLink<V>& state = links[k];
+            const Wrench<V> push = momentum_of(link.carried_mass, state.all, state.axis);
+            const Vec3<V> turning = 2.0 * transposed_velocity_product(state.all, state.axis);
+            const auto force_of = [&](const Growth<V>& growth) {
+                return dot(turning, growth.axis.w) + power(growth.bend, push);
+            };
+            add(dqd, first + link.coordinate, 3 + j, link.ratio * force_of(faster));
+            add(dq, first + link.coordinate, 3 + j, -link.ratio * (force_of(undone) + power(lost, push)));
+        }
+    }
+}
+
+}  // namespace cspace::dynamics::inline CSPACE_ISA

@@ -1,0 +1,148 @@
+"""Laws of the Coriolis matrix, momentum, energies and derivatives, on random trees and floating bases."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from dynamics.test_motion_and_force import ARMS, ROBOTS, STEP, TREES, ids, moved, scale
+from kinematics.robots import random_q
+from model.random_robots import random_pose
+
+FREE = [cs.Robot(robot.description, floating=True) for robot in [*TREES[:4], ARMS[1], ARMS[4]]]
+free_ids = [robot.name for robot in FREE]
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(11)
+
+
+@pytest.mark.parametrize("robot", ROBOTS, ids=ids)
+def test_the_coriolis_matrix_gives_the_forces_of_velocities_and_the_rate_of_the_mass_matrix(robot, rng):
+    q, qd = random_q(robot, rng), rng.normal(size=robot.dof)
+    C = robot.coriolis_matrix(q, qd)
+    forces = robot.inverse_dynamics(q, qd, np.zeros(robot.dof), gravity=np.zeros(3), friction=False)
+    np.testing.assert_allclose(C @ qd, forces, atol=1e-12 * scale(forces))
+    rate = (robot.mass_matrix(q + STEP * qd) - robot.mass_matrix(q - STEP * qd)) / (2 * STEP)
+    np.testing.assert_allclose(C + C.T, rate, atol=1e-7 * scale(rate))
+
+
+@pytest.mark.parametrize("robot", FREE, ids=free_ids)
+def test_the_coriolis_matrix_of_a_floating_base(robot, rng):
+    q, qd, T = random_q(robot, rng), rng.normal(size=robot.dof), random_pose(rng)
+    C = robot.coriolis_matrix(q, qd, T_world_base=T)
+    rest = np.zeros(robot.dof)
+    forces = robot.inverse_dynamics(q, qd, rest, T_world_base=T, gravity=np.zeros(3), friction=False)
+    np.testing.assert_allclose(C @ qd, forces, atol=1e-12 * scale(forces))
+    ahead, behind = (
+        robot.mass_matrix(q + h * qd[6:], T_world_base=moved(T, h * qd[:6])) for h in (STEP, -STEP)
+    )
+    rate = (ahead - behind) / (2 * STEP)
+    np.testing.assert_allclose(C + C.T, rate, atol=1e-7 * scale(rate))
+
+
+@pytest.mark.parametrize("robot", [*ROBOTS[:3], ARMS[1], *FREE], ids=lambda robot: f"{robot.name}")
+def test_momentum_is_mass_times_velocity_and_energy_is_half_its_square(robot, rng):
+    q, qd = random_q(robot, rng), rng.normal(size=robot.dof)
+    placed = {"T_world_base": random_pose(rng)} if robot.floating else {}
+    h = robot.centroidal_momentum(q, qd, **placed)
+    A = robot.centroidal_momentum_matrix(q, **placed)
+    np.testing.assert_allclose(A @ qd, h, atol=1e-12 * scale(h))
+    velocity = robot.center_of_mass_jacobian(q, **placed) @ qd
+    np.testing.assert_allclose(h[:3], robot.mass * velocity, atol=1e-12 * scale(h))
+    M = robot.mass_matrix(q, **placed)
+    energy = robot.kinetic_energy(q, qd, **placed)
+    assert energy == pytest.approx(0.5 * qd @ M @ qd, rel=1e-12)
+    c = robot.center_of_mass(q, **placed)
+    gravity = rng.normal(size=3)
+    potential = robot.potential_energy(q, gravity=gravity, **placed)
+    assert potential == pytest.approx(-robot.mass * gravity @ c, rel=1e-10)
+
+
+@pytest.mark.parametrize("robot", FREE, ids=free_ids)
+def test_momentum_changes_by_the_wrench_on_the_base_alone(robot, rng):
+    q, T = random_q(robot, rng), random_pose(rng)
+    qd, tau = rng.normal(size=(2, robot.dof))
+    none = np.zeros(3)
+    qdd = robot.forward_dynamics(q, qd, tau, T_world_base=T, gravity=none, friction=False)
+
+    def momentum(h):
+        base = moved(T, h * qd[:6] + h * h / 2 * qdd[:6])
+        return robot.centroidal_momentum(
+            q + h * qd[6:] + h * h / 2 * qdd[6:], qd + h * qdd, T_world_base=base
+        )
+
+    rate = (momentum(STEP) - momentum(-STEP)) / (2 * STEP)
+    lever = T[:3, 3] - robot.center_of_mass(q, T_world_base=T)
+    expected = np.concatenate([tau[:3], tau[3:6] + np.cross(lever, tau[:3])])
+    np.testing.assert_allclose(rate, expected, atol=1e-6 * scale(qdd))
+
+
+def differences(function, n):
+    return np.array([(function(d) - function(-d)) / (2 * STEP) for d in STEP * np.eye(n)]).T
+
+
+@pytest.mark.parametrize("robot", ROBOTS, ids=ids)
+def test_derivatives_of_inverse_dynamics_are_its_slopes(robot, rng):
+    q = random_q(robot, rng)
+    qd, qdd = rng.normal(size=(2, robot.dof))
+    gravity = rng.normal(size=3) * 5
+    dq, dqd, M = robot.inverse_dynamics_derivatives(q, qd, qdd, gravity=gravity)
+    n = robot.dof
+    slope = differences(lambda d: robot.inverse_dynamics(q + d, qd, qdd, gravity=gravity), n)
+    np.testing.assert_allclose(dq, slope, atol=1e-7 * scale(slope))
+    slope = differences(lambda d: robot.inverse_dynamics(q, qd + d, qdd, gravity=gravity), n)
+    np.testing.assert_allclose(dqd, slope, atol=1e-7 * scale(slope))
+    np.testing.assert_array_equal(M, robot.mass_matrix(q))
+
+
+@pytest.mark.parametrize("robot", FREE, ids=free_ids)
+def test_derivatives_of_a_floating_base(robot, rng):
+    q, T = random_q(robot, rng), random_pose(rng)
+    qd, qdd = rng.normal(size=(2, robot.dof))
+    gravity = rng.normal(size=3) * 5
+
+    def torques(d, e):
+        return robot.inverse_dynamics(
+            q + d[6:], qd + e, qdd, gravity=gravity, T_world_base=moved(T, d[:6]), friction=False
+        )
+
+    none = np.zeros(robot.dof)
+    dq, dqd, _ = robot.inverse_dynamics_derivatives(
+        q, qd, qdd, gravity=gravity, T_world_base=T, friction=False
+    )
+    slope = differences(lambda d: torques(d, none), robot.dof)
+    np.testing.assert_allclose(dq, slope, atol=1e-7 * scale(slope))
+    slope = differences(lambda e: torques(none, e), robot.dof)
+    np.testing.assert_allclose(dqd, slope, atol=1e-7 * scale(slope))
+
+
+@pytest.mark.parametrize("robot", [*TREES[:3], ARMS[0]], ids=lambda robot: robot.name)
+def test_derivatives_of_forward_dynamics_are_its_slopes(robot, rng):
+    q = random_q(robot, rng)
+    qd, tau = rng.normal(size=(2, robot.dof))
+    dq, dqd, dtau = robot.forward_dynamics_derivatives(q, qd, tau)
+    n = robot.dof
+    slope = differences(lambda d: robot.forward_dynamics(q + d, qd, tau), n)
+    np.testing.assert_allclose(dq, slope, atol=1e-5 * scale(slope))
+    slope = differences(lambda d: robot.forward_dynamics(q, qd + d, tau), n)
+    np.testing.assert_allclose(dqd, slope, atol=1e-5 * scale(slope))
+    slope = differences(lambda d: robot.forward_dynamics(q, qd, tau + d), n)
+    np.testing.assert_allclose(dtau, slope, atol=1e-5 * scale(slope))
+
+
+@pytest.mark.parametrize("robot", [*ROBOTS[:2], FREE[0]], ids=lambda robot: robot.name)
+def test_rows_alone_and_among_others_agree(robot, rng):
+    q, qd, qdd = random_q(robot, rng, 11), *rng.normal(size=(2, 11, robot.dof))
+    for many, alone in (
+        (robot.coriolis_matrix(q, qd), [robot.coriolis_matrix(a, b) for a, b in zip(q, qd, strict=True)]),
+        (robot.centroidal_momentum_matrix(q), [robot.centroidal_momentum_matrix(a) for a in q]),
+        (robot.kinetic_energy(q, qd), [robot.kinetic_energy(a, b) for a, b in zip(q, qd, strict=True)]),
+        (
+            robot.inverse_dynamics_derivatives(q, qd, qdd)[0],
+            [robot.inverse_dynamics_derivatives(*row)[0] for row in zip(q, qd, qdd, strict=True)],
+        ),
+    ):
+        np.testing.assert_allclose(many, alone, atol=1e-11 * scale(many))
