@@ -10,6 +10,7 @@ from cspace.errors import CspaceError
 if TYPE_CHECKING:
     from cspace import (
         collision,
+        dynamics,
         export,
         ik,
         kinematics,
@@ -64,6 +65,7 @@ __all__ = [
     "__version__",
     "collision",
     "configuration_space",
+    "dynamics",
     "export",
     "ik",
     "kinematics",
@@ -109,6 +111,7 @@ _LATER = {
     "__version__": "cspace._core",
     "collision": "",
     "configuration_space": "cspace.planning",
+    "dynamics": "",
     "export": "",
     "ik": "",
     "kinematics": "",
