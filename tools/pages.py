@@ -16,6 +16,7 @@ sys.path.insert(0, str(ROOT / "src"))
 COURSE = ("spatial", "robots", "catalogue", "kinematics", "ik", "subproblems", "redundancy", "tracking")
 COURSE += (
     "differential-kinematics",
+    "dynamics",
     "export",
     "shapes",
     "collision",

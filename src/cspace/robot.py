@@ -378,7 +378,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         """
         carrier = self.tip if frame is None else frame
         if carrier is None:
-            choice = kinematics.tip_choices(self.leaves)
+            choice = ", ".join(self.leaves)
             raise InputError(f"{self.name} branches, so it has no tip for a payload; give frame=: {choice}")
         link, T_link_frame = self._place_of(carrier)
         tensor = np.zeros((3, 3)) if inertia is None else one_array(inertia, "inertia", (3, 3))

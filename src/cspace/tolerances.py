@@ -28,6 +28,9 @@ INERTIA_ROUNDING: Final = 1e-5
 """Share of the largest moment of inertia by which the others may fall short of the laws of rigid bodies:
 tables are printed with five or six digits, and the tensor of a flat plate lies on the border."""
 
+LEAST_GYRATION: Final = 1e-6
+"""Radius of gyration [m] up to which a body is a point: what rounding leaves of an absent tensor."""
+
 MASSLESS_MOTION: Final = 1e-8
 """Root of the kinetic energy of a unit motion, relative to the largest one, up to which it is none: its
 square is the rounding of the mass matrix."""

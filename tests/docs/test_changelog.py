@@ -22,6 +22,7 @@ MODULES = [
     for room in (
         "",
         ".collision",
+        ".dynamics",
         ".errors",
         ".export",
         ".ik",

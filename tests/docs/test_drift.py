@@ -16,6 +16,7 @@ ROOMS = {
     "model": "robots",
     "robots": "robots",
     "kinematics": "kinematics",
+    "dynamics": "dynamics",
     "ik": "ik",
     "plot": "plot",
     "maps": "maps",

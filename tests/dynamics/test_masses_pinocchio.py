@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cspace.model import from_urdf
+from cspace.model import from_urdf, with_srdf
 from cspace.robot import Robot
 from oracles.example_robots import FAULTY, place_joints, urdf_files
 from oracles.forward import joint_values
@@ -50,6 +50,17 @@ def test_the_whole_robot_is_the_composite_of_pinocchio(name):
             continue
         same_body(assembled_body(robot, q), expected)
         np.testing.assert_allclose(robot.center_of_mass(q), expected[1], rtol=0, atol=1e-12)
+
+
+def test_the_rotors_of_talos_are_those_of_pinocchio():
+    path = next(path for name, path in FILES.items() if name == "talos_reduced")
+    srdf = path.parents[1] / "srdf/talos.srdf"
+    model = pin.buildModelFromUrdf(str(path))
+    assert pin.loadRotorParameters(model, str(srdf), False)
+    joints = with_srdf(from_urdf(path), srdf).joint_by_name
+    ours = [joints[name].armature or 0.0 for name in list(model.names)[1:]]
+    np.testing.assert_allclose(ours, model.armature, rtol=1e-15)
+    assert sum(ours) > 0.0
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -9,6 +9,7 @@ import pytest
 import cspace as cs
 from cspace.errors import DescriptionError, InputError, InputTypeError, UnknownNameError
 from cspace.model import Description, Joint, Link, chain, group_ends, read_srdf, with_srdf
+from kinematics import robots
 from model.random_robots import random_tree
 
 PANDA = """<?xml version="1.0"?>
@@ -190,12 +191,27 @@ def test_the_allowed_pairs_are_not_checked():
     assert ("link_1", "link_3", "User") in free.collision.allowed
 
 
+def test_rotor_parameters_are_armatures(caplog):
+    """Of Pinocchio's extension; zeros stand for unknown numbers, and unknown joints are logged."""
+    text = """<robot name="p"><rotor_params><joint name="joint_0" mass="1e-5" gear_ratio="100."/>
+      <joint name="joint_1" mass="0" gear_ratio="100"/><joint name="wing" mass="1" gear_ratio="2"/>
+      </rotor_params></robot>"""
+    plain = robots.arm(0).description
+    with caplog.at_level("WARNING", "cspace"):
+        geared = with_srdf(plain, text)
+    assert [joint.armature for joint in geared.joints[:3]] == [pytest.approx(0.1), None, None]
+    assert "has no joints 'wing'" in caplog.text
+    with pytest.raises(DescriptionError, match="shares no link and no joint"):
+        with_srdf(plain, text.replace("joint_", "j_"))
+
+
 WRONG = {
     "<robot name='x'><group name='g'></robot>": "1: malformed XML",
     "<urdf/>": "1: this is not SRDF: the root element is <urdf>",
     "<robot name='x'><link name='a'/></robot>": "this is a URDF file",
     "<robot xmlns:xacro='x'><xacro:arm/></robot>": "this SRDF is a xacro file; expand it first",
     "<robot>\n<disable_colisions link1='a' link2='b'/></robot>": "2: .*did you mean <disable_collisions>",
+    "<robot><rotor_params>\n<joint name='a' mass='1'/></rotor_params></robot>": "2: .*'gear_ratio'",
     "<robot>\n\n<disable_collisions link='a' link2='b'/></robot>": "3: .*did you mean 'link1'",
     "<robot>\n<disable_collisions link1='a'/></robot>": "2: <disable_collisions> needs the attribute 'link2'",
     "<robot>\n<disable_collisions link1='a' link2='a'/></robot>": "2: .* names link 'a' twice",

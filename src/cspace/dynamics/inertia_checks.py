@@ -10,15 +10,12 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.model import Description, Geometry, Link
-from cspace.tolerances import INERTIA_ROUNDING
+from cspace.tolerances import INERTIA_ROUNDING, LEAST_GYRATION
 
 MOST_GYRATION: Final = 10.0
 """Radius of gyration of a link over its extent beyond which its units are doubted: kg·mm² make it a thousand,
 and the mass of no link lies outside of it."""
 
-
-LEAST_GYRATION: Final = 1e-6
-"""Radius of gyration [m] up to which a body is a point: what rounding leaves of an absent tensor."""
 
 SPACING: Final = 16.0 * np.finfo(float).eps
 """Rounding of the eigenvalues of a symmetric matrix (3, 3), relative to the largest."""

@@ -49,8 +49,8 @@ class InertiaReport:
             return f"no link of {self.robot} has a mass; add inertial data to its description"
         faults = sum(not fault.hint for fault in self.faults)
         hints = len(self.faults) - faults
-        parts = [f"{self.mass:.6g} kg", counted(faults, "fault")]
-        parts += [counted(hints, "hint")] if hints else []
+        parts = [f"{self.mass:.6g} kg", count_noun(faults, "fault")]
+        parts += [count_noun(hints, "hint")] if hints else []
         if self.singular:
             parts.append(f"the mass matrix is singular: {join_words(self.singular)} move without inertia")
         return ", ".join(parts)
@@ -72,7 +72,7 @@ class InertiaReport:
         return html_table(f"{self.robot}: {self.summary}", *self._cells())
 
 
-def counted(number: int, noun: str) -> str:
+def count_noun(number: int, noun: str) -> str:
     """A number with its noun."""
     return f"{number or 'no'} {noun}{'' if number == 1 else 's'}"
 
@@ -118,7 +118,7 @@ def check_bodies(robot: DescribedModel) -> Iterator[InertiaFault]:
         heavy = [name for name in links if description.link_by_name[name].inertial is not None]
         mass, inertia = float(assembly.mass[k]), assembly.inertia[k]
         if len(heavy) > 1:
-            yield from check_body(f"{links[0]} with {counted(len(heavy) - 1, 'more link')}", mass, inertia)
+            yield from check_body(f"{links[0]} with {count_noun(len(heavy) - 1, 'more link')}", mass, inertia)
         elif mass == 0.0 and not np.any(inertia) and k > 0 and links:
             text = "what the joint carries has no mass itself"
             yield InertiaFault(links[0], "massless", text, 0.0, (0.0, 0.0, 0.0), hint=True)

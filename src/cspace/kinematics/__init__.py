@@ -1,14 +1,6 @@
 """Kinematics: where every frame of a robot is, how it moves with the joints, and where it loses a freedom."""
 
-from cspace.kinematics.assembly import (
-    Assembly,
-    add_tool,
-    assemble,
-    assemble_chain,
-    mount,
-    screws,
-    tip_choices,
-)
+from cspace.kinematics.assembly import Assembly, add_tool, assemble, assemble_chain, mount, screws
 from cspace.kinematics.center_of_mass import center_of_mass, center_of_mass_jacobian
 from cspace.kinematics.forward import forward_kinematics, forward_kinematics_all
 from cspace.kinematics.jacobian import fk_jacobian, jacobian, jacobian_dot
@@ -49,6 +41,5 @@ __all__ = [
     "screws",
     "singular_values",
     "singularity",
-    "tip_choices",
     "workspace",
 ]

@@ -5,12 +5,14 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from cspace.errors import DescriptionError, suggest
 from cspace.model.attributes import fault_at, read_floats, slip_in, text_of
 from cspace.model.description import Description
+from cspace.model.joint import Joint
+from cspace.model.transmissions import read_rotors
 from cspace.model.xml import Element, parse_source
 from cspace.tables import one_line
 
@@ -27,6 +29,7 @@ CHILDREN: Final[dict[str, frozenset[str]]] = {
             "disable_collisions",
             "disable_default_collisions",
             "enable_collisions",
+            "rotor_params",
         }
     ),
     "group": frozenset({"chain", "joint", "link", "group"}),
@@ -84,7 +87,8 @@ class Srdf:
     robot: the name of the robot. groups: by name. states: named configurations. allowed_pairs: (link, link,
     reason) of links that are not checked for collisions. allowed_links: links that are checked with none but
     the links of required_pairs. virtual_joints: names of joints that tie the robot to the world, which groups
-    may list. path: the file, None for a text.
+    may list. armatures: joint name → inertia of its rotor behind its gear [kg·m² or kg]. path: the file, None
+    for a text.
     """
 
     robot: str
@@ -94,6 +98,7 @@ class Srdf:
     allowed_links: tuple[str, ...] = ()
     required_pairs: tuple[tuple[str, str], ...] = ()
     virtual_joints: tuple[str, ...] = ()
+    armatures: Mapping[str, float] = field(default_factory=dict)
     path: str | None = None
 
     def __repr__(self) -> str:
@@ -109,8 +114,8 @@ def read_srdf(source: str | os.PathLike[str] | bytes) -> Srdf:
     """The content of an SRDF file (Semantic Robot Description Format, wiki.ros.org/srdf).
 
     source: a path, or the text itself (a string that starts with "<", or bytes). Groups, group states and
-    disabled collisions are read; end effectors, passive joints and sphere approximations are not. Names are
-    not compared with a robot here, see with_srdf.
+    disabled collisions are read, and Pinocchio's <rotor_params>; end effectors, passive joints and sphere
+    approximations are not. Names are not compared with a robot here, see with_srdf.
 
     Raises DescriptionError with file and line for malformed XML, misspelled elements and attributes, doubled
     names, and a pair of one link.
@@ -130,6 +135,7 @@ def read_srdf(source: str | os.PathLike[str] | bytes) -> Srdf:
         allowed_links=tuple(text_of(element, "link") for element in root.all("disable_default_collisions")),
         required_pairs=tuple(ends_of(element) for element in root.all("enable_collisions")),
         virtual_joints=tuple(text_of(element, "name") for element in root.all("virtual_joint")),
+        armatures=read_rotors(root),
         path=root.path,
     )
 
@@ -209,7 +215,7 @@ def read_states(root: Element, groups: Mapping[str, JointGroup]) -> tuple[GroupS
 
 
 def with_srdf(description: Description, srdf: Srdf | str | os.PathLike[str] | bytes) -> Description:
-    """The description with the named poses and the allowed pairs of an SRDF file.
+    """The description with the named poses, the allowed pairs and the armatures of an SRDF file.
 
     srdf: a path, the text, or what read_srdf returned. Poses replace those of the same name. States of one
     name of several groups become one pose; where two give one joint different values, each is named
@@ -221,7 +227,9 @@ def with_srdf(description: Description, srdf: Srdf | str | os.PathLike[str] | by
     content = srdf if isinstance(srdf, Srdf) else read_srdf(srdf)
     pairs, unknown_links = known_pairs(description, content)
     poses, unknown_joints = known_poses(description, content.states)
-    if (unknown_links or unknown_joints) and not (pairs or poses):
+    joints, strange = known_rotors(description, content.armatures)
+    unknown_joints = list(dict.fromkeys([*unknown_joints, *strange]))
+    if (unknown_links or unknown_joints) and not (pairs or poses or joints != description.joints):
         raise content.fault(
             f"the file is of robot {content.robot!r} and shares no link and no joint with robot"
             f" {description.name!r}; it names {list_names([*unknown_links, *unknown_joints])}"
@@ -231,6 +239,7 @@ def with_srdf(description: Description, srdf: Srdf | str | os.PathLike[str] | by
             LOG.warning("%s: robot %r has no %s %s", content.path, description.name, kind, list_names(names))
     return replace(
         description,
+        joints=joints,
         poses={**description.poses, **poses},
         allowed_pairs=merge_pairs([*description.allowed_pairs, *pairs], content.required_pairs),
     )
@@ -283,6 +292,17 @@ def known_poses(
             poses[f"{group}/{name}"] = values
     named = [joint for state in states for joint in state.values]
     return {name: values for name, values in poses.items() if values}, unknown_names(named, joints)
+
+
+def known_rotors(
+    description: Description, armatures: Mapping[str, float]
+) -> tuple[tuple[Joint, ...], list[str]]:
+    """The joints of the robot with the armatures that are given for them, and the joints that it lacks."""
+    joints = tuple(
+        replace(joint, armature=armatures[joint.name]) if joint.name in armatures else joint
+        for joint in description.joints
+    )
+    return joints, unknown_names(armatures, description.joint_by_name)
 
 
 def unknown_names(names: Iterable[str], known: Mapping[str, Any]) -> list[str]:

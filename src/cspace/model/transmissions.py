@@ -1,4 +1,4 @@
-"""The inertia of rotors behind their gears, from and to the transmissions of URDF."""
+"""The inertia of rotors behind their gears: transmissions of URDF, rotor parameters of SRDF."""
 
 from __future__ import annotations
 
@@ -61,6 +61,21 @@ def read_actuator(actuator: Element) -> float:
         )
     ratio = 1.0 if gear is None else read_number(gear, "value")
     return 0.0 if rotor is None else ratio * ratio * read_number(rotor, "value")
+
+
+def read_rotors(root: Element) -> dict[str, float]:
+    """The inertia of the rotors of an SRDF file as their joints feel it, by joint name [kg·m² or kg].
+
+    n² J with mass= J and gear_ratio= n of each <joint> in <rotor_params>, which are Pinocchio's extension of
+    SRDF. Zeros stand for unknown numbers there and are left out.
+    """
+    found: dict[str, float] = {}
+    for parameters in root.all("rotor_params"):
+        for joint in parameters.all("joint"):
+            ratio = read_number(joint, "gear_ratio")
+            if inertia := ratio * ratio * read_number(joint, "mass"):
+                found[text_of(joint, "name")] = inertia
+    return found
 
 
 def transmission_lines(joint: str, armature: float) -> list[str]:
