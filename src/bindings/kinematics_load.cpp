@@ -61,7 +61,11 @@ std::unique_ptr<const model::RobotModel> read_model(nb::handle assembly, long n_
                T_frame = numbers_of(assembly, "T_joint_frame", 16 * n_frames),
                carrier = numbers_of(assembly, "frame_joint", n_frames),
                mass = numbers_of(assembly, "mass", n_joints + 1),
-               center = numbers_of(assembly, "center", 3 * (n_joints + 1));
+               center = numbers_of(assembly, "center", 3 * (n_joints + 1)),
+               inertia = numbers_of(assembly, "inertia", 9 * (n_joints + 1)),
+               armature = numbers_of(assembly, "armature", n_joints),
+               damping = numbers_of(assembly, "damping", n_joints),
+               friction = numbers_of(assembly, "friction", n_joints);
     std::vector<model::Joint> joints(n_joints);
     for (long k = 0; k < n_joints; ++k) {
         joints[k] = {kinematics::read_matrix(T_joint.data + 16 * k),
@@ -70,15 +74,18 @@ std::unique_ptr<const model::RobotModel> read_model(nb::handle assembly, long n_
                      ratio.data[k],
                      offset.data[k],
                      prismatic.data[k] != 0.0,
-                     0.0};
+                     0.0,
+                     armature.data[k],
+                     damping.data[k],
+                     friction.data[k]};
     }
     std::vector<model::Frame> frames(n_frames);
     for (long k = 0; k < n_frames; ++k)
         frames[k] = {kinematics::read_matrix(T_frame.data + 16 * k), int(carrier.data[k])};
     std::vector<model::Body> bodies(n_joints + 1);
     for (long k = 0; k <= n_joints; ++k) {
-        const double* at = center.data + 3 * k;
-        bodies[k] = {{at[0], at[1], at[2]}, mass.data[k]};
+        const double *at = center.data + 3 * k, *I = inertia.data + 9 * k;
+        bodies[k] = {{at[0], at[1], at[2]}, mass.data[k], {I[0], I[1], I[2], I[4], I[5], I[8]}};
     }
     if (n < 0 || n > INT_MAX || !indices_fit(joints, frames, n, tip))
         throw nb::value_error("the joints, coordinates and frames of the assembly do not fit together");

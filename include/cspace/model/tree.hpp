@@ -6,7 +6,7 @@
 // all instruction sets.
 #pragma once
 
-#include "cspace/math/vec.hpp"
+#include "cspace/math/symmetric.hpp"
 
 namespace cspace::model {
 
@@ -17,16 +17,21 @@ struct Joint {
     double ratio, offset;
     bool prismatic;
     double carried_mass;  // of all that it moves [kg]
+    // Of the joint itself: inertia of its rotor behind the gear [kg·m² or kg], viscous damping [N·m·s/rad or
+    // N·s/m] and dry friction [N·m or N].
+    double armature = 0.0, damping = 0.0, friction = 0.0;
 };
 // A named place, fixed to a joint (-1: to the base).
 struct Frame {
     Posed T_joint_frame;
     int joint;
 };
-// All that is fixed to a joint, as one mass [kg] at its centre [m] in the frame of the joint.
+// All that is fixed to a joint, as one mass [kg] at its centre [m] in the frame of the joint, with its
+// inertia about the centre, in the axes of the joint [kg·m²].
 struct Body {
     Vec3d center;
     double mass;
+    Symmetric3<double> inertia = {};
 };
 // bodies[0] belongs to the base, bodies[k + 1] to joint k.
 struct Tree {

@@ -25,8 +25,10 @@ class Assembly:
 
     Joint k sits at T_parent_joint[k] (n_joints, 4, 4) on joint parent[k] (-1: the base), turns about or
     slides along its z, and stands at ratio[k] · q[coordinate[k]] + offset[k]. Frame f sits at
-    T_joint_frame[f] (n_frames, 4, 4) on joint frame_joint[f]. mass (n_joints + 1,) [kg] and center
-    (n_joints + 1, 3) [m] are those of the base and of all that is fixed to each joint.
+    T_joint_frame[f] (n_frames, 4, 4) on joint frame_joint[f]. mass (n_joints + 1,) [kg], center
+    (n_joints + 1, 3) [m] and inertia (n_joints + 1, 3, 3) [kg·m²], about the centre, are those of the base
+    and of all that is fixed to each joint. armature, damping and friction (n_joints,) are those of the joints
+    themselves, zero where the description gives none.
 
     coordinates: the names behind q, coordinate_types their "R" or "P", limits theirs. frame_index: name →
     number. base, tip (None: the robot branches), leaves: links. floating: the base moves freely. chain: the
@@ -51,6 +53,10 @@ class Assembly:
     frame_index: dict[str, int]
     mass: Array
     center: Array
+    inertia: Array
+    armature: Array
+    damping: Array
+    friction: Array
     chain: Chain | None
 
     @property
@@ -120,6 +126,7 @@ def _from_tree(source: Tree, description: Description, floating: bool) -> Assemb
     carriers = source.parent
     # From a joint turned to z back to the joint as given; the base first.
     back = np.array([np.eye(4), *np.swapaxes(turned, -1, -2)])
+    turns = back[:, :3, :3]
     return Assembly(
         base=source.root,
         tip=None,
@@ -128,7 +135,8 @@ def _from_tree(source: Tree, description: Description, floating: bool) -> Assemb
         T_parent_joint=back[carriers + 1] @ source.placement @ turned,
         parent=carriers,
         mass=np.array(source.mass),
-        center=np.einsum("kij,kj->ki", back[:, :3, :3], source.com),
+        center=np.einsum("kij,kj->ki", turns, source.com),
+        inertia=turns @ source.inertia @ np.swapaxes(turns, -1, -2),
         chain=None,
         **_shared(source, description, back, -1),
     )
@@ -140,10 +148,10 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
     T_base_joint[1:, :3, 3] = source.points
     back = invert_pose(T_base_joint)
     shared = _shared(source, description, back, 0)
-    mass, center = np.zeros(n + 1), np.zeros((n + 1, 3))
+    mass, center, inertia = np.zeros(n + 1), np.zeros((n + 1, 3)), np.zeros((n + 1, 3, 3))
     if description is not None:
         carried = zip(shared["frame_joint"].tolist(), shared["T_joint_frame"], strict=True)
-        mass, center, *_ = lump_links(description, dict(zip(source.frames, carried, strict=True)), n)
+        mass, center, inertia, _ = lump_links(description, dict(zip(source.frames, carried, strict=True)), n)
     return Assembly(
         base=source.base,
         tip=source.tip,
@@ -153,6 +161,7 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
         parent=np.arange(-1, n - 1),
         mass=mass,
         center=center.copy(),
+        inertia=inertia.copy(),
         chain=source,
         **shared,
     )
@@ -181,7 +190,18 @@ def _shared(source: Tree | Chain, description: Description | None, back: Array, 
         "ratio": law.multiplier,
         "offset": law.offset,
         "prismatic": np.array([kind == "P" for kind in source.joint_types], dtype=np.float64),
+        **_resistances(source.joint_names, description),
     }
+
+
+def _resistances(names: tuple[str, ...], description: Description | None) -> dict[str, Array]:
+    """What the joints themselves oppose to motion, (n,) each: armature, damping, friction."""
+    rows = dict.fromkeys(("armature", "damping", "friction"), np.zeros(len(names)))
+    if description is None:
+        return rows
+    known = description.joint_by_name  # the parts of a planar joint are name/x, name/y and name/turn
+    joints = [known.get(name) or known[name.rpartition("/")[0]] for name in names]
+    return {field: np.array([getattr(joint, field) or 0.0 for joint in joints]) for field in rows}
 
 
 def _turned(axes: Array) -> Array:
@@ -207,6 +227,7 @@ def mount(assembly: Assembly, name: str, T_world_base: Array) -> None:
     assembly.T_joint_frame[fixed] = T_world_base @ assembly.T_joint_frame[fixed]
     R, p = T_world_base[:3, :3], T_world_base[:3, 3]
     assembly.center[0] = R @ assembly.center[0] + p
+    assembly.inertia[0] = R @ assembly.inertia[0] @ R.T
     if assembly.chain is not None:
         old = assembly.chain
         assembly.chain = replace(

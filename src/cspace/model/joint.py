@@ -72,8 +72,9 @@ class Joint:
     name, parent, child: the joint and the two links by name. type: one of JOINT_TYPES.
     origin (4, 4): joint frame in the parent link [m]. axis (3,): unit direction in the joint frame (the
     normal of a planar joint). lower, upper: range [rad or m], ±inf where unlimited. velocity [rad/s or
-    m/s], acceleration, jerk, effort [N·m or N]: largest magnitudes, inf where unknown. damping, friction:
-    as in URDF, None where unknown. mimic: the joint it follows.
+    m/s], acceleration, jerk, effort [N·m or N]: largest magnitudes, inf where unknown. damping [N·m·s/rad or
+    N·s/m], friction [N·m or N]: as in URDF, None where unknown. armature: the inertia of the rotor as the joint
+    feels it, n² J behind a gear of ratio n [kg·m² or kg], None where unknown. mimic: the joint it follows.
 
     Raises InputError for limits upside down, a zero axis, NaN; UnknownNameError for an unknown type.
     """
@@ -92,6 +93,7 @@ class Joint:
     effort: float = math.inf
     damping: float | None = None
     friction: float | None = None
+    armature: float | None = None
     mimic: Mimic | None = None
 
     def __post_init__(self) -> None:
@@ -109,7 +111,7 @@ class Joint:
             store(self, "axis", unit_axis(self.axis, f"axis of {subject}"))
         for name in LIMIT_FIELDS:
             store(self, name, check_number(getattr(self, name), f"{name} limit of {subject}"))
-        for name in ("damping", "friction"):
+        for name in ("damping", "friction", "armature"):
             value = getattr(self, name)
             if value is not None:
                 store(self, name, finite_number(value, f"{name} of {subject}"))
