@@ -18,10 +18,26 @@ WRITTEN = 1e-9
 
 GRAVITY = 9.81
 
-REQUIRED = (
-    "ur3e ur5e ur10e ur16e panda fr3 iiwa7 iiwa14 gen3 xarm6 xarm7 puma560 puma560_dh stanford so101"
-    " planar_1r planar_2r planar_3r"
-).split()
+REQUIRED = [
+    "ur3e",
+    "ur5e",
+    "ur10e",
+    "ur16e",
+    "panda",
+    "fr3",
+    "iiwa7",
+    "iiwa14",
+    "gen3",
+    "xarm6",
+    "xarm7",
+    "puma560",
+    "puma560_dh",
+    "stanford",
+    "so101",
+    "planar_1r",
+    "planar_2r",
+    "planar_3r",
+]
 
 UNUSUAL = {
     ("lite6", "link_base"): "its tensor is not published; it does not move",
