@@ -34,10 +34,10 @@ FORMS = {"joints": ("links", "joints", "loops"), "screws": ("screws",), "dh": ("
 PLACE = ("origin", "xyz", "rpy")
 ENDS = ("name", "type", "parent", "child")
 JOINT_KEYS = (*ENDS, *PLACE, "axis", *LIMIT_FIELDS, "damping", "friction", "mimic")
-INERTIAL_KEYS = ("mass", "com", "inertia")
-DH_KEYS = ("name", "type", "alpha", "a", "d", "theta", *LIMIT_FIELDS, "damping", "friction", *INERTIAL_KEYS)
 GEOMETRY_KEYS = ("shape", "size", *PLACE, "name", "mesh", "scale", "color")
 LETTERS = {"revolute": "R", "continuous": "R", "prismatic": "P", "fixed": "F"}
+INERTIAL_KEYS = ("mass", "com", "inertia")
+DH_KEYS = ("name", "type", "alpha", "a", "d", "theta", *LIMIT_FIELDS, "damping", "friction", *INERTIAL_KEYS)
 
 
 def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = ()) -> Description:
