@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "cspace/dynamics/make_links.hpp"
 #include "kernels/kinematics.hpp"
 
 namespace nb = nanobind;
@@ -44,6 +45,7 @@ PyObject* create_kinematics(PyTypeObject* type, PyObject*, PyObject*) {
     auto* made = reinterpret_cast<KinematicsObject*>(type->tp_alloc(type, 0));
     if (!made) return nullptr;
     new (&made->model) std::unique_ptr<const model::RobotModel>();
+    new (&made->links) std::unique_ptr<const dynamics::Links>();
     made->frame_index = nullptr;
     made->tip = -1;
     made->floating = false;
@@ -51,8 +53,14 @@ PyObject* create_kinematics(PyTypeObject* type, PyObject*, PyObject*) {
 }
 void free_kinematics(PyObject* self) {
     Py_CLEAR(kinematics_of(self)->frame_index);
+    kinematics_of(self)->links.~unique_ptr();
     kinematics_of(self)->model.~unique_ptr();
     free_object(self);
+}
+
+const dynamics::Multibody& multibody_of(KinematicsObject& robot) {
+    if (!robot.links) robot.links = std::make_unique<const dynamics::Links>(robot.model->tree());
+    return robot.links->view();
 }
 
 namespace {

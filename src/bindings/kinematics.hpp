@@ -14,9 +14,15 @@
 #include "cspace/model/robot_model.hpp"
 #include "numpy_api.hpp"
 
+namespace cspace::dynamics {
+class Links;
+struct Multibody;
+}  // namespace cspace::dynamics
+
 struct KinematicsObject {
     PyObject_HEAD std::unique_ptr<const cspace::model::RobotModel>
-        model;              // null until __init__; never replaced
+        model;                                              // null until __init__; never replaced
+    std::unique_ptr<const cspace::dynamics::Links> links;  // the same for dynamics, made when first asked for
     PyObject* frame_index;  // dict: name of a frame → its number
     int tip;                // the frame meant where none is named, or -1
     bool floating;
@@ -37,9 +43,12 @@ void free_kinematics(PyObject* self);
 PyObject* call_python(const char* module, const char* function, const char* method, PyObject* self,
                       PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
 
+// The links of a robot, for dynamics. Call it with the interpreter lock.
+const cspace::dynamics::Multibody& multibody_of(KinematicsObject& robot);
+
 // A robot as an argument, and the chain to one of its frames. Throws for an object that is not a robot, and
 // for a frame that it does not have.
-inline const KinematicsObject& robot_from(nanobind::handle robot) {
+inline KinematicsObject& robot_from(nanobind::handle robot) {
     if (!PyObject_TypeCheck(robot.ptr(), kinematics_type) || !kinematics_of(robot.ptr())->model)
         throw nanobind::type_error("the first argument must be a robot");
     return *kinematics_of(robot.ptr());

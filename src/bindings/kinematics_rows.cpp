@@ -1,66 +1,16 @@
 // Batches of configurations: plain checked arrays in, filled arrays out, the interpreter free meanwhile.
-#include <nanobind/stl/optional.h>
-
 #include <bit>
-#include <memory>
-#include <new>
 
-#include "arrays_in_place.hpp"
 #include "bindings.hpp"
-#include "cspace/math/threads.hpp"
 #include "kernels/kinematics.hpp"
 #include "kinematics.hpp"
+#include "rows.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 using namespace cspace;
 
 namespace {
-
-using In = std::optional<ConstDoubles>;
-using Out = std::optional<Doubles>;
-
-// An array by what it must hold per row; null for None.
-template <class T>
-T* values_of(const std::optional<Plain<T>>& array, npy_intp rows, npy_intp per_row) {
-    if (array && array->size != rows * per_row) throw nb::value_error("an array has the wrong size");
-    return array ? array->data : nullptr;
-}
-// The same where one row may serve all: the stride is then 0.
-const double* shared_values(const In& array, npy_intp rows, npy_intp per_row, std::size_t& stride) {
-    stride = !array || array->size == per_row ? 0 : std::size_t(per_row);
-    return values_of(array, stride ? rows : 1, per_row);
-}
-npy_intp row_count(const ConstDoubles& q, int n) {
-    if (q.ndim() != 2 || q.shape(1) != n) throw nb::value_error("q must have two axes, (rows, coordinates)");
-    return q.shape(0);
-}
-int velocities_of(const KinematicsObject& robot) {
-    return robot.model->n_coordinates() + (robot.floating ? 6 : 0);
-}
-
-struct Free {
-    void operator()(void* memory) const { ::operator delete(memory, std::align_val_t(64)); }
-};
-
-constexpr std::size_t lanes = 4, rows_worth_a_thread = 2048;
-
-// Runs a kernel over all rows without the interpreter lock. False if a value of q is not finite.
-template <class Rows, class Kernel>
-bool run_kernel(const Rows& rows, npy_intp n, int threads, Kernel kernel) {
-    const nb::gil_scoped_release release;
-    std::atomic<bool> memory = true;
-    const std::size_t bytes = scratch_bytes(rows);
-    const bool finite = over_rows(std::size_t(n), threads, lanes, rows_worth_a_thread,
-                                  [&](std::size_t begin, std::size_t end) {
-                                      const std::unique_ptr<void, Free> scratch(
-                                          ::operator new(bytes, std::align_val_t(64), std::nothrow));
-                                      if (!scratch) memory = false;
-                                      return scratch && kernel(rows, begin, end, scratch.get());
-                                  });
-    if (!memory) throw std::bad_alloc();
-    return finite;
-}
 
 bool chain_rows(nb::handle robot, int frame, const ConstDoubles& q, const In& qd, const In& T_world_base,
                 const In& point, const Out& T, const Out& J, const Out& J_rate, const Out& sigma,

@@ -5,6 +5,7 @@
 
 #include "bindings.hpp"
 #include "collision.hpp"
+#include "dynamics.hpp"
 #include "ik.hpp"
 
 namespace {
@@ -98,6 +99,13 @@ const std::string ik_doc = "ik" + std::string(solve_doc).substr(std::strlen("sol
 PyMethodDef robot_methods[] = {
     {"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, ik_doc.c_str()},
     {"collides", as_method(&robot_collides), METH_FASTCALL | METH_KEYWORDS, collides_doc},
+    {"inverse_dynamics", as_method(&compute_inverse_dynamics), METH_FASTCALL | METH_KEYWORDS,
+     inverse_dynamics_doc},
+    {"forward_dynamics", as_method(&compute_forward_dynamics), METH_FASTCALL | METH_KEYWORDS,
+     forward_dynamics_doc},
+    {"mass_matrix", as_method(&compute_mass_matrix), METH_FASTCALL | METH_KEYWORDS, mass_matrix_doc},
+    {"gravity_torques", as_method(&compute_gravity_torques), METH_FASTCALL | METH_KEYWORDS,
+     gravity_torques_doc},
     {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef robot_attributes[] = {
     {"_solver", &get_solver, &set_solver, "The solver, None before it is built; set once.", nullptr},

@@ -2,6 +2,7 @@
 """The compiled core of cspace; use it through the package."""
 
 from collections.abc import Sequence
+import types
 from typing import Annotated, Any, overload
 
 import numpy
@@ -196,6 +197,14 @@ class RobotBase(KinematicsBase):
         everything closer than this counts as touching. threads: 0 for all. See collision.collides, which also
         names the errors.
         """
+
+    inverse_dynamics: types.MethodDescriptorType = ...
+
+    forward_dynamics: types.MethodDescriptorType = ...
+
+    mass_matrix: types.MethodDescriptorType = ...
+
+    gravity_torques: types.MethodDescriptorType = ...
 
     @property
     def _solver(self) -> Any: ...

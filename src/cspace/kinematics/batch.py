@@ -24,7 +24,7 @@ MOST_THREADS = 1024
 class Batch:
     """Configurations as rows: q (rows, n), the leading axes they came with, and for how many threads.
 
-    T_world_base (rows or 1, 4, 4), point (rows or 1, 3), qd (rows, dof): None where not given.
+    T_world_base (rows or 1, 4, 4), point (rows or 1, 3), qd, qdd and tau (rows, dof): None where not given.
     """
 
     q: Array
@@ -33,6 +33,8 @@ class Batch:
     T_world_base: Array | None = None
     point: Array | None = None
     qd: Array | None = None
+    qdd: Array | None = None
+    tau: Array | None = None
 
 
 def rows_of(
@@ -42,6 +44,8 @@ def rows_of(
     T_world_base: Any = None,
     point: Any = None,
     qd: Any = None,
+    qdd: Any = None,
+    tau: Any = None,
     threads: int | None = None,
 ) -> Batch:
     """The arguments of a call as a Batch, their leading axes broadcast against each other.
@@ -57,9 +61,14 @@ def rows_of(
         given["T_world_base"] = (as_pose(T_world_base, "T_world_base"), 2)
     if point is not None:
         given["point"] = (as_floats(point, "point", last=(3,)), 1)
-    if qd is not None:
-        what = "[v; ω] of the base, then " if robot.floating else ""
-        given["qd"] = (_row_vectors(qd, "qd", robot.dof, what + "one velocity per joint", robot), 1)
+    for name, value, base, what in (
+        ("qd", qd, "[v; ω]", "one velocity"),
+        ("qdd", qdd, "[v̇; ω̇]", "one acceleration"),
+        ("tau", tau, "[f; n]", "one torque or force"),
+    ):
+        if value is not None:
+            what = (f"{base} of the base, then " if robot.floating else "") + what + " per joint"
+            given[name] = (_row_vectors(value, name, robot.dof, what, robot), 1)
     shape, rows = broadcast_rows(given, shared=("T_world_base", "point"))
     return Batch(shape=shape, threads=thread_count(threads, shape), **rows)
 

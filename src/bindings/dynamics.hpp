@@ -1,0 +1,14 @@
+// Dynamics as methods of a robot: one configuration is answered here and now, all else by cspace.dynamics.
+#pragma once
+
+#include "bindings.hpp"
+#include "kinematics.hpp"
+
+PyObject* compute_inverse_dynamics(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
+                                   PyObject* kwnames);
+PyObject* compute_forward_dynamics(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
+                                   PyObject* kwnames);
+PyObject* compute_mass_matrix(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
+PyObject* compute_gravity_torques(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
+
+extern const char inverse_dynamics_doc[], forward_dynamics_doc[], mass_matrix_doc[], gravity_torques_doc[];

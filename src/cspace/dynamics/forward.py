@@ -1,0 +1,89 @@
+"""Forward dynamics: the accelerations under given torques."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Array, as_floats
+from cspace.dynamics.mass_matrix import mass_matrix
+from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, run_rows, torques_of_wrenches
+from cspace.errors import InputError
+from cspace.kinematics.batch import Batch, check_output, refuse_infinite
+from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.spatial.checks import PoseLike
+
+
+def forward_dynamics(
+    robot: KinematicModel,
+    q: ArrayLike,
+    qd: ArrayLike,
+    tau: ArrayLike,
+    *,
+    gravity: ArrayLike = EARTH,
+    wrenches: Wrenches | None = None,
+    expressed_in: str = "base",
+    friction: bool = True,
+    T_world_base: PoseLike | None = None,
+    out: Array | None = None,
+    threads: int | None = None,
+) -> Array:
+    """The accelerations of the joints under given torques; see Robot.forward_dynamics.
+
+    q (..., n) [rad or m], qd, tau (..., dof), gravity (3,) [m/s²], wrenches: frame → (..., 6), expressed_in:
+    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof).
+    Returns qdd (..., dof) [rad/s² or m/s²].
+    Raises InputError for a wrong shape or NaN, and where a joint moves no inertia, UnknownNameError for an
+    unknown frame.
+    """
+    pull = torques_of_wrenches(robot, q, wrenches, expressed_in, T_world_base)
+    forces = tau if pull is None else as_floats(tau, "tau") + pull
+    batch = dynamic_rows(robot, q, qd=qd, tau=forces, T_world_base=T_world_base, threads=threads)
+    qdd = check_output(out, (*batch.shape, robot.dof))
+    down = check_gravity(gravity)
+    if not run_rows(robot, "forward_dynamics", batch, batch.tau, qdd, down, friction):
+        refuse_infinite(batch)
+        raise _singular_error(robot, batch)
+    return qdd
+
+
+def _singular_error(robot: KinematicModel, batch: Batch) -> InputError:
+    """Names the joint that moves least in the first configuration where the mass matrix is singular."""
+    row = _first_singular(robot, batch)
+    q = batch.q[row]
+    M = mass_matrix(robot, q)
+    size = np.sqrt(np.maximum(np.diag(M), np.finfo(float).tiny))
+    weakest = np.linalg.eigh(M / np.outer(size, size))[1][:, 0] / size
+    names = [*("vx", "vy", "vz", "ωx", "ωy", "ωz")[: 6 if robot.floating else 0], *robot.joint_names]
+    joint = names[int(np.argmax(np.abs(weakest)))]
+    where = "" if not batch.shape else f" at row {row}"
+    return InputError(
+        f"the mass matrix of {robot.name} is singular{where}: joint {joint!r} moves no inertia;"
+        " give its links a mass or the joint an armature (see robot.inertia_report())"
+    )
+
+
+def _first_singular(robot: KinematicModel, batch: Batch) -> int:
+    """The number of the first row without an answer."""
+    low, high = 0, len(batch.q)
+    while high - low > 1:
+        middle = (low + high) // 2
+        if _is_regular(robot, batch, low, middle):
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _is_regular(robot: KinematicModel, batch: Batch, begin: int, end: int) -> bool:
+    rest = np.zeros((end - begin, robot.dof))
+    base = batch.T_world_base
+    part = replace(
+        batch,
+        q=batch.q[begin:end],
+        qd=rest,
+        T_world_base=base if base is None or len(base) == 1 else base[begin:end],
+    )
+    return run_rows(robot, "forward_dynamics", part, rest, rest.copy(), np.zeros(3), False)
