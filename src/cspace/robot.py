@@ -9,17 +9,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cspace import kinematics, model
 from cspace._core import RobotBase
-from cspace.arrays import Array
-from cspace.errors import InputTypeError, Renamed, name_new_keywords
+from cspace.arrays import Array, one_array
+from cspace.errors import InputError, InputTypeError, Renamed, name_new_keywords, suggest
 from cspace.kinematics import KinematicModel
 from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
-    from cspace import ik
+    from cspace import dynamics, ik
     from cspace.collision import RobotGeometry, checks
     from cspace.collision.escape import escape as escape_collision
     from cspace.export import Export
@@ -200,9 +201,16 @@ class Robot(Renamed, RobotBase, KinematicModel):
         """The description with the tool as a link on the tip and the mounting under a new root."""
         whole = self.description
         if self._T_tip_tool is not None:
-            tip = self._constructor(T_tip_tool=None)().tip
-            whole = model.with_frame(whole, str(tip), self._T_tip_tool)
+            whole = model.with_frame(whole, *self._place_of(str(self.tip)))
         return whole if self._T_world_base is None else model.mounted(whole, self.base, self._T_world_base)
+
+    def _place_of(self, frame: str) -> tuple[str, Array]:
+        """The link of the description that carries a frame, and the pose (4, 4) of the frame in it."""
+        if self._T_tip_tool is not None and frame == self.tip:
+            return str(self._constructor(T_tip_tool=None)().tip), self._T_tip_tool
+        if frame not in self.frames:
+            raise suggest("frame", frame, self.frames, owner=self.name)
+        return frame, np.eye(4)
 
     fk_all = kinematics.forward_kinematics_all
     jacobian_dot = kinematics.jacobian_dot
@@ -223,6 +231,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         ik_numeric = ik.ik_numeric
         ik_plan = ik.ik_plan
         ik_tasks = ik.ik_tasks
+        inertia_report = dynamics.inertia_report
         redundancy = ik.redundancy
         resolved_rate = ik.resolved_rate
         task_velocity = ik.task_velocity
@@ -240,6 +249,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
     else:
         clearance, contact, edge, escape = (_Later("cspace.collision") for _ in range(4))
         export = _Later("cspace.export")
+        inertia_report = _Later("cspace.dynamics")
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
 
@@ -336,6 +346,34 @@ class Robot(Renamed, RobotBase, KinematicModel):
         return self._constructor(
             T_world_base=mount if self._T_world_base is None else mount @ self._T_world_base
         )()
+
+    def with_payload(
+        self,
+        mass: float,
+        com: ArrayLike = (0.0, 0.0, 0.0),
+        inertia: ArrayLike | None = None,
+        *,
+        frame: str | None = None,
+    ) -> Robot:
+        """The same robot with one more body, fixed to a frame; its masses count in every function.
+
+        mass [kg]. com (3,): its centre of mass in the frame [m]. inertia (3, 3): about its centre of mass, in
+        the axes of the frame [kg·m²]; None for a point. frame: what carries it, by default the tip with its
+        tool. Loads add up: the robot without them is this one. Collision checks do not know of the body; see
+        Scene.attach.
+
+        Raises InputError for a mass that is negative or not finite, wrong shapes, a tensor that is not
+        symmetric, and for a tree without a tip if no frame is given; UnknownNameError for an unknown frame.
+        """
+        carrier = self.tip if frame is None else frame
+        if carrier is None:
+            choice = kinematics.tip_choices(self.leaves)
+            raise InputError(f"{self.name} branches, so it has no tip for a payload; give frame=: {choice}")
+        link, T_link_frame = self._place_of(carrier)
+        tensor = np.zeros((3, 3)) if inertia is None else one_array(inertia, "inertia", (3, 3))
+        body = model.Inertial(mass, one_array(com, "com", (3,)), tensor)
+        heavier = model.with_body(self.description, link, body, T_link_frame)
+        return self._constructor(description=heavier)()
 
     @name_new_keywords
     def random_configuration(

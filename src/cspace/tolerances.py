@@ -24,6 +24,14 @@ INERTIA_SYMMETRY: Final = 1e-6
 """Largest difference of opposite inertia entries, relative to the largest entry (at least 1 kg·m²): tables
 are printed with six digits; more is a typing error."""
 
+INERTIA_ROUNDING: Final = 1e-5
+"""Share of the largest moment of inertia by which the others may fall short of the laws of rigid bodies:
+tables are printed with five or six digits, and the tensor of a flat plate lies on the border."""
+
+MASSLESS_MOTION: Final = 1e-8
+"""Root of the kinetic energy of a unit motion, relative to the largest one, up to which it is none: its
+square is the rounding of the mass matrix."""
+
 LAST_ROW_ERROR: Final = 1e-9
 """Largest deviation of the last row of a homogeneous matrix from [0 … 0 1] (unitless): products and inverses
 leave rounding there, a transposed or projective matrix leaves far more."""

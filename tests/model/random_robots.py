@@ -1,8 +1,11 @@
 """Random robots for the tests: trees and chains with joints of all kinds."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from cspace.model import Description, Inertial, Joint, Link, Mimic
+from cspace.model.joint import RESISTANCES
 
 
 def random_pose(rng, reach=0.5):
@@ -58,3 +61,12 @@ def random_tree(rng, n=12, kinds=("revolute", "continuous", "prismatic", "fixed"
 def random_values(rng, description):
     """A value for every moving joint."""
     return {joint.name: rng.uniform(-3, 3) for joint in description.moving_joints}
+
+
+def with_resistances(rng, description):
+    """The robot with a damping, a friction and an armature at half of its joints."""
+    joints = []
+    for joint in description.joints:
+        values = dict(zip(RESISTANCES, rng.uniform(0, 2, 3).tolist(), strict=True))
+        joints.append(replace(joint, **values) if rng.random() < 0.5 else joint)
+    return replace(description, joints=tuple(joints))

@@ -21,7 +21,7 @@ from cspace.model import (
     to_toml,
     to_urdf,
 )
-from model.random_robots import random_pose, random_tree
+from model.random_robots import random_pose, random_tree, with_resistances
 
 TREE = """
 format = 1
@@ -168,7 +168,7 @@ def same(a, b):
 def test_a_round_trip_keeps_every_bit(seed):
     rng = np.random.default_rng(seed)
     kinds = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
-    robot = random_tree(rng, n=15, kinds=kinds)
+    robot = with_resistances(rng, random_tree(rng, n=15, kinds=kinds))
     same(from_toml(to_toml(robot)), robot)
 
 

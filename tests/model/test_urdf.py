@@ -1,3 +1,4 @@
+import logging
 import math
 import os
 import warnings
@@ -21,7 +22,8 @@ from cspace.model import (
     to_toml,
     to_urdf,
 )
-from model.random_robots import random_pose, random_tree, random_values
+from cspace.model.joint import RESISTANCES
+from model.random_robots import random_pose, random_tree, random_values, with_resistances
 from oracles.forward import link_poses
 
 ARM = """<?xml version="1.0"?>
@@ -101,6 +103,74 @@ def test_everything_in_a_file_is_read():
     assert (mesh.mesh.uri, mesh.mesh.scale) == ("package://arm/meshes/a.stl", (1, 2, 3))
 
 
+DRAKE = """<robot name="r" xmlns:drake="http://drake.mit.edu"><link name="a"/><link name="b"/>
+  <joint name="j" type="revolute"><parent link="a"/><child link="b"/>
+    <limit effort="1" velocity="1"/><dynamics damping="0.1"/></joint>
+  <transmission><type>transmission_interface/SimpleTransmission</type>
+    <joint name="j"><hardwareInterface>EffortJointInterface</hardwareInterface></joint>
+    <actuator name="m"><drake:rotor_inertia value="2e-4"/><drake:gear_ratio value="50"/></actuator>
+  </transmission></robot>"""
+ROTOR, GEAR = '<drake:rotor_inertia value="2e-4"/>', '<drake:gear_ratio value="50"/>'
+
+
+def test_the_armature_is_that_of_the_rotor_behind_its_gear():
+    """n² J as in Drake: without a ratio n is one, without an inertia there is none."""
+    assert from_urdf(DRAKE).joint("j").armature == pytest.approx(50**2 * 2e-4)
+    assert from_urdf(DRAKE.replace(GEAR, "")).joint("j").armature == 2e-4
+    assert from_urdf(DRAKE.replace(ROTOR, "")).joint("j").armature is None
+    given = DRAKE.replace('damping="0.1"', 'damping="0.1" armature="0.7"')
+    assert from_urdf(given).joint("j").armature == 0.7  # that of the joint, its rotors included
+    more = '</actuator><actuator name="n"><drake:rotor_inertia value="1"/></actuator>'
+    two = DRAKE.replace("</actuator>", more)
+    assert from_urdf(two).joint("j").armature == pytest.approx(1.5)
+
+
+def test_a_rotor_whose_ratio_is_elsewhere_is_logged(caplog):
+    text = DRAKE.replace(GEAR, "<mechanicalReduction>50</mechanicalReduction>")
+    with caplog.at_level(logging.WARNING, "cspace"):
+        assert from_urdf(text).joint("j").armature == 2e-4
+    assert "the rotor has no <drake:gear_ratio>; its <mechanicalReduction> does not count" in caplog.text
+    caplog.clear()
+    text = DRAKE.replace('<joint name="j"><h', '<joint name="j"/><joint name="j"><h')
+    with caplog.at_level(logging.WARNING, "cspace"):
+        assert from_urdf(text).joint("j").armature is None
+    assert "a transmission ties 2 joints to its rotors; their inertia is left out" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "text"),
+    [
+        ('<joint name="j"><h', '<joint name="jj"><h', 4, "transmission: no joint 'jj'; did you mean 'j'?"),
+        ('value="2e-4"', 'value="x"', 6, "value='x' of <drake:rotor_inertia>: expected 1 number"),
+        ('value="2e-4"', "", 6, "<drake:rotor_inertia> needs the attribute 'value'"),
+        ('value="2e-4"', 'value="-1"', 2, "armature of joint 'j' is -2500; it must not be negative"),
+        ('damping="0.1"', 'armatur="0.1"', 3, "no attribute 'armatur'; did you mean 'armature'?"),
+    ],
+)
+def test_a_faulty_rotor_is_refused_with_its_line(old, new, line, text):
+    with pytest.raises(DescriptionError) as error:
+        from_urdf(DRAKE.replace(old, new))
+    assert text in str(error.value)
+    assert error.value.line == line
+
+
+@pytest.mark.parametrize("armature", [None, 0.0, 0.125])
+def test_an_armature_is_written_as_drake_reads_it(armature):
+    joint = Joint('j "1"', "continuous", "a", "b", armature=armature)
+    text = to_urdf(Description("r", (Link("a"), Link("b")), (joint,)))
+    assert ("xmlns:drake" in text) == ("transmission" in text) == (armature is not None)
+    assert from_urdf(text).joint('j "1"').armature == armature
+
+
+def test_an_acceleration_limit_of_drake_is_read():
+    text = DRAKE.replace('velocity="1"', 'velocity="1" drake:acceleration="7"')
+    assert from_urdf(text).joint("j").acceleration == 7.0
+    assert (
+        from_urdf(text.replace('velocity="1"', 'velocity="1" acceleration="5"')).joint("j").acceleration
+        == 5.0
+    )
+
+
 def test_roll_pitch_yaw_turn_about_fixed_axes():
     cx, sx, cy, sy, cz, sz = (f(a) for a in (0.1, 0.2, 0.3) for f in (np.cos, np.sin))
     Rx = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
@@ -129,6 +199,7 @@ def test_every_joint_type_is_read_and_written(kind):
 def test_a_round_trip_keeps_every_pose(seed):
     rng = np.random.default_rng(seed)
     robot = random_tree(rng, n=15, kinds=("revolute", "continuous", "prismatic", "fixed", "floating"))
+    robot = with_resistances(rng, robot)
     back = from_urdf(to_urdf(robot))
     q = random_values(rng, robot)
     mine, theirs = link_poses(back, q), link_poses(robot, q)
@@ -136,7 +207,7 @@ def test_a_round_trip_keeps_every_pose(seed):
         np.testing.assert_allclose(mine[name], pose, atol=1e-12)
     for joint in robot.joints:
         other = back.joint(joint.name)
-        for field in ("lower", "upper", "velocity", "effort", "acceleration", "jerk", "mimic", "damping"):
+        for field in ("lower", "upper", "velocity", "effort", "acceleration", "jerk", "mimic", *RESISTANCES):
             assert getattr(other, field) == getattr(joint, field), (joint.name, field)
     for link in robot.links:
         inertial = back.link(link.name).inertial

@@ -1,10 +1,19 @@
 """Kinematics: where every frame of a robot is, how it moves with the joints, and where it loses a freedom."""
 
-from cspace.kinematics.assembly import Assembly, add_tool, assemble, assemble_chain, mount, screws
+from cspace.kinematics.assembly import (
+    Assembly,
+    add_tool,
+    assemble,
+    assemble_chain,
+    mount,
+    screws,
+    tip_choices,
+)
 from cspace.kinematics.center_of_mass import center_of_mass, center_of_mass_jacobian
 from cspace.kinematics.forward import forward_kinematics, forward_kinematics_all
 from cspace.kinematics.jacobian import fk_jacobian, jacobian, jacobian_dot
 from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.kinematics.limits import require_limits
 from cspace.kinematics.manipulability import (
     Ellipsoid,
     distance_to_singularity,
@@ -36,8 +45,10 @@ __all__ = [
     "manipulability_ellipsoid",
     "mount",
     "random_configurations",
+    "require_limits",
     "screws",
     "singular_values",
     "singularity",
+    "tip_choices",
     "workspace",
 ]

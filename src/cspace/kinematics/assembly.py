@@ -12,6 +12,7 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Chain, Description, Limits, Tree, chain, default_tip, tree
+from cspace.model.joint import RESISTANCES
 from cspace.model.tree import lump_links
 from cspace.spatial.poses import invert_pose
 from cspace.spatial.vectors import frame_along
@@ -196,7 +197,7 @@ def _shared(source: Tree | Chain, description: Description | None, back: Array, 
 
 def _resistances(names: tuple[str, ...], description: Description | None) -> dict[str, Array]:
     """What the joints themselves oppose to motion, (n,) each: armature, damping, friction."""
-    rows = dict.fromkeys(("armature", "damping", "friction"), np.zeros(len(names)))
+    rows = dict.fromkeys(RESISTANCES, np.zeros(len(names)))
     if description is None:
         return rows
     known = description.joint_by_name  # the parts of a planar joint are name/x, name/y and name/turn

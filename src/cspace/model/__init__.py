@@ -17,7 +17,7 @@ from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.link_matrices import LinkMatrices, link_matrices
 from cspace.model.mjcf import from_mjcf
-from cspace.model.mounting import mounted, with_frame
+from cspace.model.mounting import mounted, with_body, with_frame
 from cspace.model.screws import from_screws, twists
 from cspace.model.srdf import GroupState, JointGroup, Srdf, read_srdf, with_srdf
 from cspace.model.toml import from_toml
@@ -71,6 +71,7 @@ __all__ = [
     "tree",
     "tree_freedoms",
     "twists",
+    "with_body",
     "with_frame",
     "with_srdf",
 ]

@@ -45,6 +45,9 @@ LIMIT_UNITS: Final = "limits [rad or m, s, N·m or N]"
 LIMIT_FIELDS: Final = ("lower", "upper", "velocity", "acceleration", "jerk", "effort")
 """The limits of a joint, in the order of Limits."""
 
+RESISTANCES: Final = ("damping", "friction", "armature")
+"""What a joint itself opposes to motion."""
+
 
 @dataclass(frozen=True)
 class Mimic:
@@ -73,10 +76,12 @@ class Joint:
     origin (4, 4): joint frame in the parent link [m]. axis (3,): unit direction in the joint frame (the
     normal of a planar joint). lower, upper: range [rad or m], ±inf where unlimited. velocity [rad/s or
     m/s], acceleration, jerk, effort [N·m or N]: largest magnitudes, inf where unknown. damping [N·m·s/rad or
-    N·s/m], friction [N·m or N]: as in URDF, None where unknown. armature: the inertia of the rotor as the joint
-    feels it, n² J behind a gear of ratio n [kg·m² or kg], None where unknown. mimic: the joint it follows.
+    N·s/m], friction [N·m or N]: as in URDF, None where unknown. armature: the inertia of the rotor as the
+    joint feels it, n² J behind a gear of ratio n [kg·m² or kg], None where unknown. mimic: the joint it
+    follows.
 
-    Raises InputError for limits upside down, a zero axis, NaN; UnknownNameError for an unknown type.
+    Raises InputError for limits upside down, a zero axis, NaN, a negative armature; UnknownNameError for an
+    unknown type.
     """
 
     name: str
@@ -111,10 +116,12 @@ class Joint:
             store(self, "axis", unit_axis(self.axis, f"axis of {subject}"))
         for name in LIMIT_FIELDS:
             store(self, name, check_number(getattr(self, name), f"{name} limit of {subject}"))
-        for name in ("damping", "friction", "armature"):
+        for name in RESISTANCES:
             value = getattr(self, name)
             if value is not None:
                 store(self, name, finite_number(value, f"{name} of {subject}"))
+        if self.armature is not None and self.armature < 0.0:
+            raise InputError(f"armature of {subject} is {self.armature:g}; it must not be negative")
         self._check_limits(subject)
 
     def _check_limits(self, subject: str) -> None:

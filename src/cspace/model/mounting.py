@@ -10,7 +10,9 @@ from cspace.errors import InputError
 from cspace.model.chain import rigid_group, zero_poses
 from cspace.model.description import Description
 from cspace.model.joint import Joint
-from cspace.model.link import Link
+from cspace.model.link import Inertial, Link
+from cspace.model.tree import lump_bodies
+from cspace.model.values import IDENTITY
 from cspace.spatial.poses import invert_pose
 
 
@@ -25,6 +27,20 @@ def with_frame(
     joint = free_name(f"{link}_fixed", description.joint_by_name)
     fixed = Joint(joint, "fixed", description.link(parent).name, link, T_parent_frame)
     return replace(description, links=(*description.links, Link(link)), joints=(*description.joints, fixed))
+
+
+def with_body(
+    description: Description, link: str, body: Inertial, T_link_body: Array = IDENTITY
+) -> Description:
+    """The robot with one more body, fixed to a link: the link has the mass properties of both.
+
+    T_link_body (4, 4): the frame of the body in the link. Raises UnknownNameError for an unknown link.
+    """
+    old = description.link(link)
+    parts = [] if old.inertial is None else [(old.inertial, IDENTITY)]
+    parts.append((body, T_link_body))
+    heavier = replace(old, inertial=Inertial(*lump_bodies(parts)))
+    return replace(description, links=tuple(heavier if each is old else each for each in description.links))
 
 
 def mounted(description: Description, base: str, T_world_base: Array, name: str = "world") -> Description:

@@ -15,7 +15,7 @@ from cspace.files import read_text
 from cspace.model.description import Description, Provenance, Source
 from cspace.model.dh import DHTable, from_dh
 from cspace.model.files import check_folders, path_of
-from cspace.model.joint import LIMIT_FIELDS, Joint, Loop, Mimic
+from cspace.model.joint import LIMIT_FIELDS, RESISTANCES, Joint, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.screws import from_screws
 from cspace.model.structure import ElementError
@@ -33,7 +33,7 @@ ABOUT = ("format", "name", "title", "vendor", "aliases", "missing", "sources", "
 FORMS = {"joints": ("links", "joints", "loops"), "screws": ("screws",), "dh": ("dh",)}
 PLACE = ("origin", "xyz", "rpy")
 ENDS = ("name", "type", "parent", "child")
-JOINT_KEYS = (*ENDS, *PLACE, "axis", *LIMIT_FIELDS, "damping", "friction", "mimic")
+JOINT_KEYS = (*ENDS, *PLACE, "axis", *LIMIT_FIELDS, *RESISTANCES, "mimic")
 GEOMETRY_KEYS = ("shape", "size", *PLACE, "name", "mesh", "scale", "color")
 LETTERS = {"revolute": "R", "continuous": "R", "prismatic": "P", "fixed": "F"}
 INERTIAL_KEYS = ("mass", "com", "inertia")
@@ -184,7 +184,7 @@ class _Reader:
     def joint(self, table: Table) -> Joint:
         table.known(JOINT_KEYS)
         ends, mimic = self.ends(table), self.mimic(table)
-        numbers = (*LIMIT_FIELDS, "damping", "friction")
+        numbers = (*LIMIT_FIELDS, *RESISTANCES)
         known: dict[str, Any] = {key: table.number(key) for key in numbers if key in table}
         return self.at(table, lambda: Joint(**ends, mimic=mimic, **known))
 

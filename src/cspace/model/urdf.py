@@ -15,9 +15,10 @@ from cspace.math.wrapping import TURN
 from cspace.model.attributes import complain_at, fault_at, read_floats, read_number, slip_in, text_of
 from cspace.model.description import Description
 from cspace.model.files import check_folders
-from cspace.model.joint import JOINT_TYPES, Joint, Mimic
+from cspace.model.joint import JOINT_TYPES, RESISTANCES, Joint, Mimic
 from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
 from cspace.model.structure import ElementError
+from cspace.model.transmissions import read_armatures
 from cspace.model.values import IDENTITY, X_AXIS, freeze_array, from_rpy
 from cspace.model.xml import Element, parse_source
 from cspace.tolerances import DEGREE_LIMITS, UNLIMITED
@@ -37,11 +38,13 @@ ATTRIBUTES: Final[dict[str, frozenset[str]]] = {
     "axis": frozenset({"xyz"}),
     "limit": frozenset({"lower", "upper", "velocity", "effort", "acceleration", "jerk"}),
     "mimic": frozenset({"joint", "multiplier", "offset"}),
-    "dynamics": frozenset({"damping", "friction"}),
+    "dynamics": frozenset(RESISTANCES),
     "inertia": frozenset({"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}),
     "mesh": frozenset({"filename", "scale"}),
 }
 """The elements and attributes of URDF, to tell a slip of the pen from an extension."""
+DRAKE_ACCELERATION: Final = "drake:acceleration"
+"""Drake's name for the limit that URDF does not have."""
 OTHER_ROOTS = {
     "mujoco": "this is MJCF (MuJoCo), which load_robot and model.from_mjcf read",
     "sdf": "this is SDF (Gazebo); convert it to URDF",
@@ -57,6 +60,7 @@ def from_urdf(source: str | os.PathLike[str] | bytes, *, package_paths: Sequence
     package:// names are looked for first.
     Links, fixed joints and their frames are all kept. Joints: revolute, continuous, prismatic, fixed,
     floating, planar. A revolute or prismatic joint without <limit> is unlimited. Meshes are not opened.
+    Armature: armature= of <dynamics>, or <drake:rotor_inertia> and <drake:gear_ratio> of transmissions.
     Raises DescriptionError with file and line for whatever is wrong in the file.
     """
     return urdf_description(parse_source(source), package_paths)
@@ -75,6 +79,7 @@ class _Reader:
         self.beside = None if path is None else os.path.dirname(os.path.abspath(path))
         self.package_paths = check_folders(package_paths)
         self.colors: dict[str, Color] = {}
+        self.armatures: dict[str, float] = {}
 
     def read(self, root: Element) -> Description:
         self.check_root(root)
@@ -82,6 +87,8 @@ class _Reader:
         for material in root.all("material"):
             self.color(material)
         links = [(element, self.link(element)) for element in root.all("link")]
+        names = {element.attributes.get("name", "").strip() for element in root.all("joint")}
+        self.armatures = read_armatures(root, names)
         joints = [(element, self.joint(element)) for element in root.all("joint")]
         self.warn_of_degrees(joints)
         unnamed = "robot" if root.path is None else Path(root.path).stem
@@ -198,7 +205,7 @@ class _Reader:
         axis = element.first("axis")
         direction: Any = X_AXIS if axis is None else read_floats(axis, "xyz", (1.0, 0.0, 0.0), 3)
         origin = self.origin(element)
-        numbers = self.limits(element, kind) | self.dynamics(element)
+        numbers = self.limits(element, kind) | self.dynamics(element, name)
         mimic = self.mimic(element) if kind != "fixed" else None
         return complain_at(
             axis if axis is not None and not any(direction) else element,
@@ -223,6 +230,8 @@ class _Reader:
         for name in ("velocity", "effort", "acceleration", "jerk"):
             if name in limit.attributes:
                 found[name] = read_number(limit, name)
+        if "acceleration" not in found and DRAKE_ACCELERATION in limit.attributes:
+            found["acceleration"] = read_number(limit, DRAKE_ACCELERATION)
         return {name: math.copysign(math.inf, x) if abs(x) >= UNLIMITED else x for name, x in found.items()}
 
     def warn_of_degrees(self, joints: Sequence[tuple[Element, Joint]]) -> None:
@@ -238,10 +247,13 @@ class _Reader:
             warnings.warn(place + text, stacklevel=2)
             return
 
-    def dynamics(self, joint: Element) -> dict[str, Any]:
+    def dynamics(self, joint: Element, name: str) -> dict[str, Any]:
+        """What <dynamics> says; an armature that it names counts before those of transmissions."""
+        found = {"armature": self.armatures[name]} if name in self.armatures else {}
         element = joint.first("dynamics")
-        names = () if element is None else ("damping", "friction")
-        return {name: read_number(element, name) for name in names if name in element.attributes}  # type: ignore
+        if element is not None:
+            found |= {key: read_number(element, key) for key in RESISTANCES if key in element.attributes}
+        return found
 
     def mimic(self, joint: Element) -> Mimic | None:
         element = joint.first("mimic")

@@ -13,6 +13,7 @@ from cspace.files import write_text
 from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import SHAPES, Geometry, Inertial, Link
+from cspace.model.transmissions import NAMESPACE, transmission_lines
 from cspace.model.values import IDENTITY
 from cspace.spatial import to_rpy
 from cspace.tolerances import UNLIMITED
@@ -29,7 +30,8 @@ def to_urdf(description: Description, path: str | os.PathLike[str] | None = None
     """The robot as the text of a URDF file, written to `path` as well if there is one.
 
     Reading it back gives the same tree, with poses equal to rounding. URDF demands numbers where a limit is
-    unknown: tolerances.UNLIMITED stands for infinity. Named poses and sources have no place in URDF.
+    unknown: tolerances.UNLIMITED stands for infinity. Armature is written as the rotors of transmissions, as
+    Drake reads it. Named poses and sources have no place in URDF.
     A file is written whole or not at all. Raises InputError for a robot with closed loops, for names that XML
     cannot hold and for a path that cannot be written.
     """
@@ -38,11 +40,15 @@ def to_urdf(description: Description, path: str | os.PathLike[str] | None = None
             f"robot {description.name!r} has {len(description.loops)} closed loops, but URDF supports trees"
             " only; write it as TOML"
         )
-    lines = ['<?xml version="1.0" encoding="utf-8"?>', f"<robot name={_quoted(description.name)}>"]
+    geared = [joint for joint in description.joints if joint.armature is not None]
+    extension = f' xmlns:drake="{NAMESPACE}"' if geared else ""
+    lines = ['<?xml version="1.0" encoding="utf-8"?>', f"<robot name={_quoted(description.name)}{extension}>"]
     for link in description.links:
         lines.extend(_link(link))
     for joint in description.joints:
         lines.extend(_joint(joint))
+    for joint in geared:
+        lines.extend(transmission_lines(_quoted(joint.name), joint.armature or 0.0))
     lines.append("</robot>")
     text = "\n".join(lines) + "\n"
     if path is not None:

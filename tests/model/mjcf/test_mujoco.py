@@ -1,5 +1,7 @@
 """The reader against MuJoCo itself: frames, limits, masses, forces, of handmade and of random models."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -116,6 +118,41 @@ def test_what_is_read_survives_urdf_and_toml(seed):
     robot, model = from_mjcf(text), compiled(text)
     for back in (from_urdf(to_urdf(robot)), from_toml(to_toml(robot))):
         check_frames(back, model, rng)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_armature_damping_and_friction_are_those_that_mujoco_feels(seed):
+    """The mass matrix with them less the one without, and the passive forces at unit velocity."""
+    rng = np.random.default_rng(seed)
+    names = ("armature", "damping", "frictionloss")
+
+    def given(n, share=0.7):
+        return "".join(f' {name}="{rng.uniform(0, 2)!r}"' for name in names[:n] if rng.random() < share)
+
+    bodies = "".join(
+        f'<body pos="0 0 1"><joint name="j{k}" type="{kind}" axis="0 1 0"{given(3)}/><geom size="0.1"/>'
+        for k, kind in enumerate(("hinge", "slide", "hinge", "slide"))
+    )
+    kinds = ("motor", "position", "velocity", "general")
+    actuators = ""
+    for _ in range(5):
+        kind, k, gear = kinds[int(rng.integers(4))], int(rng.integers(4)), float(rng.uniform(-9, 9))
+        actuators += f'<{kind} joint="j{k}" gear="{gear!r}"{given(2)}/>'
+    text = f"<mujoco><worldbody>{bodies}{'</body>' * 4}</worldbody><actuator>{actuators}</actuator></mujoco>"
+    robot, model = from_mjcf(text), mujoco.MjModel.from_xml_string(text)
+    bare = mujoco.MjModel.from_xml_string(re.sub(r' (armature|damping|frictionloss)="[^"]*"', "", text))
+    matrices = []
+    for each in (model, bare):
+        data, M = mujoco.MjData(each), np.zeros((4, 4))
+        data.qvel[:] = 1.0
+        mujoco.mj_forward(each, data)
+        mujoco.mj_fullM(each, data, M)
+        matrices.append((M, data.qfrc_passive.copy()))
+    (M, passive), (M_bare, passive_bare) = matrices
+    joints = [robot.joint(f"j{k}") for k in range(4)]
+    np.testing.assert_allclose(M - M_bare, np.diag([joint.armature or 0.0 for joint in joints]), atol=1e-12)
+    np.testing.assert_allclose(passive_bare - passive, [joint.damping or 0.0 for joint in joints], atol=1e-12)
+    np.testing.assert_allclose(model.dof_frictionloss, [joint.friction or 0.0 for joint in joints])
 
 
 def test_masses_are_scaled_to_a_total_as_mujoco_does():

@@ -42,6 +42,22 @@ def test_classes_give_what_an_element_leaves_out():
     assert (pan.damping, pan.friction, grip.damping) == (2.0, 0.5, 2.0)
 
 
+def test_actuators_add_their_damping_and_armature_behind_their_gears():
+    """As MuJoCo has it, gear² times their own; defaults count, and several actuators add up."""
+    body = '<body name="b"><joint name="j" damping="1"{}/><geom size="1"/></body>'
+    classes = '<default><joint frictionloss="3"/><motor armature="0.01"/></default>'
+    text = world(body.format(' armature="0.1"'), classes).replace(
+        "</mujoco>",
+        """<actuator><motor joint="j" gear="-10" damping="0.5"/><position jointinparent="j" armature="0.02"/>
+        <general site="s" armature="7"/></actuator></mujoco>""",
+    )
+    joint = from_mjcf(text).joint("j")
+    assert joint.armature == pytest.approx(0.1 + 100 * 0.01 + 0.02)
+    assert (joint.damping, joint.friction) == (pytest.approx(1 + 100 * 0.5), 3.0)
+    plain = from_mjcf(world(body.format(""), classes)).joint("j")
+    assert (plain.armature, plain.damping, plain.friction) == (None, 1.0, 3.0)
+
+
 def test_efforts_are_those_of_joints_and_actuators():
     robot = from_mjcf(ARM)
     efforts = {joint.name: joint.effort for joint in robot.moving_joints}

@@ -1,10 +1,10 @@
-"""The joints of MJCF, each with its own link behind it, the couplings between them, and their actuators."""
+"""The joints of MJCF, each with its own link behind it, and the couplings between them."""
 
 from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -12,6 +12,7 @@ from cspace.arrays import Array
 from cspace.errors import suggest
 from cspace.model.attributes import complain_at, fault_at
 from cspace.model.joint import Joint, Mimic
+from cspace.model.mjcf.actuators import Drive, add_known, largest_magnitude, read_resistance
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.settings import Settings
 from cspace.model.values import IDENTITY, X_AXIS, rotation_about, translation_by, unit_axis
@@ -28,7 +29,7 @@ class Draft:
 
     kind: "hinge", "slide", "free" or "fixed". anchor (4, 4): where it acts, in the body. axis (3,): a unit
     vector in the body. ref: its value where the body is as drawn [rad or m]. lower, upper, effort, damping,
-    friction: as in Joint.
+    friction, armature: as in Joint.
     """
 
     name: str
@@ -42,13 +43,14 @@ class Draft:
     effort: float = math.inf
     damping: float | None = None
     friction: float | None = None
+    armature: float | None = None
 
     def motion(self, by: float) -> Array:
         """The motion (4, 4) by an angle [rad] or a distance [m]."""
         return rotation_about(self.axis, by) if self.kind == "hinge" else translation_by(by * self.axis)
 
-    def joint(self, parent: str, child: str, place: Array, coupling: Coupling | None, effort: float) -> Joint:
-        """The joint between two links, standing at `place` (4, 4) in its parent, driven by `effort`."""
+    def joint(self, parent: str, child: str, place: Array, coupling: Coupling | None, drive: Drive) -> Joint:
+        """The joint between two links, standing at `place` (4, 4) in its parent, with what drives it."""
         if self.kind in ("free", "fixed"):
             return Joint(self.name, "floating" if self.kind == "free" else "fixed", parent, child, place)
         place = place @ self.motion(-self.ref)
@@ -58,8 +60,10 @@ class Draft:
         limited = math.isfinite(self.lower)
         kind = "prismatic" if self.kind == "slide" else "revolute" if limited else "continuous"
         mimic = None if coupling is None else coupling.mimic(self)
-        numbers: dict[str, Any] = {"lower": self.lower, "upper": self.upper}
-        numbers |= {"effort": min(effort, self.effort), "damping": self.damping, "friction": self.friction}
+        numbers: dict[str, Any] = {"lower": self.lower, "upper": self.upper, "friction": self.friction}
+        numbers |= {"effort": min(drive.effort, self.effort)}
+        numbers |= {"damping": add_known(self.damping, drive.damping)}
+        numbers |= {"armature": add_known(self.armature, drive.armature)}
         return Joint(self.name, kind, parent, child, place, self.axis, mimic=mimic, **numbers)
 
 
@@ -81,13 +85,10 @@ def read_joint(given: Given, name: str, T_body_frame: Array, settings: Settings)
     direction = given.floats("axis", (0.0, 0.0, 1.0), 3)
     axis = complain_at(given.place("axis"), lambda: unit_axis(R @ direction, f"axis of joint {name!r}"))
     lower, upper = read_limits(given, name, unit, settings)
-    damping, friction = (
-        None if given.holder(key) is None else given.floats(key, None, 1, 9)[0]
-        for key in ("damping", "frictionloss")
-    )
+    resistances = (read_resistance(given, key) for key in ("damping", "frictionloss", "armature"))
     ref, effort = given.number("ref", 0.0) * unit, largest_magnitude(given, "actuatorfrc")
     place = translation_by(anchor)
-    return Draft(name, kind, element, place, axis, ref, lower, upper, effort, damping, friction)
+    return Draft(name, kind, element, place, axis, ref, lower, upper, effort, *resistances)
 
 
 def read_limits(given: Given, name: str, unit: float, settings: Settings) -> tuple[float, float]:
@@ -169,33 +170,3 @@ def joint_named(element: Element, attribute: str, drafts: Mapping[str, Draft]) -
     if drafts[name].kind == "free":
         raise fault_at(element, f"joint {name!r} is free and can be in no equality")
     return drafts[name]
-
-
-def read_efforts(actuators: Iterable[Element], defaults: Defaults) -> dict[str, float]:
-    """The largest force or torque of all actuators on each joint, by its name [N or N·m]; inf where unknown.
-
-    Force is gear · forcerange; of a <motor>, whose force is its control, gear · ctrlrange serves as well.
-    """
-    found: dict[str, float] = {}
-    for element in actuators:
-        given = defaults.given(element)
-        joint = given.text("joint") or given.text("jointinparent")
-        if joint:
-            found[joint] = found.get(joint, 0.0) + read_effort(given)
-    return found
-
-
-def read_effort(given: Given) -> float:
-    """The largest force of one actuator on its joint."""
-    gear = abs(given.floats("gear", (1.0,), 1, 6)[0])
-    force = largest_magnitude(given, "force")
-    if given.element.tag == "motor":
-        force = min(force, largest_magnitude(given, "ctrl"))
-    return gear * force if math.isfinite(force) else math.inf
-
-
-def largest_magnitude(given: Given, what: str) -> float:
-    """The largest magnitude within a range; inf where it does not count."""
-    low, high = given.span(f"{what}range")
-    limited = given.word(f"{what}limited", "auto", ("true", "false", "auto"))
-    return max(abs(low), abs(high)) if limited != "false" and low < high else math.inf

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import accumulate
@@ -14,10 +13,11 @@ from cspace.model.attributes import complain_at, fault_at, read_floats
 from cspace.model.description import Description
 from cspace.model.files import check_folders
 from cspace.model.link import Geometry, Inertial, Link
+from cspace.model.mjcf.actuators import Drive, read_drives
 from cspace.model.mjcf.document import Includes
 from cspace.model.mjcf.geoms import Geom, Geoms
 from cspace.model.mjcf.given import Defaults, Given
-from cspace.model.mjcf.joints import Coupling, Draft, read_couplings, read_efforts, read_joint
+from cspace.model.mjcf.joints import Coupling, Draft, read_couplings, read_joint
 from cspace.model.mjcf.masses import (
     correct_inertial,
     has_weight,
@@ -76,13 +76,13 @@ class _Reader:
         skeleton = self.skeleton
         equalities = self.sections("equality")
         followers = read_couplings(equalities, self.defaults, skeleton.drafts)
-        driven = read_efforts(self.sections("actuator"), self.defaults)
+        driven = read_drives(self.sections("actuator"), self.defaults)
         weights = scale_inertials(self.weights, self.settings)
         links = tuple(self.link(name, weights.get(name)) for name in skeleton.links)
         joints = []
         for draft, parent, child, place in skeleton.segments:
-            effort = driven.get(draft.name, math.inf)
-            make = partial(draft.joint, parent, child, place, followers.get(draft.name), effort)
+            drive = driven.get(draft.name, Drive())
+            make = partial(draft.joint, parent, child, place, followers.get(draft.name), drive)
             joints.append(complain_at(draft.element, make))
         ties = read_loops(equalities, self.defaults, skeleton)
         poses = read_keyframes(self.sections("keyframe"), skeleton.drafts, followers)
