@@ -185,9 +185,11 @@ def test_the_planar_arm_has_the_mass_matrix_of_the_textbooks():
         np.testing.assert_allclose(mass_matrix(robot, q), [[first, coupling], [coupling, corner]], atol=1e-14)
 
 
-def test_the_friction_of_the_puma_is_that_of_its_motors_behind_the_gears():
+def test_friction_and_rotors_of_the_puma_are_those_of_its_motors_behind_the_gears():
     gears = np.array([62.6111, 107.815, 53.7063, 76.0364, 71.923, 76.686])
     viscous = np.array([1.48e-3, 0.817e-3, 1.38e-3, 71.2e-6, 82.6e-6, 36.7e-6])
     for name in ("puma560", "puma560_dh"):
         damping = [joint.damping for joint in load_description(name).moving_joints]
         np.testing.assert_allclose(damping, gears**2 * viscous, rtol=1e-5)
+        armature = [joint.armature for joint in load_description(name).moving_joints]
+        np.testing.assert_allclose(armature, gears**2 * np.repeat([200e-6, 33e-6], 3), rtol=1e-5)

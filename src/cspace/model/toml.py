@@ -37,7 +37,7 @@ JOINT_KEYS = (*ENDS, *PLACE, "axis", *LIMIT_FIELDS, *RESISTANCES, "mimic")
 GEOMETRY_KEYS = ("shape", "size", *PLACE, "name", "mesh", "scale", "color")
 LETTERS = {"revolute": "R", "continuous": "R", "prismatic": "P", "fixed": "F"}
 INERTIAL_KEYS = ("mass", "com", "inertia")
-DH_KEYS = ("name", "type", "alpha", "a", "d", "theta", *LIMIT_FIELDS, "damping", "friction", *INERTIAL_KEYS)
+DH_KEYS = ("name", "type", "alpha", "a", "d", "theta", *LIMIT_FIELDS, *RESISTANCES, *INERTIAL_KEYS)
 
 
 def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = ()) -> Description:
@@ -230,7 +230,7 @@ class _Reader:
         for row in rows:
             row.known(DH_KEYS)
         columns = self.columns(rows)
-        for key in ("damping", "friction"):
+        for key in RESISTANCES:
             columns[key] = [row.number(key) if key in row else None for row in rows]
         columns["inertials"] = [self.inertial(row) for row in rows]
         alpha, a, d, theta = (
