@@ -47,11 +47,7 @@ class Case:
         self.path = urdf_files()[options.pop("file", name)]
         self.robot = cs.Robot.from_urdf(self.path, **options)
         self.oracle = PinocchioRobot(self.path, self.robot)
-        locked = [
-            j
-            for j in self.oracle.model.names
-            if j not in self.oracle.law and j not in ("universe", "root_joint")
-        ]
+        locked = [j for j in self.oracle.model.names if j not in self.oracle.law and j not in ("universe", "root_joint")]
         model = self.oracle.model
         if locked:
             ids = [model.getJointId(joint) for joint in locked]
@@ -170,9 +166,7 @@ def measure(calls: Calls, rounds: int, repeat: int) -> dict[str, dict[str, dict[
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rounds", type=int, default=60)
     parser.add_argument("--batch", type=int, default=100_000)
     parser.add_argument("--robots", nargs="+", choices=ROBOTS, default=list(ROBOTS))

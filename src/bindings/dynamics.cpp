@@ -164,8 +164,7 @@ bool dynamics_rows(nb::handle robot, const std::string& what, const ConstDoubles
     rows.force = values_of(force, count, dof);
     rows.T_world_base = shared_values(T_world_base, count, 16, rows.base_stride);
     const bool is_mass = what == "mass_matrix", is_forward = what == "forward_dynamics";
-    if (result.size != count * dof * (is_mass ? dof : 1))
-        throw nb::value_error("the result has the wrong size");
+    if (result.size != count * dof * (is_mass ? dof : 1)) throw nb::value_error("the result has the wrong size");
     if (is_forward && !rows.force) throw nb::value_error("forward dynamics needs torques");
     rows.result = result.data;
     return run_kernel(rows, count, threads,

@@ -8,8 +8,8 @@
 
 namespace cspace::dynamics {
 
-// Rows of arguments and results; each row has n = n_coordinates joints and dof = n velocities, six more, [v;
-// ω] of the base at its origin in world axes, where it floats. rubs: joints have damping and dry friction.
+// Rows of arguments and results; each row has n = n_coordinates joints and dof = n velocities, six more, [v; ω]
+// of the base at its origin in world axes, where it floats. rubs: joints have damping and dry friction.
 struct Rows {
     Multibody bodies;
     Vec3d gravity;
@@ -26,6 +26,8 @@ inline std::size_t scratch_bytes(const Rows& rows, std::size_t lanes = 8) {
     const std::size_t n = std::size_t(rows.bodies.n_links), dof = std::size_t(rows.bodies.n_coordinates) + 6;
     return 8 * lanes * (64 * n + dof * (dof + 5) + 8);
 }
+
+
 
 }  // namespace cspace::dynamics
 

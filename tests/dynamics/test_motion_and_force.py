@@ -95,9 +95,7 @@ def test_gravity_torques_are_the_slope_of_the_potential(robot, rng):
     ]
     np.testing.assert_allclose(g, slope, atol=1e-8 * scale(g))
     rest = np.zeros(robot.dof)
-    np.testing.assert_allclose(
-        robot.inverse_dynamics(q, rest, rest, gravity=gravity), g, atol=1e-13 * scale(g)
-    )
+    np.testing.assert_allclose(robot.inverse_dynamics(q, rest, rest, gravity=gravity), g, atol=1e-13 * scale(g))
 
 
 @pytest.mark.parametrize("robot", ROBOTS, ids=ids)
