@@ -49,6 +49,11 @@ def rated(robots: list[Description]) -> int:
     return sum(not {"velocity", "effort"} & set(robot.provenance.missing) for robot in robots)
 
 
+def weighed(robots: list[Description]) -> int:
+    """How many robots have masses, centres of mass and inertia tensors."""
+    return sum("inertia" not in robot.provenance.missing for robot in robots)
+
+
 def posed(robots: list[Description]) -> int:
     """How many robots have named poses."""
     return sum(bool(robot.poses) for robot in robots)
@@ -88,9 +93,11 @@ def page_text(robots: list[Description]) -> str:
         "tip are links of the source, and the frames between stand on the joint axes, parallel to the base",
         "at zero. Both are [TOML files of robots](robots.md#toml); a",
         "[decision](decisions/catalogue-format.md) gives the reasons.",
-        f"{rated(robots)} robots have velocity and effort limits, {posed(robots)} have named poses.",
-        "Each file lists what it lacks under `missing` and says where each group of numbers is from. A",
-        "limit that the source prints as a multiple of half a degree with nine digits or more is that",
+        f"{weighed(robots)} robots have masses and inertia tensors, {rated(robots)} have velocity and effort",
+        f"limits, {posed(robots)} have named poses. Each file lists what it lacks under `missing` and says",
+        "where each group of numbers is from. For masses and limits",
+        "[a table below](#masses-and-limits) says it, too.",
+        "A limit that the source prints as a multiple of half a degree with nine digits or more is that",
         "angle to the last digit.",
         "",
         "| name | joints | robot | vendor | other names | fields | source | licence |",
@@ -98,9 +105,51 @@ def page_text(robots: list[Description]) -> str:
     ]
     for robot in robots:
         name, _, joints, title, vendor, source, licence, aliases, _ = map(str_or_tuple, row(robot))
-        cells = [f"`{name}`", joints, title, vendor, aliases, fields_text(robot), source, licence]
-        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-    return "\n".join(lines) + "\n"
+        lines.append(
+            table_row([f"`{name}`", joints, title, vendor, aliases, fields_text(robot), source, licence])
+        )
+    return "\n".join([*lines, *masses_and_limits(robots)]) + "\n"
+
+
+def table_row(cells: list[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+GROUPS = (("inertia",), ("velocity", "effort"), ("acceleration", "jerk"), ("damping", "friction", "armature"))
+"""The groups of sources that share a column of the second table."""
+
+
+def masses_and_limits(robots: list[Description]) -> list[str]:
+    """The lines of the second table: per robot the total mass, and the sources of masses and limits."""
+    lines = [
+        "",
+        "## Masses and limits",
+        "",
+        "The mass is that of all links in the file, with the base where the source gives its mass. A tensor",
+        "is about the centre of mass of its link, in the axes of the link. The last column is about damping,",
+        "friction and the inertia of the rotors as the joints feel it. An empty cell means that no source",
+        "was found.",
+        "",
+        "| name | mass [kg] | masses, tensors | velocity, effort | acceleration, jerk | friction |",
+        "|---|---|---|---|---|---|",
+    ]
+    for robot in robots:
+        cells = [sources_text(robot, group) for group in GROUPS]
+        mass = sum(link.inertial.mass for link in robot.links if link.inertial)
+        if any(cells):
+            lines.append(table_row([f"`{robot.name}`", f"{mass:.2f}" if mass else "", *cells]))
+    return lines
+
+
+def sources_text(robot: Description, groups: tuple[str, ...]) -> str:
+    """The sources of the groups and their licences, each once, after the groups that it is the source of."""
+    found: dict[str, list[str]] = {}
+    for group in groups:
+        if (entry := robot.provenance.sources.get(group)) is not None:
+            found.setdefault(f"{entry.source}; {entry.licence}", []).append(group)
+    if list(found.values()) == [list(groups)]:
+        return next(iter(found))
+    return "<br>".join(f"{', '.join(named)}: {text}" for text, named in found.items())
 
 
 def str_or_tuple(value: object) -> str:

@@ -116,14 +116,14 @@ def test_a_faulty_link_may_hide_in_the_body_that_it_is_fixed_to():
 
 
 def test_a_robot_without_masses_says_so():
-    report = load_robot("ur5e").inertia_report()
+    report = load_robot("irb120").inertia_report()
     assert not report
     assert (
         repr(report)
-        == "<InertiaReport of ur5e: no link of ur5e has a mass; add inertial data to its description>"
+        == "<InertiaReport of irb120: no link of irb120 has a mass; add inertial data to its description>"
     )
-    assert set(report.singular) == set(load_robot("ur5e").joint_names)
-    assert load_robot("ur5e").with_payload(1.0).inertia_report().singular
+    assert set(report.singular) == set(load_robot("irb120").joint_names)
+    assert load_robot("irb120").with_payload(1.0).inertia_report().singular
 
 
 def chain_of(*bodies, axes=None, **options):

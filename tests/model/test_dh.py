@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from cspace.errors import InputError, InputTypeError, UnknownNameError
-from cspace.model import Limits, chain, dh_matrix, from_dh, from_screws, from_urdf, to_dh, to_urdf
+from cspace.model import Inertial, Limits, chain, dh_matrix, from_dh, from_screws, from_urdf, to_dh, to_urdf
 from cspace.model.dh import DHTable
+from cspace.robot import Robot
 from cspace.spatial import pose
 from model.random_robots import random_pose
 from oracles.forward import motion, product_of_exponentials
@@ -287,3 +288,68 @@ def test_a_table_in_degrees_is_noticed_and_one_in_radians_is_not(column, convent
             from_dh(table, convention=convention)
         table[1, 1:3] = 90.0  # a long link is no angle
         from_dh(table, convention=convention)
+
+
+def random_bodies(rng, n):
+    """Mass properties of n random bodies, in the frames of a table."""
+    arms = rng.normal(size=(n, 3, 3))
+    numbers = zip(rng.random(n), rng.normal(size=(n, 3)), arms @ np.swapaxes(arms, 1, 2), strict=True)
+    return [Inertial(*row) for row in numbers]
+
+
+@pytest.mark.parametrize("convention", CONVENTIONS)
+@pytest.mark.parametrize("seed", range(4))
+def test_bodies_of_a_table_stand_in_its_frames(convention, seed):
+    """Frame i is T_base A_1 … A_i: there are the centre of mass and the tensor of body i."""
+    rng = np.random.default_rng(seed)
+    n = 5
+    types = "".join(rng.choice(["R", "P", "F"], n, p=[0.6, 0.25, 0.15]))
+    dh = DHTable(convention, *rng.normal(size=(4, n)), types, random_pose(rng), random_pose(rng))
+    bodies = random_bodies(rng, n)
+    robot = Robot(from_dh(dh, inertials=bodies))
+    q = rng.uniform(-2, 2, robot.dof)
+    frame, mass, weighted = dh.T_base, 0.0, np.zeros(3)
+    for A, body, link in zip(dh.matrices(q), bodies, robot.description.links[1:], strict=False):
+        frame = frame @ A
+        mass += body.mass
+        weighted += body.mass * (frame[:3, :3] @ body.com + frame[:3, 3])
+        R = (np.eye(4) if link.name == robot.base else robot.fk(q, frame=link.name))[:3, :3]
+        turned = R @ link.inertial.inertia @ R.T
+        np.testing.assert_allclose(turned, frame[:3, :3] @ body.inertia @ frame[:3, :3].T, atol=1e-12)
+    assert robot.mass == pytest.approx(mass, rel=1e-14)
+    np.testing.assert_allclose(robot.center_of_mass(q), weighted / mass, atol=1e-12)
+
+
+def test_a_row_may_have_no_body_and_no_friction():
+    body = Inertial(2.0, np.zeros(3), np.eye(3))
+    table = [(0, 0.5, 0, 0), (0, 0.3, 0, 0)]
+    robot = from_dh(
+        table, convention="standard", inertials=[None, body], damping=[0.1, None], armature=[0.2, 0.3]
+    )
+    assert [link.inertial is None for link in robot.links] == [True, True, False, True]
+    np.testing.assert_array_equal(robot.links[2].inertial.com, [0.3, 0, 0])
+    assert [joint.damping for joint in robot.joints[:2]] == [0.1, None]
+    assert [joint.friction for joint in robot.joints[:2]] == [None, None]
+    assert [joint.armature for joint in robot.joints[:2]] == [0.2, 0.3]
+
+
+@pytest.mark.parametrize(
+    ("more", "error", "says"),
+    [
+        (
+            {"inertials": [None]},
+            InputError,
+            "inertials has 1 entries for 2 rows of the table; give",
+        ),
+        ({"damping": 0.1}, InputError, "damping has 1 entries for 2 rows"),
+        ({"friction": [0.1, np.nan]}, InputError, "friction of joint 'joint_2'"),
+        (
+            {"inertials": [1.0, None]},
+            InputTypeError,
+            "inertials contains a float; each entry must be",
+        ),
+    ],
+)
+def test_bad_bodies_of_a_table_are_refused(more, error, says):
+    with pytest.raises(error, match=says):
+        from_dh(np.zeros((2, 4)), convention="standard", **more)

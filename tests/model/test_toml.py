@@ -124,6 +124,18 @@ def test_screws_and_tables_are_read():
     np.testing.assert_array_equal(chain(from_toml(DH)).T_zero, expected.T_zero)
 
 
+def test_a_row_of_a_table_may_say_what_its_link_weighs():
+    text = DH.replace("a = 0.5\n", "a = 0.5\nmass = 2.0\ncom = [0.1, 0, 0]\ndamping = 0.3\n", 1)
+    robot = from_toml(text)
+    assert [link.inertial and link.inertial.mass for link in robot.links] == [None, None, 2.0, None, None]
+    np.testing.assert_array_equal(robot.links[2].inertial.com, [0.1, 0, 0])
+    np.testing.assert_array_equal(robot.links[2].inertial.inertia, np.zeros((3, 3)))
+    assert [joint.damping for joint in robot.joints] == [None, 0.3, None, None]
+    again = from_toml(to_toml(robot))
+    assert again.links[2].inertial.mass == 2.0
+    assert again.joints[1].damping == 0.3
+
+
 def same(a, b):
     """Whether two descriptions hold the same numbers, bit for bit."""
     assert [link.name for link in a.links] == [link.name for link in b.links]
@@ -221,6 +233,9 @@ def test_screws_and_tables_survive_as_trees():
         (DH, 'convention = "modified"', 'convention = "modify"', "did you mean 'modified'", None),
         (DH, 'convention = "modified"\n', "", "'convention' is missing", None),
         (DH, "a = 0.5", "b = 0.5", "no key 'b'", None),
+        (DH, "a = 0.5", "com = [0, 0, 1]", "com and inertia need mass", None),
+        (DH, "a = 0.5", "mass = -1", "must not be negative", None),
+        (DH, "a = 0.5", "friction = nan", "friction of joint 'joint_2'", None),
         (DH, "[dh]", "[screws]", "but has screws and dh", None),
         (DH, '"two"', '"two', "malformed TOML", None),
         ("x = 1\n", "x", "y", "must contain one of", None),

@@ -62,7 +62,13 @@ def test_a_robot_says_what_it_is_and_what_it_lacks(name):
         assert (field in about.sources) == bool(known)
         assert len(known) in (0, len(robot.moving_joints))
         assert all(getattr(j, field) > 0 for j in known)
-    assert ("inertia" in about.missing) != any(link.inertial for link in robot.links)
+    for field in ("damping", "friction", "armature"):
+        known = [j for j in robot.moving_joints if getattr(j, field) is not None]
+        assert (field in about.sources) == bool(known)
+        assert len(known) in (0, len(robot.moving_joints))
+    massive = any(link.inertial for link in robot.links)
+    assert ("inertia" in about.missing) != massive
+    assert ("inertia" in about.sources) == massive
     assert ("collision" in about.missing) != any(link.collision for link in robot.links)
     assert ("visual" in about.missing) != any(link.visual for link in robot.links)
     assert ("poses" in about.missing) != bool(robot.poses)
@@ -315,6 +321,10 @@ def test_every_robot_loads_as_a_chain_within_its_limits(name):
         ("ur10e", [120, 120, 180, 180, 180, 180], [330, 330, 150, 54, 54, 54]),
         ("panda", np.degrees([2.175] * 4 + [2.61] * 3), [87] * 4 + [12] * 3),
         ("panda_urdf", np.degrees([2.175] * 4 + [2.61] * 3), [87] * 4 + [12] * 3),
+        ("iiwa7", [98, 98, 100, 130, 140, 180, 180], [176, 176, 110, 110, 110, 40, 40]),
+        ("iiwa14", [85, 85, 100, 75, 130, 135, 135], [320, 320, 176, 176, 110, 40, 40]),
+        ("m1013", [120, 120, 180, 225, 225, 225], [346, 346, 163, 50, 50, 50]),
+        ("xmatepro7", [90, 90, 120, 120, 120, 120, 120], [217, 217, 102, 102, 66, 66, 66]),
     ],
 )
 def test_the_published_velocities_and_torques(name, degrees_per_second, torques):
@@ -372,6 +382,13 @@ def test_a_part_of_a_robot_of_example_robot_data_has_its_names_and_numbers(name,
         np.testing.assert_array_equal(joint.axis, published.axis)
         for field in ("velocity", "effort"):
             assert getattr(joint, field) in (getattr(published, field), np.inf)
+    for link in load_description(name).links:
+        published = whole.link_by_name[link.name].inertial
+        if link.inertial is not None:
+            assert link.inertial.mass == published.mass
+            np.testing.assert_allclose(link.inertial.com, published.com, atol=1e-15, rtol=0)
+            scale = np.abs(published.inertia).max()
+            np.testing.assert_allclose(link.inertial.inertia, published.inertia, atol=1e-12 * scale, rtol=0)
 
 
 FLANGES = {
@@ -414,6 +431,16 @@ def test_the_published_accelerations_and_jerks():
     np.testing.assert_array_equal(panda.jerk, 500 * panda.acceleration)
     np.testing.assert_array_equal(fr3.acceleration, np.full(7, 10))
     np.testing.assert_array_equal(fr3.jerk, 500 * fr3.acceleration)
+
+
+def test_the_measured_accelerations_of_the_iiwa_and_the_published_torques_of_the_puma():
+    """Larsen 2019, in degrees per second and second; Armstrong, Khatib, Burdick 1986."""
+    measured = [490.77, 490.80, 500.77, 650.71, 700.73, 900.66, 900.69]
+    for name in ("iiwa14", "iiwa14_r820", "lbr_iiwa14_r820_tool0"):
+        np.testing.assert_allclose(np.degrees(load_robot(name).limits.acceleration), measured, atol=0.3)
+    for name in ("puma560", "puma560_dh", "puma560_urdf"):
+        effort = load_robot(name).limits.effort
+        np.testing.assert_array_equal(effort, [97.6, 186.4, 89.4, 24.2, 20.1, 21.3])
 
 
 def posed():

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 
 from cspace.arrays import Array, as_arrays, as_floats
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError, InputTypeError, suggest
 from cspace.math.wrapping import TURN
 from cspace.model.description import Description
 from cspace.model.joint import Joint
-from cspace.model.link import Link
+from cspace.model.link import Inertial, Link
 from cspace.model.screws import check_joint_types, joint_rows, link_names, one_freedom_type
 from cspace.model.values import IDENTITY, check_placement, check_size, freeze_array
 from cspace.tables import align_cells, markdown_table, one_line, shown
@@ -173,6 +173,10 @@ def from_dh(
     acceleration: Any = None,
     jerk: Any = None,
     effort: Any = None,
+    damping: Sequence[float | None] | None = None,
+    friction: Sequence[float | None] | None = None,
+    armature: Sequence[float | None] | None = None,
+    inertials: Sequence[Inertial | None] | None = None,
     name: str = "robot",
     joint_names: Sequence[str] | None = None,
     base: str = "base",
@@ -185,9 +189,12 @@ def from_dh(
     row likewise. convention: "standard" or "modified", demanded for plain rows because the two are never
     told apart by the numbers. joint_types: n letters "R", "P" or "F" (fixed row), default all "R". T_base,
     T_tool (4, 4): before the first and after the last row. lower, upper, velocity, acceleration,
-    jerk, effort (n,): limits.
+    jerk, effort (n,): limits. damping, friction, armature (n,): as in Joint. inertials (n,): the mass
+    properties of link i in frame i of the table, as books print them (standard: at the far end of the link;
+    modified: on its axis). None stands for an unknown number or body.
     Warns (UserWarning) if an angle of the rows exceeds 2π, since it is probably in degrees.
-    Raises InputError for a wrong shape or NaN, UnknownNameError for another convention or column.
+    Raises InputError for a wrong shape or NaN, UnknownNameError for another convention or column,
+    InputTypeError for inertials that are none.
     """
     if isinstance(table, DHTable):
         dh = table
@@ -206,8 +213,34 @@ def from_dh(
             warnings.warn(text, stacklevel=2)
         dh = DHTable(convention, alpha, a, d, theta, types, before, after, names)
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk, "effort": effort}
-    limited = joint_rows(len(dh), lower=lower, upper=upper, **limits)
-    return _describe(dh, limited, name, base, tip)
+    n = len(dh)
+    opposed = {"damping": damping, "friction": friction, "armature": armature}
+    columns = {key: _one_per_row(values, key, n) for key, values in opposed.items()}
+    values = [
+        row | {key: column[i] for key, column in columns.items()}
+        for i, row in enumerate(joint_rows(n, lower=lower, upper=upper, **limits))
+    ]
+    return _describe(dh, values, _bodies(inertials, n), name, base, tip)
+
+
+def _one_per_row(values: Sequence[Any] | None, name: str, n: int) -> list[Any]:
+    """The values as a list, one per row of the table; all None if there are none."""
+    if values is None:
+        return [None] * n
+    given = list(values) if isinstance(values, Iterable) else [values]
+    if len(given) != n:
+        raise InputError(f"{name} has {len(given)} entries for {n} rows of the table; give one per row")
+    return given
+
+
+def _bodies(inertials: Sequence[Inertial | None] | None, n: int) -> list[Inertial | None]:
+    """The mass properties per row, None where unknown."""
+    bodies = _one_per_row(inertials, "inertials", n)
+    for body in bodies:
+        if body is not None and not isinstance(body, Inertial):
+            kind = type(body).__name__
+            raise InputTypeError(f"inertials contains a {kind}; each entry must be an Inertial or None")
+    return bodies
 
 
 def _rows(table: Any) -> Array:
@@ -227,8 +260,19 @@ def _rows(table: Any) -> Array:
     return rows
 
 
-def _describe(dh: DHTable, limits: list[dict[str, Any]], name: str, base: str, tip: str) -> Description:
-    """The description of a table: the frame of each joint is at the start of its row, z along its axis."""
+def _describe(
+    dh: DHTable,
+    values: list[dict[str, Any]],
+    inertials: list[Inertial | None],
+    name: str,
+    base: str,
+    tip: str,
+) -> Description:
+    """The description of a table: the frame of each joint is at the start of its row, z along its axis.
+
+    values: what each row says of its joint, by the fields of Joint. inertials: of each link in its frame of
+    the table.
+    """
     rows = dh_matrix(dh.alpha, dh.a, dh.d, dh.theta_offset, convention=dh.convention)
     still = np.broadcast_to(IDENTITY, rows.shape)
     before, after = (rows, still) if dh.convention == "modified" else (still, rows)
@@ -236,9 +280,11 @@ def _describe(dh: DHTable, limits: list[dict[str, Any]], name: str, base: str, t
     carried = dh.T_base
     joints = []
     for i, joint in enumerate(dh.joint_names):
-        kind = one_freedom_type(dh.joint_types[i], limits[i])
-        row = limits[i] if kind != "fixed" else {}
+        kind = one_freedom_type(dh.joint_types[i], values[i])
+        row = values[i] if kind != "fixed" else {}
         joints.append(Joint(joint, kind, links[i], links[i + 1], carried @ before[i], Z_AXIS, **row))
         carried = after[i]
     joints.append(Joint(f"{tip}_fixed", "fixed", links[-1], tip, carried @ dh.T_tool))
-    return Description(name, tuple(Link(link) for link in (*links, tip)), tuple(joints))
+    moved = (body and body.in_frame(T) for body, T in zip(inertials, after, strict=True))
+    parts = zip((*links, tip), (None, *moved, None), strict=True)
+    return Description(name, tuple(Link(*part) for part in parts), tuple(joints))

@@ -48,6 +48,11 @@ class Inertial:
         object.__setattr__(self, "com", freeze_array(com.copy()))
         object.__setattr__(self, "inertia", freeze_array((inertia + inertia.T) / 2))
 
+    def in_frame(self, T_frame_link: Array) -> Inertial:
+        """The same body in another frame; T_frame_link (4, 4): the frame of this link in that one."""
+        R = T_frame_link[:3, :3]
+        return Inertial(self.mass, R @ self.com + T_frame_link[:3, 3], R @ self.inertia @ R.T)
+
 
 @dataclass(frozen=True)
 class Mesh:

@@ -36,6 +36,8 @@ ENDS = ("name", "type", "parent", "child")
 JOINT_KEYS = (*ENDS, *PLACE, "axis", *LIMIT_FIELDS, *RESISTANCES, "mimic")
 GEOMETRY_KEYS = ("shape", "size", *PLACE, "name", "mesh", "scale", "color")
 LETTERS = {"revolute": "R", "continuous": "R", "prismatic": "P", "fixed": "F"}
+INERTIAL_KEYS = ("mass", "com", "inertia")
+DH_KEYS = ("name", "type", "alpha", "a", "d", "theta", *LIMIT_FIELDS, *RESISTANCES, *INERTIAL_KEYS)
 
 
 def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = ()) -> Description:
@@ -45,7 +47,8 @@ def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = 
     names of meshes are looked for first.
     The file holds name = …, and one of: [[links]] and [[joints]] (a tree), [screws] with [[screws.joints]]
     (axis and point of each joint at zero, T_zero), or [dh] with [[dh.rows]]. allowed_pairs = [[link, link,
-    reason], …] names the links that may touch; the reason may be left out. Unknown keys are refused.
+    reason], …] names the links that may touch; the reason may be left out. A link, and a row for its own, may
+    have mass, com and inertia. Unknown keys are refused.
     Raises DescriptionError with the file, the table and, for syntax, the line.
     """
     if isinstance(source, str) and "\n" in source:
@@ -150,16 +153,20 @@ class _Reader:
             raise culprit.fault(str(error)) from None
 
     def link(self, table: Table) -> Link:
-        table.known(("name", "mass", "com", "inertia", "visual", "collision"))
-        inertial = None
+        table.known(("name", *INERTIAL_KEYS, "visual", "collision"))
+        inertial = self.inertial(table)
+        shapes = [tuple(self.geometry(t) for t in table.tables(key)) for key in ("visual", "collision")]
+        return self.at(table, lambda: Link(table.text("name"), inertial, *shapes))
+
+    def inertial(self, table: Table) -> Inertial | None:
+        """The mass properties among the keys of a link or of a row, if it has any."""
         if "mass" in table:
             com = table.numbers("com", (3,), [0.0] * 3)
             inertia = table.numbers("inertia", (3, 3), [[0.0] * 3] * 3)
-            inertial = self.at(table, lambda: Inertial(table.number("mass"), com, inertia))
-        elif "com" in table or "inertia" in table:
+            return self.at(table, lambda: Inertial(table.number("mass"), com, inertia))
+        if "com" in table or "inertia" in table:
             raise table.fault("com and inertia need mass")
-        shapes = [tuple(self.geometry(t) for t in table.tables(key)) for key in ("visual", "collision")]
-        return self.at(table, lambda: Link(table.text("name"), inertial, *shapes))
+        return None
 
     def geometry(self, table: Table) -> Geometry:
         table.known(GEOMETRY_KEYS)
@@ -221,8 +228,11 @@ class _Reader:
         table.known(("convention", "base", "tip", "T_base", "T_tool", "rows"))
         rows = table.tables("rows")
         for row in rows:
-            row.known(("name", "type", "alpha", "a", "d", "theta", *LIMIT_FIELDS))
+            row.known(DH_KEYS)
         columns = self.columns(rows)
+        for key in RESISTANCES:
+            columns[key] = [row.number(key) if key in row else None for row in rows]
+        columns["inertials"] = [self.inertial(row) for row in rows]
         alpha, a, d, theta = (
             np.array([row.number(key, 0.0) for row in rows]) for key in ("alpha", "a", "d", "theta")
         )

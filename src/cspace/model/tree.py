@@ -124,12 +124,17 @@ def lump_links(
             carried[joint + 1].append((inertial, pose))
     mass, com, inertia = np.zeros(n + 1), np.zeros((n + 1, 3)), np.zeros((n + 1, 3, 3))
     for k, parts in enumerate(carried):
-        mass[k], com[k], inertia[k] = lump_bodies(parts)
+        if parts:
+            mass[k], com[k], inertia[k] = lump_bodies(parts)
     return freeze_array(mass), freeze_array(com), freeze_array(inertia), tuple(massless)
 
 
 def lump_bodies(parts: list[tuple[Inertial, Array]]) -> tuple[float, Array, Array]:
     """One body out of several: Σm, Σm c / Σm, and Σ(R I Rᵀ + m (|d|² 1 − d dᵀ)) about it (Steiner)."""
+    if len(parts) == 1:  # as on most links
+        inertial, pose = parts[0]
+        R = pose[:3, :3]
+        return inertial.mass, R @ inertial.com + pose[:3, 3], R @ inertial.inertia @ R.T
     mass = sum(inertial.mass for inertial, _ in parts)
     places = [pose[:3, :3] @ inertial.com + pose[:3, 3] for inertial, pose in parts]
     weighted = [inertial.mass * place for (inertial, _), place in zip(parts, places, strict=True)]
