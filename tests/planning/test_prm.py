@@ -1,6 +1,7 @@
 """Roadmaps of arms: paths against Dijkstra on the edges that are free, files, one roadmap in many scenes."""
 
 import heapq
+import re
 import signal
 import time
 
@@ -302,9 +303,15 @@ def test_a_failure_says_how_far_the_roadmap_leads(planner):
         few = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=200, edges=edges)
         assert few.status == "undetermined"
         assert f"the edge budget was used up after {edges} motions" in few.reason
-    empty = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=0)
-    assert "start with 0 of its nodes and the goal with 0 others" in empty.reason
-    assert cs.plan(robot, [2.0, 0.0], [2.5, 0.0], scene, planner=planner, samples=0)
+    least = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=1)
+    assert re.search("start with [01] of its nodes and the goal with [01] others", least.reason)
+    assert cs.plan(robot, [2.0, 0.0], [2.5, 0.0], scene, planner=planner, samples=1)
+    for make in (
+        lambda: Roadmap(robot, samples=0),
+        lambda: cs.plan(robot, [2.0, 0.0], [2.5, 0.0], scene, planner=planner, samples=0),
+    ):
+        with pytest.raises(InputError, match="samples is 0; it must be 1 to"):
+            make()
 
 
 def test_an_end_that_sees_no_node_is_joined_by_trees():

@@ -191,7 +191,7 @@ def check_rule(samples: Any, neighbours: Any, margin: Any, seed: int) -> dict[st
     """What a roadmap is made of, checked; neighbours 0: as PRM* needs."""
     count = 0 if neighbours is None else whole_number(neighbours, "neighbours", 1, MOST_NEIGHBOURS)
     gap = bounded_number(margin, "margin", 0.0, "it must be a length [m], 0 or more", largest=LARGEST_NUMBER)
-    points = whole_number(samples, "samples", 0, MOST_SAMPLES)
+    points = whole_number(samples, "samples", 1, MOST_SAMPLES)
     return {"samples": points, "neighbours": count, "margin": gap, "seed": seed}
 
 
