@@ -1,7 +1,6 @@
 """Roadmaps of arms: paths against Dijkstra on the edges that are free, files, one roadmap in many scenes."""
 
 import heapq
-import re
 import signal
 import time
 
@@ -303,8 +302,6 @@ def test_a_failure_says_how_far_the_roadmap_leads(planner):
         few = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=200, edges=edges)
         assert few.status == "undetermined"
         assert f"the edge budget was used up after {edges} motions" in few.reason
-    least = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=1)
-    assert re.search("start with [01] of its nodes and the goal with [01] others", least.reason)
     assert cs.plan(robot, [2.0, 0.0], [2.5, 0.0], scene, planner=planner, samples=1)
     for make in (
         lambda: Roadmap(robot, samples=0),

@@ -109,7 +109,7 @@ def plan_many(
     if not is_array:
         _check_each(wanted, space.dof)
     rows = _repeat_starts(space.as_rows(starts, "starts"), len(wanted))
-    if is_array and wanted.shape == rows.shape:  # one configuration each
+    if is_array and len(rows) and wanted.shape == rows.shape:  # one configuration each
         problems = ArmProblems(rows, None, space.as_rows(wanted, "goals"), None)
         plans = chosen.plan_each(space, problems, rng=rng, threads=count)
     else:

@@ -170,7 +170,7 @@ class FoundPlans(PlanSource):
     """The plans that the core found, named by their planner."""
 
     def __init__(self, planner: EdgePlanner, space: ArmSpace, problems: ArmProblems, found: ArmPlans) -> None:
-        super().__init__([None] * len(problems))
+        super().__init__([None] * len(problems), space.dof)
         self._planner, self._space, self._problems, self._found = planner, space, problems, found
 
     def path(self, k: int) -> Array:

@@ -17,11 +17,11 @@ from cspace.tables import html_table, one_line, shown
 class PlanSource:
     """Plans by number. One that is not given is made when it is first read, and kept.
 
-    A subclass defines `_make_plan`, and may define `path`.
+    A subclass defines `_make_plan`, and may define `path`. dof: of the configurations.
     """
 
-    def __init__(self, plans: Iterable[Plan | None]) -> None:
-        self._plans = list(plans)
+    def __init__(self, plans: Iterable[Plan | None], dof: int) -> None:
+        self._plans, self.dof = list(plans), dof
 
     def read(self, k: int) -> Plan:
         """Plan k, the same object each time."""
@@ -50,7 +50,7 @@ class Plans(Sequence[Plan]):
     def __init__(self, plans: Iterable[Plan]) -> None:
         made = list(plans)
         self._fill(
-            PlanSource(made),
+            PlanSource(made, made[0].space.dof if made else 0),
             range(len(made)),
             tuple(each.status for each in made),
             np.array([each.cost for each in made], dtype=np.float64),
@@ -101,8 +101,8 @@ class Plans(Sequence[Plan]):
     @property
     def path(self) -> Array:
         """The corners (n, m, dof), NaN beyond the last of each."""
-        dof = self[0].space.dof if len(self) else 0
-        rows: Array = np.full((len(self), int(self.corners.max(initial=0)), dof), np.nan)
+        shape = len(self), int(self.corners.max(initial=0)), self._source.dof
+        rows: Array = np.full(shape, np.nan, dtype=np.float64)
         for row, k, n in zip(rows, self._numbers, self.corners.tolist(), strict=True):
             row[:n] = self._source.path(k)
         return rows
@@ -139,7 +139,7 @@ class _PlacedPlans(PlanSource):
     """Plans that are given, and those of others at their places."""
 
     def __init__(self, plans: Iterable[Plan | None], others: Plans, origin: Mapping[int, int]) -> None:
-        super().__init__(plans)
+        super().__init__(plans, others._source.dof)
         self._others, self._origin = others, origin
 
     def path(self, k: int) -> Array:

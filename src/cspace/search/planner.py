@@ -50,7 +50,8 @@ class Planner:
 
     def __new__(cls: type[Same], *values: Any, **options: Any) -> Same:
         """Raises InputTypeError for an option that the class does not have."""
-        if options and (known := parameters_of(cls)) is not None:
+        own: Any = cls
+        if options and (known := parameters_of(own)) is not None:
             check_names(options, known, cls.name or cls.__name__)
         return super().__new__(cls)
 
