@@ -70,4 +70,3 @@ TEST(what_a_helper_throws_ends_the_call) {
         CHECK(was_thrown);
     }
 }
-

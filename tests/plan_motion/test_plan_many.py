@@ -86,9 +86,7 @@ def agree(one, other):
 def test_each_plan_is_the_one_that_is_found_alone(name, seed):
     robot, planner = wall_arm(), PLANNERS[name]
     starts, goals = draw_problems(robot, 12, seed)
-    alone = [
-        plan_alone(robot, a, b, planner=planner, rng=seed) for a, b in zip(starts, goals, strict=True)
-    ]
+    alone = [plan_alone(robot, a, b, planner=planner, rng=seed) for a, b in zip(starts, goals, strict=True)]
     for threads in (1, 2, 3):
         many = cs.plan_many(robot, starts, goals, SCENE, planner=planner, rng=seed, threads=threads)
         for k, one in enumerate(alone):
