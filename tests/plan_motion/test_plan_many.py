@@ -113,6 +113,29 @@ def test_arrays_of_configurations_are_planned_as_a_list_is(threads):
     assert all(map(agree, one_start, repeated))
 
 
+@pytest.mark.parametrize("name", ["panda", "ur5e"])
+def test_arrays_of_poses_are_planned_as_each_alone(name):
+    """Of poses on a table, in it, below it and out of reach: solved at once, on threads."""
+    robot = cs.load_robot(name, geometry="skeleton")
+    scene = cs.Scene([cs.Box([1.0, 2.0, 0.3], [0.6, 0.0, 0.1], name="table")])
+    q = robot.random_configuration(300, rng=7)
+    start = q[~robot.collides(q, scene)][0]
+    T = robot.fk(q)
+    low = T[T[:, 2, 3] < 0.2][:15]
+    far = T[:2] @ cs.pose([0, 0, 5.0])
+    poses = np.concatenate([T[:25], low, far])
+    options = {"edges": 2000, "rng": 3}
+    alone = [cs.plan(robot, start, pose, scene, **options) for pose in poses]
+    for threads in (1, 2, 3):
+        many = cs.plan_many(robot, start, poses, scene, threads=threads, **options)
+        assert all(map(agree, many, alone))
+    assert {"found", "unreachable"} <= set(many.status)
+    wrong = poses.copy()
+    wrong[5, :3, :3] *= 2.0
+    with pytest.raises(cs.errors.InputError, match="goal"):
+        cs.plan_many(robot, start, wrong, scene)
+
+
 def made_plans(plans):
     """How many plans were made so far."""
     return sum(each is not None for each in plans._source._plans)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import inf
 from typing import Any, Final
 
 import numpy as np
@@ -13,7 +14,10 @@ from cspace._core import ArmProblems
 from cspace.arrays import Array, whole_number
 from cspace.collision import MeshJudge, Scene
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.plan_motion.find import POSE_ROWS
 from cspace.plan_motion.goal_search import GoalSearch, make_negative
+from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.poses import solve_each_pose
 from cspace.planning import ArmPlanner, ArmSpace, Plan, Plans, find_planner
 from cspace.planning.edge_planner import join_problems
 from cspace.robot import Robot
@@ -134,11 +138,7 @@ def _plan_to_goals(
     threads: int,
 ) -> Plans:
     """A plan per goal of any kind: the configurations of all goals are found, then planned to at once."""
-    sets, left = [], []
-    for k, goal in enumerate(goals):
-        search = GoalSearch(robot, planner, space, rng)
-        sets.append(search.find(starts[k : k + 1], goal))
-        left.append(search.limit.left)
+    sets, left = _find_each(robot, planner, space, starts, goals, threads)
     planned = [k for k, each in enumerate(sets) if len(each.rows)]
     problems = join_problems(
         space, [(starts[k : k + 1], sets[k].rows) for k in planned], [left[k] for k in planned]
@@ -154,6 +154,27 @@ def _plan_to_goals(
             search = GoalSearch(robot, planner, space, rng, left[k])
             others[k] = search.plan_to_more(starts[k : k + 1], sets[k])
     return found._replace(len(sets), others, planned)
+
+
+def _find_each(
+    robot: Robot, planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Sequence[Any], threads: int
+) -> tuple[list[Goals], list[float]]:
+    """The configurations of goals of any kind, and what time is left to each [s]."""
+    ready: Sequence[Goals | None] = [None] * len(goals)
+    is_endless = getattr(planner, "time_limit", inf) == inf
+    if is_endless and isinstance(goals, np.ndarray) and _are_poses(goals, space.dof):
+        ready = solve_each_pose(robot, space, starts, np.ascontiguousarray(goals), threads)
+    sets, left = [], []
+    for k, (goal, found) in enumerate(zip(goals, ready, strict=True)):
+        search = GoalSearch(robot, planner, space, 0)
+        sets.append(search.find(starts[k : k + 1], goal) if found is None else found)
+        left.append(search.limit.left)
+    return sets, left
+
+
+def _are_poses(goals: Array, dof: int) -> bool:
+    """Whether an array has the shape of poses (n, 4, 4), and not that of configurations of four joints."""
+    return goals.dtype == np.float64 and goals.shape[1:] == (4, 4) and dof != POSE_ROWS
 
 
 def _check_each(goals: Sequence[Any], dof: int) -> None:
