@@ -9,6 +9,8 @@ from importlib import import_module
 from types import FrameType, ModuleType
 from typing import Any
 
+__all__ = ["import_room", "postpone_interrupts"]
+
 
 def import_room(name: str) -> ModuleType:
     """The module of a name; Ctrl-C comes after it. Rooms that are half imported could not be imported again:
@@ -25,18 +27,18 @@ def postpone_interrupts() -> Iterator[None]:
     def keep(number: int, frame: FrameType | None) -> None:
         came.append((number, frame))
 
-    if not callable(handler) or not set_handler(keep):
+    if not callable(handler) or not _set_handler(keep):
         yield
         return
     try:
         yield
     finally:
-        set_handler(handler)
+        _set_handler(handler)
         if came:
             handler(*came[-1])
 
 
-def set_handler(handler: Callable[[int, FrameType | None], Any]) -> bool:
+def _set_handler(handler: Callable[[int, FrameType | None], Any]) -> bool:
     """Sets the handler of Ctrl-C; false where this thread may not."""
     with suppress(ValueError):
         signal.signal(signal.SIGINT, handler)
