@@ -5,8 +5,8 @@ the shared data folder ($CSPACE_DATA, default ../shared/data).
 
 Goals: cs.plan to the configuration that a problem gives, and to its pose, inverse kinematics included; both
 in turn, processor time of the thread, the median of the rounds per problem. Threads: cs.plan_many of random
-pairs of free configurations in one scene, and in fifty, wall and processor time on one and on two threads in
-turn, with the load of the machine. --threads measures these alone.
+pairs of free configurations in one scene, and in fifty, and to poses, wall and processor time on one and on
+two threads in turn, with the load of the machine. --threads measures these alone.
 """
 
 from __future__ import annotations
@@ -77,13 +77,27 @@ def draw_pairs(robot: cs.Robot, scene: cs.Scene, count: int) -> tuple[Any, Any]:
     return free[:half], free[half : 2 * half]
 
 
-def measure_threads(name: str, scenes: int, count: int, repeat: int) -> dict[str, Any]:
+def bound_ratio(plans: list[cs.planning.Plans]) -> float:
+    """The ratio that the longest problem of each call leaves possible on two threads."""
+    spent = [
+        [sum(value for key, value in plan.stats.items() if key.endswith("_seconds")) for plan in each]
+        for each in plans
+    ]
+    return sum(map(sum, spent)) / sum(max(max(row), sum(row) / 2) for row in spent)
+
+
+def measure_threads(
+    name: str, scenes: int, count: int, repeat: int, to_poses: bool = False
+) -> dict[str, Any]:
     """Wall seconds of plan_many in scenes on one and two threads, and their ratio. Processor seconds on one
     thread, and of the calling thread on two: what the walls would be if nothing else ran."""
     robot, _ = published_robot(name)
     chosen = [scene for _, _, scene, _, _ in problems(name)][::SCENES_APART][:scenes]
     given = [(*draw_pairs(robot, scene, count), scene) for scene in chosen]
-    rows, paths = [], {}
+    if to_poses:
+        given = [(starts, robot.fk(goals), scene) for starts, goals, scene in given]
+    cs.plan_many(robot, given[0][0][:10], given[0][1][:10], given[0][2], threads=2)  # imports, warms up
+    rows, paths, bounds = [], {}, []
     for _ in range(repeat):
         walls, works = [], []
         for threads in (1, 2):
@@ -92,6 +106,8 @@ def measure_threads(name: str, scenes: int, count: int, repeat: int) -> dict[str
             walls.append(time.perf_counter() - begin)
             works.append((time.process_time() - work[0], time.thread_time() - work[1]))
             paths[threads] = [each.path for each in plans]
+            if threads == 1:
+                bounds.append(bound_ratio(plans))
         works_ratio = works[0][0] / works[1][1]
         rows.append([*walls, walls[0] / walls[1], works[0][0], works[1][1], works_ratio, os.getloadavg()[0]])
     same = all(np.array_equal(a, b, equal_nan=True) for a, b in zip(paths[1], paths[2], strict=True))
@@ -103,6 +119,7 @@ def measure_threads(name: str, scenes: int, count: int, repeat: int) -> dict[str
         "median_ratio": float(np.median([row[2] for row in rows])),
         "best_ratio": float(max(row[2] for row in rows)),
         "median_ratio_of_work": float(np.median([row[5] for row in rows])),
+        "bound_by_longest_problems": float(np.median(bounds)),
         "same_bits": same,
     }
 
@@ -123,7 +140,9 @@ def main() -> None:
         print(name, json.dumps(results[name], indent=1), flush=True)
     results["threads"] = measure_threads("panda", 1, given.problems, given.repeat)
     results["threads_in_scenes"] = measure_threads("panda", 50, given.problems // 50, given.repeat)
-    print(json.dumps([results[key] for key in ("threads", "threads_in_scenes")], indent=1), flush=True)
+    results["threads_to_poses"] = measure_threads("panda", 1, given.problems // 5, given.repeat, True)
+    parts = [results[key] for key in ("threads", "threads_in_scenes", "threads_to_poses")]
+    print(json.dumps(parts, indent=1), flush=True)
     path.write_text(json.dumps(results, indent=1) + "\n")
 
 
