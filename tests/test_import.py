@@ -67,3 +67,35 @@ def test_a_star_import_brings_every_public_name():
 def test_questions_for_private_names_load_nothing():
     script = "import sys, cspace; print(hasattr(cspace, '__wrapped__'), 'numpy' in sys.modules)"
     assert fresh(script).split() == ["False", "False"]
+
+
+INTERRUPTED = """
+import os, signal, sys, threading, time
+import cspace as cs
+robot, scene = cs.load_robot("planar_2r", geometry="skeleton"), cs.Scene([cs.Sphere(0.1, [1, 1, 0])])
+came = 0
+try:
+    threading.Timer(float(sys.argv[1]), os.kill, (os.getpid(), signal.SIGINT)).start()
+    {call}
+    time.sleep(5)
+except KeyboardInterrupt:
+    came = 1
+{call}
+print(came, "whole")
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals to a process there")
+@pytest.mark.parametrize("after", [0.005, 0.02, 0.05, 0.08, 0.12])
+@pytest.mark.parametrize("call", ["cs.plan(robot, [2, 0], [2.5, 0], scene)", "robot.ik(position=[1, 1, 0])"])
+def test_an_interrupt_leaves_no_room_half_imported(call: str, after: float) -> None:
+    script = INTERRUPTED.format(call=call)
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(after)],
+        capture_output=True,
+        text=True,
+        env=environment(),
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "1 whole\n"

@@ -2,11 +2,13 @@
 #include "library/ik_goals.hpp"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
@@ -182,6 +184,36 @@ std::optional<Doubles> solve_locked_near(SolverArgument solver, const ConstDoubl
     return rows_of(solver, *found);
 }
 
+// The rows of all poses (m, dof), and how many each has (n,), −1 for what is not a pose.
+std::pair<Doubles, Numbers> solve_each_locked_near(SolverArgument solver, const ConstDoubles& goals,
+                                                   const ConstDoubles& values, const ConstDoubles& lower,
+                                                   const ConstDoubles& upper, const ConstDoubles& seeds,
+                                                   int threads) {
+    const npy_intp n = solver.core().chain().n, count = goals.size / 16;
+    const npy_intp width = npy_intp(solver.core().redundant().default_locked().size());
+    require_sizes(goals.size % 16 == 0 && width > 0 && values.size % width == 0 && lower.size == n &&
+                  upper.size == n && seeds.size == count * n);
+    std::vector<std::optional<ik::NearRows>> found;
+    {
+        const nb::gil_scoped_release release;
+        found = ik::solve_each_locked_near(solver.core(), {goals.data, std::size_t(goals.size)},
+                                           {values.data, std::size_t(values.size)}, lower.data, upper.data,
+                                           {seeds.data, std::size_t(seeds.size)}, threads);
+    }
+    const Numbers counts({count});
+    npy_intp rows = 0;
+    for (npy_intp k = 0; k < count; ++k) {
+        const auto& each = found[std::size_t(k)];
+        counts.data[k] = each ? std::int64_t(each->q.size()) / n : -1;
+        rows += std::max<npy_intp>(counts.data[k], 0);
+    }
+    const Doubles q({rows, n});
+    double* row = q.data;
+    for (const auto& each : found)
+        if (each) row = std::copy(each->q.begin(), each->q.end(), row);
+    return {q, counts};
+}
+
 }  // namespace
 
 void bind_ik_goals(nb::module_& m) {
@@ -194,6 +226,11 @@ void bind_ik_goals(nb::module_& m) {
           "seed"_a,
           "The same of the solutions of a pose at values of the redundant joints; None for what is not a "
           "pose.");
+    m.def(
+        "_ik_each_locked_near", &solve_each_locked_near, "solver"_a, "goals"_a, "values"_a, "lower"_a,
+        "upper"_a, "seeds"_a, "threads"_a,
+        "The same of many poses: the rows of all (m, dof), and how many each has (n,), -1 for what is not a "
+        "pose.");
     m.def("_ik_answer", &answer_rows, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a,
           "is_partial"_a, "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a,
           "is_single"_a, "about"_a,

@@ -74,28 +74,14 @@ NamedPlan plan_one(const collision::Checker& checker, const ConstDoubles& bounds
     return {plan_arm(space, problem, options, more...), &checker, checker.dof()};
 }
 
-std::vector<ArmProblem> read_problems(const collision::Checker& checker,
-                                      const std::vector<std::pair<ConstDoubles, ConstDoubles>>& given) {
-    std::vector<ArmProblem> problems;
-    for (const auto& [starts, goals] : given)
-        problems.push_back({read_rows(checker, starts), read_rows(checker, goals)});
-    return problems;
-}
-std::vector<NamedPlan> name_plans(std::vector<ArmPlan> plans, const collision::Checker& checker) {
-    std::vector<NamedPlan> named;
-    for (ArmPlan& plan : plans) named.push_back({std::move(plan), &checker, checker.dof()});
-    return named;
-}
-
 template <class... More>
-std::vector<NamedPlan> plan_each(const collision::Checker& checker, const ConstDoubles& bounds,
-                                 const Bytes& wraps,
-                                 const std::vector<std::pair<ConstDoubles, ConstDoubles>>& given,
-                                 const ArmOptions& options, int threads, const More&... more) {
+NamedPlans plan_each(const collision::Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
+                     const GivenProblems& given, const ArmOptions& options, int threads,
+                     const More&... more) {
     const ArmSpace space = read_space(checker, bounds, wraps);
-    const std::vector<ArmProblem> problems = read_problems(checker, given);
+    const auto problems = given.read(checker);
     const nb::gil_scoped_release release;
-    return name_plans(plan_arms(space, problems, options, threads, more...), checker);
+    return {plan_arms(space, problems, options, threads, more...), &checker, checker.dof()};
 }
 
 std::shared_ptr<ArmRoadmap> make_roadmap(const collision::Checker& checker, const ConstDoubles& bounds,
@@ -125,15 +111,14 @@ NamedPlan plan_one_on_roadmap(const RoadmapWorld& world, const ConstDoubles& bou
     const nb::gil_scoped_release release;
     return {plan_on_roadmap(space, problem, options, world, is_lazy), &checker, checker.dof()};
 }
-std::vector<NamedPlan> plan_all_on_roadmap(const RoadmapWorld& world, const ConstDoubles& bounds,
-                                           const Bytes& wraps,
-                                           const std::vector<std::pair<ConstDoubles, ConstDoubles>>& given,
-                                           const ArmOptions& options, bool is_lazy, int threads) {
+NamedPlans plan_all_on_roadmap(const RoadmapWorld& world, const ConstDoubles& bounds, const Bytes& wraps,
+                               const GivenProblems& given, const ArmOptions& options, bool is_lazy,
+                               int threads) {
     const collision::Checker& checker = world.checker();
     const ArmSpace space = read_space(checker, bounds, wraps);
-    const std::vector<ArmProblem> problems = read_problems(checker, given);
+    const auto problems = given.read(checker);
     const nb::gil_scoped_release release;
-    return name_plans(plan_each_on_roadmap(space, problems, options, world, is_lazy, threads), checker);
+    return {plan_each_on_roadmap(space, problems, options, world, is_lazy, threads), &checker, checker.dof()};
 }
 
 nb::dict stats_of(const NamedPlan& named) {
@@ -150,7 +135,59 @@ nb::dict stats_of(const NamedPlan& named) {
     return stats;
 }
 
+// Rows of one problem each, one below the other, as spans.
+std::vector<std::span<const double>> split_rows(const std::vector<double>& rows, npy_intp width,
+                                                const std::optional<Integers>& counts) {
+    const std::size_t n = std::size_t(width);
+    std::vector<std::span<const double>> parts;
+    if (!counts) {
+        for (std::size_t at = 0; at < rows.size(); at += n) parts.push_back({&rows[at], n});
+        return parts;
+    }
+    std::size_t at = 0;
+    for (npy_intp k = 0; k < counts->size; ++k) {
+        const std::int64_t count = counts->data[k];
+        require(count > 0 && std::size_t(count) <= (rows.size() - at) / n,
+                "each problem has one row at least, and all together as many as there are");
+        parts.push_back({&rows[at], n * std::size_t(count)});
+        at += parts.back().size();
+    }
+    require(at == rows.size(), "each row is that of a problem");
+    return parts;
+}
+
 }  // namespace
+
+GivenProblems::GivenProblems(const ConstDoubles& starts, const std::optional<Integers>& start_counts,
+                             const ConstDoubles& goals, const std::optional<Integers>& goal_counts,
+                             const std::optional<ConstDoubles>& time_limits) {
+    require(
+        starts.ndim() == 2 && goals.ndim() == 2 && starts.shape(1) > 0 && starts.shape(1) == goals.shape(1),
+        "starts and goals must be arrays (n, dof)");
+    width_ = starts.shape(1);
+    starts_.assign(starts.data, starts.data + starts.size);
+    goals_.assign(goals.data, goals.data + goals.size);
+    const auto from = split_rows(starts_, width_, start_counts), to = split_rows(goals_, width_, goal_counts);
+    require(from.size() == to.size(), "there must be as many starts as goals");
+    require(!time_limits || std::size_t(time_limits->size) == from.size(), "each problem has a time limit");
+    for (std::size_t k = 0; k < from.size(); ++k) {
+        problems_.push_back({from[k], to[k]});
+        if (!time_limits) continue;
+        require(time_limits->data[k] >= 0, "a time limit must not be negative");
+        problems_.back().time_limit = time_limits->data[k];
+    }
+}
+std::pair<Doubles, Doubles> GivenProblems::rows(std::size_t k) const {
+    if (k >= problems_.size()) throw nb::index_error("there is no problem of that number");
+    const auto copy = [&](std::span<const double> rows) {
+        return Doubles({npy_intp(rows.size()) / width_, width_}, rows.data());
+    };
+    return {copy(problems_[k].starts), copy(problems_[k].goals)};
+}
+std::span<const ArmProblem> GivenProblems::read(const collision::Checker& checker) const {
+    require(width_ == checker.dof(), "the problems are those of another robot");
+    return problems_;
+}
 
 void bind_planning_arm(nb::module_& m) {
     nb::class_<ArmOptions>(m, "ArmOptions", "Options of plans of arms.")
@@ -185,16 +222,40 @@ void bind_planning_arm(nb::module_& m) {
                 return std::tuple(name_contact(*p.checker, p.plan.blocker), p.plan.blocker_edges);
             },
             "What blocked most edges, and how many.");
+    nb::class_<GivenProblems>(m, "ArmProblems", "Pairs of starts and goals of an arm.")
+        .def(nb::init<const ConstDoubles&, const std::optional<Integers>&, const ConstDoubles&,
+                      const std::optional<Integers>&, const std::optional<ConstDoubles>&>(),
+             "starts"_a, "start_counts"_a.none(), "goals"_a, "goal_counts"_a.none(),
+             "time_limits"_a.none() = nb::none(),
+             "Rows (s, dof) and (g, dof), how many of them each problem has (n,), one if None, and its time "
+             "limit [s].")
+        .def("__len__", &GivenProblems::size)
+        .def("__getitem__", &GivenProblems::rows, "k"_a,
+             "The starts (s, dof) and goals (g, dof) of a problem.");
+    nb::class_<NamedPlans>(m, "ArmPlans", "The plans of many problems.")
+        .def("__len__", [](const NamedPlans& p) { return p.plans.size(); })
+        .def("plan", &NamedPlans::plan, "k"_a, nb::keep_alive<0, 1>(), "One of them.")
+        .def_prop_ro("status",
+                     [](const NamedPlans& p) {
+                         return p.list<std::uint8_t>([&](std::size_t k) { return p.plans[k].status; });
+                     })
+        .def_prop_ro("cost",
+                     [](const NamedPlans& p) {
+                         return p.list<double>([&](std::size_t k) { return p.plans[k].cost; });
+                     })
+        .def_prop_ro("corners", [](const NamedPlans& p) {
+            return p.list<std::int64_t>([&](std::size_t k) { return p.corners(k); });
+        });
     m.def("as_rows", &as_rows, "value"_a, "dof"_a, "largest"_a,
           "Configurations (dof,) or (n, dof) of numbers up to ±largest as rows; None for anything else.");
     m.def("plan_arm", &plan_one<>, "checker"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a, "options"_a,
           nb::keep_alive<0, 1>(), "From any of the starts (s, dof) to any of the goals (g, dof).");
     m.def("plan_arms", &plan_each<>, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a,
-          "threads"_a, "A plan per pair of starts and goals; the checker must outlive them.");
+          "threads"_a, nb::keep_alive<0, 1>(), "A plan per pair of starts and goals.");
     m.def("plan_arm", &plan_one<TreeOptions>, "checker"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a,
           "options"_a, "tree"_a, nb::keep_alive<0, 1>(), "The same by a tree from the starts.");
     m.def("plan_arms", &plan_each<TreeOptions>, "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a,
-          "threads"_a, "tree"_a, "The same by a tree from the starts.");
+          "threads"_a, "tree"_a, nb::keep_alive<0, 1>(), "The same by a tree from the starts.");
     nb::class_<ArmRoadmap>(m, "ArmRoadmap", "A roadmap of an arm.")
         .def("__len__", &ArmRoadmap::size)
         .def_prop_ro("edge_count", &ArmRoadmap::edge_count)
@@ -231,5 +292,5 @@ void bind_planning_arm(nb::module_& m) {
     m.def("plan_on_roadmap", &plan_one_on_roadmap, "world"_a, "bounds"_a, "wraps"_a, "starts"_a, "goals"_a,
           "options"_a, "is_lazy"_a, nb::keep_alive<0, 1>(), "See plan_arm.");
     m.def("plan_each_on_roadmap", &plan_all_on_roadmap, "world"_a, "bounds"_a, "wraps"_a, "problems"_a,
-          "options"_a, "is_lazy"_a, "threads"_a, "See plan_arms; the world must outlive the plans.");
+          "options"_a, "is_lazy"_a, "threads"_a, nb::keep_alive<0, 1>(), "See plan_arms.");
 }

@@ -12,6 +12,7 @@
 #include "library/planning_arm.hpp"
 
 using Bytes = Plain<const std::uint8_t>;
+using Integers = Plain<const std::int64_t>;
 
 // A plan and the checker whose numbers its contacts have.
 struct NamedPlan {
@@ -47,3 +48,44 @@ inline std::span<const double> read_rows(const cspace::collision::Checker& check
     require(rows.ndim() == 2 && rows.shape(1) == checker.dof(), "configurations must be an array (n, dof)");
     return {rows.data, std::size_t(rows.size)};
 }
+
+// The plans of many problems, and the checker whose numbers their contacts have.
+struct NamedPlans {
+    std::vector<cspace::planning::ArmPlan> plans;
+    const cspace::collision::Checker* checker;
+    int dof;
+
+    NamedPlan plan(std::size_t k) const {
+        require(k < plans.size(), "there is no plan of that number");
+        return {plans[k], checker, dof};
+    }
+    std::size_t corners(std::size_t k) const { return plans[k].path.size() / std::size_t(std::max(dof, 1)); }
+    // An array (n,) of value(k) for each.
+    template <class T, class Value>
+    Plain<T> list(const Value& value) const {
+        Plain<T> values({npy_intp(plans.size())});
+        for (std::size_t k = 0; k < plans.size(); ++k) values.data[k] = T(value(k));
+        return values;
+    }
+};
+
+// Pairs of starts and goals, with numbers of their own: what is done to the arrays later changes nothing.
+class GivenProblems {
+  public:
+    // Rows (s, dof) and (g, dof) of all problems, one below the other, and how many each has (n,); none: one.
+    GivenProblems(const ConstDoubles& starts, const std::optional<Integers>& start_counts,
+                  const ConstDoubles& goals, const std::optional<Integers>& goal_counts,
+                  const std::optional<ConstDoubles>& time_limits);
+    GivenProblems(const GivenProblems&) = delete;
+    GivenProblems& operator=(const GivenProblems&) = delete;
+
+    std::size_t size() const { return problems_.size(); }
+    std::pair<Doubles, Doubles> rows(std::size_t k) const;
+    // Checked to be those of a robot.
+    std::span<const cspace::planning::ArmProblem> read(const cspace::collision::Checker& checker) const;
+
+  private:
+    npy_intp width_;
+    std::vector<double> starts_, goals_;
+    std::vector<cspace::planning::ArmProblem> problems_;
+};

@@ -17,7 +17,6 @@ using namespace cspace::planning;
 namespace {
 
 using collision::Checker;
-using Problems = std::vector<std::pair<ConstDoubles, ConstDoubles>>;
 
 // The descent of a plan, and the checker whose numbers its contacts have.
 struct NamedRest {
@@ -52,17 +51,23 @@ auto plan_one(const Checker& checker, const ConstDoubles& bounds, const Bytes& w
     const nb::gil_scoped_release release;
     return name_plan(plan(space, problem), checker);
 }
+// plan(space, problems) without the lock of the interpreter.
 template <class Plan>
-auto plan_each(const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const Problems& given,
-               const Plan& plan) {
+auto plan_each(const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps,
+               const GivenProblems& given, const Plan& plan) {
     const ArmSpace space = read_space(checker, bounds, wraps);
-    std::vector<ArmProblem> problems;
-    for (const auto& [starts, goals] : given)
-        problems.push_back({read_rows(checker, starts), read_rows(checker, goals)});
+    const auto problems = given.read(checker);
     const nb::gil_scoped_release release;
-    auto plans = plan(space, problems);
-    std::vector<decltype(name_plan(std::move(plans[0]), checker))> named;
-    for (auto& each : plans) named.push_back(name_plan(std::move(each), checker));
+    return plan(space, problems);
+}
+std::pair<NamedPlans, std::vector<NamedRest>> split_plans(std::vector<FieldPlan> plans,
+                                                          const Checker& checker) {
+    std::pair<NamedPlans, std::vector<NamedRest>> named;
+    named.first.checker = &checker, named.first.dof = checker.dof();
+    for (FieldPlan& each : plans) {
+        named.first.plans.push_back(std::move(each.plan));
+        named.second.push_back({std::move(each.rest), &checker, checker.dof()});
+    }
     return named;
 }
 
@@ -120,14 +125,16 @@ void bind_planning_fields(nb::module_& m) {
         nb::keep_alive<0, 1>(), "See plan_arm.");
     m.def(
         "plan_each_on_grid",
-        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const Problems& given,
+        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const GivenProblems& given,
            const ArmOptions& options, const GridRule& rule, int threads) {
-            return plan_each(checker, bounds, wraps, given, [&](const ArmSpace& space, const auto& problems) {
-                return plan_each_on_grid(space, problems, options, rule, threads);
-            });
+            auto plans =
+                plan_each(checker, bounds, wraps, given, [&](const ArmSpace& space, const auto& problems) {
+                    return plan_each_on_grid(space, problems, options, rule, threads);
+                });
+            return NamedPlans{std::move(plans), &checker, checker.dof()};
         },
         "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a, "rule"_a, "threads"_a,
-        "See plan_arms.");
+        nb::keep_alive<0, 1>(), "See plan_arms.");
     m.def(
         "plan_by_field",
         [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const ConstDoubles& starts,
@@ -141,14 +148,17 @@ void bind_planning_fields(nb::module_& m) {
         "A plan and how the descent ended; the checker must outlive them.");
     m.def(
         "plan_each_by_field",
-        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const Problems& given,
+        [](const Checker& checker, const ConstDoubles& bounds, const Bytes& wraps, const GivenProblems& given,
            const ArmOptions& options, const FieldRule& rule, int threads) {
-            return plan_each(checker, bounds, wraps, given, [&](const ArmSpace& space, const auto& problems) {
-                return plan_each_by_field(space, problems, options, rule, threads);
-            });
+            return split_plans(plan_each(checker, bounds, wraps, given,
+                                         [&](const ArmSpace& space, const auto& problems) {
+                                             return plan_each_by_field(space, problems, options, rule,
+                                                                       threads);
+                                         }),
+                               checker);
         },
         "checker"_a, "bounds"_a, "wraps"_a, "problems"_a, "options"_a, "rule"_a, "threads"_a,
-        "A plan per problem, and how its descent ended; the checker must outlive them.");
+        "The plans, and how the descent of each ended; the checker must outlive them.");
     m.def("evaluate_potential", &evaluate, "checker"_a, "bounds"_a, "wraps"_a, "goals"_a, "rule"_a, "q"_a,
           "The potentials (n,) of goals (g, dof) at q (n, dof), and their gradients (n, dof).");
     m.def("find_reach", &find_reach, "checker"_a,

@@ -2,7 +2,6 @@
 
 import logging
 import sys
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from cspace.errors import CspaceError
@@ -133,12 +132,14 @@ _LATER = {
 
 
 def __getattr__(name: str) -> Any:
+    from cspace.late_imports import import_room  # which `import cspace` does not need
+
     if name in _LATER:
         room = _LATER[name]
-        value = getattr(import_module(room), name) if room else import_module(f"cspace.{name}")
+        value = getattr(import_room(room), name) if room else import_room(f"cspace.{name}")
     elif name == "__all__":
-        value = [*_OWN, *import_module("cspace.spatial").__all__]
-    elif not name.startswith("_") and name in (spatial := import_module("cspace.spatial")).__all__:
+        value = [*_OWN, *import_room("cspace.spatial").__all__]
+    elif not name.startswith("_") and name in (spatial := import_room("cspace.spatial")).__all__:
         value = getattr(spatial, name)
     else:
         # With name and obj Python itself adds the nearest name to the message that a person sees.

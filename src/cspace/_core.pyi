@@ -12,6 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
+class TimeOver(BaseException):
+    """The time of a thread is over. No handler of errors catches it."""
+
+def set_deadline(seconds: float) -> float:
+    """
+    From then on compiled code of this thread raises TimeOver where it heeds Ctrl-C; inf for never. Returns the seconds that were left before.
+    """
+
+def check_deadline() -> None:
+    """Raises TimeOver if the time of this thread is over."""
+
 isa: str
 
 def sincos(x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], sin: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], cos: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
@@ -441,6 +452,36 @@ class ArmPlan:
     def blocker(self) -> tuple[tuple[bool, int, int] | None, int]:
         """What blocked most edges, and how many."""
 
+class ArmProblems:
+    """Pairs of starts and goals of an arm."""
+
+    def __init__(self, starts: numpy.typing.NDArray[numpy.float64], start_counts: numpy.typing.NDArray[numpy.int64] | None, goals: numpy.typing.NDArray[numpy.float64], goal_counts: numpy.typing.NDArray[numpy.int64] | None, time_limits: numpy.typing.NDArray[numpy.float64] | None = ...) -> None:
+        """
+        Rows (s, dof) and (g, dof), how many of them each problem has (n,), one if None, and its time limit [s].
+        """
+
+    def __len__(self) -> int: ...
+
+    def __getitem__(self, k: int) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """The starts (s, dof) and goals (g, dof) of a problem."""
+
+class ArmPlans:
+    """The plans of many problems."""
+
+    def __len__(self) -> int: ...
+
+    def plan(self, k: int) -> ArmPlan:
+        """One of them."""
+
+    @property
+    def status(self) -> numpy.typing.NDArray[numpy.uint8]: ...
+
+    @property
+    def cost(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def corners(self) -> numpy.typing.NDArray[numpy.int64]: ...
+
 def as_rows(value: object, dof: int, largest: float) -> numpy.typing.NDArray[numpy.float64] | None:
     """
     Configurations (dof,) or (n, dof) of numbers up to ±largest as rows; None for anything else.
@@ -455,11 +496,11 @@ def plan_arm(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float
     """The same by a tree from the starts."""
 
 @overload
-def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, threads: int) -> list[ArmPlan]:
-    """A plan per pair of starts and goals; the checker must outlive them."""
+def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: ArmProblems, options: ArmOptions, threads: int) -> ArmPlans:
+    """A plan per pair of starts and goals."""
 
 @overload
-def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, threads: int, tree: TreeOptions) -> list[ArmPlan]:
+def plan_arms(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: ArmProblems, options: ArmOptions, threads: int, tree: TreeOptions) -> ArmPlans:
     """The same by a tree from the starts."""
 
 class ArmRoadmap:
@@ -502,8 +543,8 @@ def restore_roadmap(checker: CollisionChecker, bounds: numpy.typing.NDArray[nump
 def plan_on_roadmap(world: RoadmapWorld, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions, is_lazy: bool) -> ArmPlan:
     """See plan_arm."""
 
-def plan_each_on_roadmap(world: RoadmapWorld, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, is_lazy: bool, threads: int) -> list[ArmPlan]:
-    """See plan_arms; the world must outlive the plans."""
+def plan_each_on_roadmap(world: RoadmapWorld, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: ArmProblems, options: ArmOptions, is_lazy: bool, threads: int) -> ArmPlans:
+    """See plan_arms."""
 
 class RouteBase:
     """The compiled half of cspace.navigation.Route."""
@@ -722,15 +763,15 @@ class FieldRest:
 def plan_on_grid(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions, rule: GridRule) -> ArmPlan:
     """See plan_arm."""
 
-def plan_each_on_grid(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, rule: GridRule, threads: int) -> list[ArmPlan]:
+def plan_each_on_grid(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: ArmProblems, options: ArmOptions, rule: GridRule, threads: int) -> ArmPlans:
     """See plan_arms."""
 
 def plan_by_field(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], starts: numpy.typing.NDArray[numpy.float64], goals: numpy.typing.NDArray[numpy.float64], options: ArmOptions, rule: FieldRule) -> tuple[ArmPlan, FieldRest]:
     """A plan and how the descent ended; the checker must outlive them."""
 
-def plan_each_by_field(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: Sequence[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]], options: ArmOptions, rule: FieldRule, threads: int) -> list[tuple[ArmPlan, FieldRest]]:
+def plan_each_by_field(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], problems: ArmProblems, options: ArmOptions, rule: FieldRule, threads: int) -> tuple[ArmPlans, list[FieldRest]]:
     """
-    A plan per problem, and how its descent ended; the checker must outlive them.
+    The plans, and how the descent of each ended; the checker must outlive them.
     """
 
 def evaluate_potential(checker: CollisionChecker, bounds: numpy.typing.NDArray[numpy.float64], wraps: numpy.typing.NDArray[numpy.uint8], goals: numpy.typing.NDArray[numpy.float64], rule: FieldRule, q: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -782,6 +823,7 @@ def _ik_answer(*arguments: Any) -> Any: ...
 def _ik_keep_within(*arguments: Any) -> NDArray[numpy.int64]: ...
 def _ik_sort_near(*arguments: Any) -> tuple[NDArray[numpy.float64], bool]: ...
 def _ik_locked_near(*arguments: Any) -> NDArray[numpy.float64] | None: ...
+def _ik_each_locked_near(*arguments: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.int64]]: ...
 def _ik_nearest_poses(solver: Any, goals: NDArray[numpy.float64], stiffness: float, threads: int) -> NDArray[numpy.float64]: ...
 def _ik_default_locked(solver: Any) -> list[int]: ...
 def _ik_redundancy_degree(solver: Any, locked: list[int]) -> int: ...

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -16,6 +15,7 @@ from cspace._core import RobotBase
 from cspace.arrays import Array, one_array
 from cspace.errors import InputError, InputTypeError, Renamed, name_new_keywords, suggest
 from cspace.kinematics import KinematicModel
+from cspace.late_imports import import_room, postpone_interrupts
 from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
 
@@ -40,7 +40,7 @@ class _Later:
         self.owner, self.name = owner, name
 
     def __get__(self, robot: Robot | None, owner: type) -> Any:
-        setattr(self.owner, self.name, getattr(import_module(self.room), self.name))
+        setattr(self.owner, self.name, getattr(import_room(self.room), self.name))
         return getattr(owner if robot is None else robot, self.name)
 
 
@@ -329,7 +329,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
         for a tree without a tip.
         """
         if self._solver is None:
-            from cspace.ik import solver_of_robot
+            with postpone_interrupts():
+                from cspace.ik import solver_of_robot
 
             made = solver_of_robot(self)
             made._robot = self

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cspace/ik/goal.hpp"
+#include "cspace/math/threads.hpp"
 
 namespace cspace::ik {
 
@@ -48,6 +49,23 @@ std::optional<NearRows> solve_locked_near(Solver& solver, const double* goal, st
     arm.solve(arm.lock(joints), {goals.data(), count, at.data(), true, nullptr, room, q.data(), branch.data(),
                                  self_motion.get(), found.data(), status.data(), 1});
     return sort_rows_near(solver.chain(), q, near, 0);
+}
+
+std::vector<std::optional<NearRows>> solve_each_locked_near(Solver& solver, std::span<const double> goals,
+                                                            std::span<const double> values,
+                                                            const double* lower, const double* upper,
+                                                            std::span<const double> seeds, int threads) {
+    const std::size_t n = std::size_t(solver.chain().n);
+    std::vector<std::optional<NearRows>> found(goals.size() / 16);
+    over_rows(found.size(), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
+        for (; begin < end; ++begin) {
+            poll_interrupts();
+            const NearSeed near = {lower, upper, &seeds[begin * n]};
+            found[begin] = solve_locked_near(solver, &goals[begin * 16], values, near);
+        }
+        return true;
+    });
+    return found;
 }
 
 }  // namespace cspace::ik

@@ -27,5 +27,10 @@ NearRows sort_rows_near(const Chain& chain, std::span<const double> q, const Nea
 // The solutions of one pose with the redundant joints at each of the values (k, r). None for an invalid goal.
 std::optional<NearRows> solve_locked_near(Solver& solver, const double* goal, std::span<const double> values,
                                           const NearSeed& near);
+// The same of goals (m, 4, 4), each with a seed of its own (m, n), on so many threads (0: all).
+std::vector<std::optional<NearRows>> solve_each_locked_near(Solver& solver, std::span<const double> goals,
+                                                            std::span<const double> values,
+                                                            const double* lower, const double* upper,
+                                                            std::span<const double> seeds, int threads);
 
 }  // namespace cspace::ik

@@ -2,6 +2,7 @@
 // of the answer.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,9 +18,11 @@ struct ArmSpace {
     std::span<const double> lower, upper;
     std::span<const unsigned char> wraps;
 };
-// From any of the starts to any of the goals: rows (s, dof) and (g, dof).
+// From any of the starts to any of the goals: rows (s, dof) and (g, dof). time_limit [s]: of this problem,
+// where it is less than that of all.
 struct ArmProblem {
     std::span<const double> starts, goals;
+    double time_limit = std::numeric_limits<double>::infinity();
 };
 
 // The same bits on every machine. Throws std::invalid_argument for spans of other sizes, bounds upside down

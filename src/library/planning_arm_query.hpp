@@ -314,7 +314,11 @@ auto run_searches(const ArmSpace& space, std::span<const ArmProblem> problems, c
     for (const ArmProblem& problem : problems) check_problem(space, problem);
     std::vector<decltype(std::declval<Search&>().run())> plans(problems.size());
     over_rows(problems.size(), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
-        for (; begin < end; ++begin) plans[begin] = Search(space, problems[begin], options, more...).run();
+        ArmOptions own = options;
+        for (; begin < end; ++begin) {
+            own.time_limit = std::min(options.time_limit, problems[begin].time_limit);
+            plans[begin] = Search(space, problems[begin], own, more...).run();
+        }
         return true;
     });
     return plans;

@@ -169,6 +169,37 @@ def test_a_plan_is_verified_or_says_where_it_touches(arms):
     assert 0.0 < verdict.at < 1.0
 
 
+def test_many_plans_are_verified_as_each_alone(arms):
+    robot = arms["mesh"]
+    elbow = robot.fk([0.0, 0.9, 0.4, 0.0], "three")[:3, 3]
+    scene = cs.Scene([cs.Box([0.04, 0.04, 0.04], elbow, name="post")])
+    start, goal = np.array([-1.2, 0.9, 0.4, 0.0]), np.array([1.2, 0.9, 0.4, 0.0])
+    thin = robot.with_spheres(
+        {name: [[0, 0, 0.15, 0.01]] for name in ("base", "one", "two", "three", "four")}
+    )
+    outside = np.array([3.0, 0.0, 0.0, 0.0])
+    goals = [goal, start + 0.1, outside, robot.fk(goal), robot.fk(start + 0.1)]
+    for arm in (robot, thin):
+        judge = MeshJudge(robot, scene)
+        for verify in ("mesh", judge):
+            for given in (goals, np.array(goals[:3])):
+                many = cs.plan_many(arm, start, given, scene, verify=verify, threads=2)
+                assert many.status[2] == "invalid_goal"
+                for k, end in enumerate(given):
+                    if k == 2:
+                        continue
+                    alone = cs.plan(arm, start, end, scene, verify=verify)
+                    assert (many.status[k], many[k].reason) == (alone.status, alone.reason)
+                    assert many.corners[k] == len(alone)
+                    assert many.cost[k] == alone.cost
+                    np.testing.assert_array_equal(many[k].path, alone.path)
+                    assert many[k].stats["mesh_samples"] == alone.stats["mesh_samples"]
+    assert many.status[0] == "undetermined"
+    assert not many.found[0]
+    with pytest.raises(UnknownNameError, match="verification"):
+        cs.plan_many(robot, start, goals, scene, verify="spheres")
+
+
 def test_a_judge_prints_what_it_checks(arms):
     scene = cs.Scene([cs.Sphere(0.1, [9, 9, 9])])
     assert "6 shapes" in repr(MeshJudge(arms["box"], scene))  # five links and a ball

@@ -14,7 +14,7 @@ PACKAGE = ROOT / "src/cspace"
 
 # The rooms from the ground up. A room uses the tiers below its own, never a neighbour in the same tier.
 TIERS: list[set[str]] = [
-    {"errors", "tolerances", "_core"},
+    {"errors", "late_imports", "tolerances", "_core"},
     {"arrays", "files", "tables"},
     {"buffer_pool"},
     {"math"},

@@ -302,9 +302,13 @@ def test_a_failure_says_how_far_the_roadmap_leads(planner):
         few = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=200, edges=edges)
         assert few.status == "undetermined"
         assert f"the edge budget was used up after {edges} motions" in few.reason
-    empty = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=0)
-    assert "start with 0 of its nodes and the goal with 0 others" in empty.reason
-    assert cs.plan(robot, [2.0, 0.0], [2.5, 0.0], scene, planner=planner, samples=0)
+    assert cs.plan(robot, [2.0, 0.0], [2.5, 0.0], scene, planner=planner, samples=1)
+    for make in (
+        lambda: Roadmap(robot, samples=0),
+        lambda: cs.plan(robot, [2.0, 0.0], [2.5, 0.0], scene, planner=planner, samples=0),
+    ):
+        with pytest.raises(InputError, match="samples is 0; it must be 1 to"):
+            make()
 
 
 def test_an_end_that_sees_no_node_is_joined_by_trees():

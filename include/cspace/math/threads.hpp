@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
 #include <mutex>
@@ -26,11 +27,36 @@ struct Work {
     std::atomic<bool> good = true, stopped = false;
     std::mutex busy = {};
     std::exception_ptr error = nullptr;
+    std::size_t helping = 0;  // helpers at work
+    std::condition_variable helped = {};
 
     void fail(std::exception_ptr thrown) {
         const std::lock_guard<std::mutex> lock(busy);
         if (!error) error = std::move(thrown);
         stopped = true;
+    }
+    void enter() {
+        const std::lock_guard<std::mutex> lock(busy);
+        ++helping;
+    }
+    void leave() {
+        const std::lock_guard<std::mutex> lock(busy);
+        --helping;
+        helped.notify_one();
+    }
+    // Until the last helper has left; polls meanwhile, for their last rows may take long.
+    void wait() {
+        std::unique_lock<std::mutex> lock(busy);
+        while (!helped.wait_for(lock, interrupts::least_period, [&] { return helping == 0; })) {
+            if (stopped) continue;
+            lock.unlock();
+            try {
+                poll_interrupts();
+            } catch (...) {
+                fail(std::current_exception());
+            }
+            lock.lock();
+        }
     }
 };
 
@@ -72,17 +98,21 @@ bool over_rows(std::size_t n, int threads, std::size_t step, std::size_t least, 
     const auto help = [&] {
         interrupts::stop_of_helper = &work.stopped;
         threads::take_rows(work, piece, body);
+        work.leave();
     };
     std::vector<std::thread> helpers;
     helpers.reserve(parts);
     for (std::size_t k = 1; k < parts; ++k) {
+        work.enter();
         try {
             helpers.emplace_back(help);
         } catch (const std::system_error&) {
+            work.leave();
             break;  // no thread to be had: the others do the work
         }
     }
     threads::take_rows(work, piece, body);
+    work.wait();
     for (auto& helper : helpers) helper.join();
     if (work.error) std::rethrow_exception(work.error);
     return work.good;

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Final
 
@@ -76,6 +76,10 @@ class RobotGeometry:
     described: Description | None = None
     _kept: dict[Any, Any] = field(default_factory=dict, repr=False)
     """Compiled checks of the last scenes, see checker.py."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What it is made of, without what is compiled."""
+        return {each.name: getattr(self, each.name) for each in fields(self)} | {"_kept": {}}
 
     def __bool__(self) -> bool:
         return len(self.spheres) > 0

@@ -52,6 +52,20 @@ def solve_locked_near(solver: Solver, T: Array, values: Array, limits: Limits, s
     return rows
 
 
+def solve_each_locked_near(
+    solver: Solver, T: Array, values: Array, limits: Limits, seeds: Array, threads: int
+) -> list[Array]:
+    """The same of poses T (n, 4, 4), each with a seed of its own (n, dof), on so many threads.
+
+    What is not a pose has no solutions.
+    """
+    bounds = np.ascontiguousarray(limits.lower), np.ascontiguousarray(limits.upper), seeds
+    rows, counts = _core._ik_each_locked_near(solver, T, values, *bounds, threads)
+    sizes = np.maximum(counts, 0)
+    ends = np.cumsum(sizes)
+    return [rows[a:b] for a, b in zip((ends - sizes).tolist(), ends.tolist(), strict=True)]
+
+
 def solve_locked_redundant(solver: Solver, T: Array, values: Array) -> tuple[Array, npt.NDArray[np.int64]]:
     """Every solution of poses T (n, 4, 4) with the redundant joints of an arm locked at values (n, r).
 

@@ -1,5 +1,5 @@
 """Plans of a robot to configurations, poses, partial goals and regions: to all their IK solutions."""
 
-from cspace.plan_motion.plans import Plans, plan, plan_many
+from cspace.plan_motion.plans import plan, plan_many
 
-__all__ = ["Plans", "plan", "plan_many"]
+__all__ = ["plan", "plan_many"]

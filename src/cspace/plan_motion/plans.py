@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import inf
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cspace._core import ArmProblems
 from cspace.arrays import Array, whole_number
 from cspace.collision import MeshJudge, Scene
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.plan_motion.find import explain_goals, find_goals
+from cspace.plan_motion.find import POSE_ROWS
+from cspace.plan_motion.goal_search import GoalSearch, make_negative
 from cspace.plan_motion.goals import Goals
-from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
+from cspace.plan_motion.poses import solve_each_pose
+from cspace.planning import ArmPlanner, ArmSpace, Plan, Plans, find_planner
+from cspace.planning.edge_planner import join_problems
 from cspace.robot import Robot
-from cspace.tables import html_table, one_line, shown
+from cspace.tables import shown
 
 Seed = int | np.random.Generator | None
 
@@ -63,8 +67,8 @@ def plan(
     space = _make_space(robot, scene, margin)
     judge = None if verify is None else _find_judge(robot, space, verify)
     starts = space.as_rows(start, "start")
-    goals = find_goals(robot, space, starts, goal)
-    found = _plan_to_goals(chosen, space, starts, goals, rng)
+    search = GoalSearch(robot, chosen, space, rng)
+    found = search.plan(starts, search.find(starts, goal))
     if found.status == "invalid_start":
         raise InputError(
             f"{found.reason}; robot.escape leads away from there, or allow the pair in the scene"
@@ -84,43 +88,93 @@ def plan_many(
     margin: float = 0.0,
     rng: Seed = 0,
     threads: int = 0,
+    verify: str | MeshJudge | None = None,
     **options: Any,
 ) -> Plans:
     """A plan for each of many problems in one scene, on all threads; each is the same as alone.
 
     starts (n, dof) or one (dof,) for all. goals: n configurations (n, dof), n poses (n, 4, 4), or a list of n
-    goals as `plan` takes them. threads: 0 for all. Other arguments as of plan. A problem whose start or goal
-    is not free has the status "invalid_start" or "invalid_goal" instead of an error.
+    goals as `plan` takes them. threads: 0 for all. Other arguments as of plan; a time limit is that of each
+    problem. A problem whose start or goal is not free has the status "invalid_start" or "invalid_goal"
+    instead of an error.
+
+    The Plans have `status`, `cost`, `corners` and `found` at once; plans[k], a Plan, is made when it is read.
     """
     chosen = find_planner(planner, options)
     count = whole_number(threads, "threads", 0, MOST_THREADS, "0 for every processor")
     space = _make_space(robot, scene, margin)
+    judge = None if verify is None else _find_judge(robot, space, verify)
     if isinstance(goals, (Mapping, str)) or not np.iterable(goals):
         raise InputTypeError(
             f"goals is a {type(goals).__name__}; it must be a list of goals, one per problem"
         )
-    wanted = list(goals)
-    _check_each(wanted, space.dof)
-    rows = space.as_rows(starts, "starts")
-    if len(rows) not in (1, len(wanted)):
-        raise InputError(f"there are {len(rows)} starts and {len(wanted)} goals; give one start, or as many")
-    rows = np.broadcast_to(rows, (len(wanted), space.dof)) if len(rows) == 1 else rows
-    rows = np.ascontiguousarray(rows)
-    if isinstance(goals, np.ndarray) and goals.shape == rows.shape:  # one configuration each
-        ends = space.as_rows(goals, "goals")
-        problems = [(rows[k : k + 1], ends[k : k + 1]) for k in range(len(rows))]
-        return Plans(chosen.plan_each(space, problems, rng=rng, threads=count))
-    sets = [find_goals(robot, space, rows[k : k + 1], goal) for k, goal in enumerate(wanted)]
-    problems = [(rows[k : k + 1], each.rows) for k, each in enumerate(sets) if len(each.rows)]
-    found = iter(chosen.plan_each(space, problems, rng=rng, threads=count))
-    plans = [
-        next(found) if len(each.rows) else _make_negative(space, chosen, each.status, each.reason)
-        for each in sets
-    ]
-    for k, each in enumerate(sets):
-        if plans[k].status == "invalid_goal" and not each.is_given:
-            plans[k] = _plan_to_more(chosen, space, rows[k : k + 1], each, rng)
-    return Plans(plans)
+    is_array = isinstance(goals, np.ndarray) and goals.ndim > 1
+    wanted: Any = goals if is_array else list(goals)
+    if not is_array:
+        _check_each(wanted, space.dof)
+    rows = _repeat_starts(space.as_rows(starts, "starts"), len(wanted))
+    if is_array and len(rows) and wanted.shape == rows.shape:  # one configuration each
+        problems = ArmProblems(rows, None, space.as_rows(wanted, "goals"), None)
+        plans = chosen.plan_each(space, problems, rng=rng, threads=count)
+    else:
+        plans = _plan_to_goals(robot, chosen, space, rows, wanted, rng, count)
+    return plans if judge is None else _verify_plans(plans, chosen, judge)
+
+
+def _repeat_starts(rows: Array, count: int) -> Array:
+    """Starts (n, dof), one per problem."""
+    if len(rows) not in (1, count):
+        raise InputError(f"there are {len(rows)} starts and {count} goals; give one start, or as many")
+    return np.ascontiguousarray(np.broadcast_to(rows, (count, rows.shape[1])))
+
+
+def _plan_to_goals(
+    robot: Robot,
+    planner: ArmPlanner,
+    space: ArmSpace,
+    starts: Array,
+    goals: Sequence[Any],
+    rng: Seed,
+    threads: int,
+) -> Plans:
+    """A plan per goal of any kind: the configurations of all goals are found, then planned to at once."""
+    sets, left = _find_each(robot, planner, space, starts, goals, threads)
+    planned = [k for k, each in enumerate(sets) if len(each.rows)]
+    problems = join_problems(
+        space, [(starts[k : k + 1], sets[k].rows) for k in planned], [left[k] for k in planned]
+    )
+    found = planner.plan_each(space, problems, rng=rng, threads=threads)
+    others = {
+        k: make_negative(space, planner, each.status, each.reason)
+        for k, each in enumerate(sets)
+        if not len(each.rows)
+    }
+    for k, status in zip(planned, found.status, strict=True):
+        if status == "invalid_goal" and not sets[k].is_given:
+            search = GoalSearch(robot, planner, space, rng, left[k])
+            others[k] = search.plan_to_more(starts[k : k + 1], sets[k])
+    return found._replace(len(sets), others, planned)
+
+
+def _find_each(
+    robot: Robot, planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Sequence[Any], threads: int
+) -> tuple[list[Goals], list[float]]:
+    """The configurations of goals of any kind, and what time is left to each [s]."""
+    ready: Sequence[Goals | None] = [None] * len(goals)
+    is_endless = getattr(planner, "time_limit", inf) == inf
+    if is_endless and isinstance(goals, np.ndarray) and _are_poses(goals, space.dof):
+        ready = solve_each_pose(robot, space, starts, np.ascontiguousarray(goals), threads)
+    sets, left = [], []
+    for k, (goal, found) in enumerate(zip(goals, ready, strict=True)):
+        search = GoalSearch(robot, planner, space, 0)
+        sets.append(search.find(starts[k : k + 1], goal) if found is None else found)
+        left.append(search.limit.left)
+    return sets, left
+
+
+def _are_poses(goals: Array, dof: int) -> bool:
+    """Whether an array has the shape of poses (n, 4, 4), and not that of configurations of four joints."""
+    return goals.dtype == np.float64 and goals.shape[1:] == (4, 4) and dof != POSE_ROWS
 
 
 def _check_each(goals: Sequence[Any], dof: int) -> None:
@@ -156,65 +210,13 @@ def _verify_plan(found: Plan, planner: ArmPlanner, judge: MeshJudge) -> Plan:
         f"a path of length {shown(found.cost)} is free for the spheres of the robot, but not for its meshes:"
         f" {verdict.reason}; plan with a larger margin, or cover the meshes more closely"
     )
-    return replace(_make_negative(found.space, planner, "undetermined", reason), stats=stats)
+    return replace(make_negative(found.space, planner, "undetermined", reason), stats=stats)
 
 
-def _plan_to_goals(planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Goals, rng: Seed) -> Plan:
-    """A plan to the configurations of a goal; if none of them is free and others exist, to those."""
-    if not len(goals.rows):
-        return _make_negative(space, planner, goals.status, goals.reason)
-    found = planner.plan(space, starts, goals.rows, rng=rng)
-    if found.status == "invalid_goal" and not goals.is_given:
-        return _plan_to_more(planner, space, starts, goals, rng)
-    return found
-
-
-def _plan_to_more(planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Goals, rng: Seed) -> Plan:
-    """A plan where no configuration of a goal is free: to further ones, or the reason why there is none."""
-    if goals.find_more is not None:
-        return _plan_to_goals(planner, space, starts, goals.find_more(), rng)
-    return _make_negative(space, planner, *explain_goals(space, goals))
-
-
-class Plans(Sequence[Plan]):
-    """The plans of many problems: plans[k] is a Plan.
-
-    path (n, m, dof): their corners, NaN beyond the last. corners (n,): how many each has, 0 without a path.
-    status: of each. cost (n,): inf without a path. found (n,): which have one.
-    """
-
-    def __init__(self, plans: Sequence[Plan]) -> None:
-        self._plans = list(plans)
-        self.status = tuple(each.status for each in self._plans)
-        self.cost: Array = np.array([each.cost for each in self._plans])
-        self.corners = np.array([len(each) for each in self._plans], dtype=np.intp)
-        self.found = np.array([bool(each) for each in self._plans])
-
-    @property
-    def path(self) -> Array:
-        """The corners (n, m, dof), NaN beyond the last of each."""
-        dof = self._plans[0].space.dof if self._plans else 0
-        shape = (len(self), int(self.corners.max(initial=0)), dof)
-        rows: Array = np.full(shape, np.nan, dtype=np.float64)
-        for row, each in zip(rows, self._plans, strict=True):
-            row[: len(each)] = each.path
-        return rows
-
-    def __len__(self) -> int:
-        return len(self._plans)
-
-    def __getitem__(self, k: Any) -> Any:
-        return Plans(self._plans[k]) if isinstance(k, slice) else self._plans[k]
-
-    def __repr__(self) -> str:
-        counts = ", ".join(f"{n} {status}" for status, n in Counter(self.status).items())
-        return one_line(
-            "Plans", f"of {len(self)} problem{'' if len(self) == 1 else 's'}{': ' if counts else ''}{counts}"
-        )
-
-    def _repr_html_(self) -> str:
-        rows = [(str(k), p.status, str(len(p)), shown(p.cost)) for k, p in enumerate(self._plans)]
-        return html_table(repr(self)[1:-1], ("problem", "status", "corners", "cost"), rows)
+def _verify_plans(plans: Plans, planner: ArmPlanner, judge: MeshJudge) -> Plans:
+    """Each of the plans as _verify_plan has it."""
+    found = {k: _verify_plan(plans[k], planner, judge) for k in np.flatnonzero(plans.found).tolist()}
+    return plans._replace(len(plans), found, range(len(plans)))
 
 
 def _make_space(robot: Robot, scene: Scene | None, margin: float) -> ArmSpace:
@@ -223,9 +225,3 @@ def _make_space(robot: Robot, scene: Scene | None, margin: float) -> ArmSpace:
         kind = type(robot).__name__
         raise InputTypeError(f"robot is a {kind}; it must be a cspace.Robot, such as cs.load_robot('panda')")
     return ArmSpace(robot, scene, margin)
-
-
-def _make_negative(space: ArmSpace, planner: ArmPlanner, status: str, reason: str) -> Plan:
-    """A plan without a path."""
-    path = np.empty((0, space.dof))
-    return Plan(status, reason, path, np.inf, -1, -1, False, {}, space, planner)

@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.goals.given import goal_array
-from cspace.ik.near_rows import solve_locked_near, sort_near
+from cspace.ik.near_rows import solve_each_locked_near, solve_locked_near, sort_near
 from cspace.plan_motion.goals import Goals
 from cspace.planning import ArmSpace
 from cspace.search.halton import halton_points
@@ -37,10 +37,41 @@ def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
     is_plain = type(goal) is np.ndarray and goal.dtype == np.float64 and goal.flags.carray
     T = goal if is_plain else goal_array(goal)  # the core checks that it is a pose
     rows = solve_redundant(robot, space, start, T, FEW_VALUES)
-    if len(rows):
-        more = partial(solve_pose_densely, robot, space, start, T)
-        return Goals(rows, is_whole=False, find_more=more)
-    return solve_pose_densely(robot, space, start, T)
+    return few_samples(robot, space, start, T, rows) or solve_pose_densely(robot, space, start, T)
+
+
+def solve_each_pose(
+    robot: Robot, space: ArmSpace, starts: Array, T: Array, threads: int
+) -> Sequence[Goals | None]:
+    """What solve_pose finds for poses T (n, 4, 4), each with a start of its own (n, dof), on so many threads.
+
+    None for a pose without a solution among many samples, and for arms that are not redundant.
+    """
+    goals: list[Goals | None] = [None] * len(T)
+    if not robot.solver.is_redundant:
+        return goals
+    few = solve_each_redundant(robot, space, starts, T, FEW_VALUES, threads)
+    for k, rows in enumerate(few):
+        goals[k] = few_samples(robot, space, starts[k], T[k], rows)
+    rest = [k for k, rows in enumerate(few) if not len(rows)]
+    many = solve_each_redundant(robot, space, starts[rest], T[rest], MANY_VALUES, threads)
+    for k, rows in zip(rest, many, strict=True):
+        goals[k] = Goals(rows, is_whole=False) if len(rows) else None
+    return goals
+
+
+def solve_each_redundant(
+    robot: Robot, space: ArmSpace, starts: Array, T: Array, each: int, threads: int
+) -> list[Array]:
+    """As solve_redundant of poses T (n, 4, 4), each with a start of its own (n, dof)."""
+    values = keep_values(robot, space, each)
+    return solve_each_locked_near(robot.solver, T, values, robot.limits, starts, threads)
+
+
+def few_samples(robot: Robot, space: ArmSpace, start: Array, T: Array, rows: Array) -> Goals | None:
+    """Solutions of a pose T (4, 4) of a redundant arm that are few samples; None if there are none."""
+    more = partial(solve_pose_densely, robot, space, start, T)
+    return Goals(rows, is_whole=False, find_more=more) if len(rows) else None
 
 
 def solve_pose_densely(robot: Robot, space: ArmSpace, start: Array, T: Array) -> Goals:
@@ -53,10 +84,16 @@ def solve_pose_densely(robot: Robot, space: ArmSpace, start: Array, T: Array) ->
 def solve_redundant(robot: Robot, space: ArmSpace, start: Array, T: Array, each: int) -> Array:
     """The solutions of a pose T (4, 4) within limits at so many values of each redundant joint (k, dof), the
     nearest to the start first."""
+    return solve_locked_near(robot.solver, T, keep_values(robot, space, each), robot.limits, start)
+
+
+def keep_values(robot: Robot, space: ArmSpace, each: int) -> Array:
+    """Values (n, r) of the redundant joints, so many of each; made once for a robot."""
     kept, name = space.geometry._kept, f"redundant values {each}"
     if name not in kept:
         kept[name] = spread_redundant(robot, space, each)
-    return solve_locked_near(robot.solver, T, kept[name], robot.limits, start)
+    values: Array = kept[name]
+    return values
 
 
 def spread_redundant(robot: Robot, space: ArmSpace, each: int) -> Array:

@@ -10,6 +10,7 @@ from cspace.planning.joint_space.space import JointSpace
 from cspace.planning.joint_space.volumes import Volume
 from cspace.planning.plan_result import STATUSES, Plan
 from cspace.planning.planners import PLANNERS, find_planner
+from cspace.planning.plans import Plans
 from cspace.planning.potential_field import Potential, PotentialField, PotentialRest, Push, potential
 from cspace.planning.prm import PRM, LazyPRM, PRMStar
 from cspace.planning.region import Region
@@ -38,6 +39,7 @@ __all__ = [
     "LazyPRM",
     "PRMStar",
     "Plan",
+    "Plans",
     "Potential",
     "PotentialField",
     "PotentialRest",

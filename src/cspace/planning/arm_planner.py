@@ -9,11 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cspace._core import ArmProblems
 from cspace.planning.plan_result import Plan
+from cspace.planning.plans import Plans
 from cspace.planning.space import ArmSpace
 from cspace.search import Planner
 
 Seed = int | np.random.Generator | None
+Problems = Sequence[tuple[Any, Any]] | ArmProblems
+"""Pairs of starts and goals."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +35,7 @@ class ArmPlanner(Planner):
         """
         raise NotImplementedError(f"{type(self).__name__} defines no plan(space, starts, goals, rng=)")
 
-    def plan_each(
-        self, space: ArmSpace, problems: Sequence[tuple[Any, Any]], *, rng: Seed = 0, threads: int = 0
-    ) -> list[Plan]:
+    def plan_each(self, space: ArmSpace, problems: Problems, *, rng: Seed = 0, threads: int = 0) -> Plans:
         """A plan per problem, a pair of starts and goals, each as if alone."""
-        return [self.plan(space, starts, goals, rng=rng) for starts, goals in problems]
+        pairs = [problems[k] for k in range(len(problems))]
+        return Plans(self.plan(space, starts, goals, rng=rng) for starts, goals in pairs)

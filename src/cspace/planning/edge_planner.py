@@ -5,20 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from cspace._core import ArmOptions, ArmPlan
+from cspace._core import ArmOptions, ArmPlan, ArmPlans, ArmProblems, TimeOver
 from cspace.arrays import Array
 from cspace.errors import InputTypeError
-from cspace.planning.arm_planner import ArmPlanner, Seed
+from cspace.planning.arm_planner import ArmPlanner, Problems, Seed
 from cspace.planning.plan_result import Plan
+from cspace.planning.plans import Plans, PlanSource
 from cspace.planning.space import ArmSpace
 from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
-from cspace.tolerances import LARGEST_NUMBER, LEAST_SPACING
+from cspace.tolerances import LEAST_SPACING
 
 ENDS = (
     "found",
@@ -30,6 +32,20 @@ ENDS = (
     "resting",
 )
 """How the core ends, in its order."""
+
+STATUS_OF_END: Final = {
+    "found": "found",
+    "edge budget": "undetermined",
+    "time limit": "undetermined",
+    "invalid start": "invalid_start",
+    "invalid goals": "invalid_goal",
+    "disconnected": "undetermined",
+    "resting": "undetermined",
+}
+"""The status of a plan for each."""
+
+STATUSES_OF_ENDS: Final = tuple(STATUS_OF_END[end] for end in ENDS)
+"""The same by number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +59,7 @@ class EdgePlanner(ArmPlanner):
 
     approach: ClassVar[str] = "the trees came within {} of each other"
     """What a failed search says of its closest approach."""
+    _late: ClassVar[str] = "the time limit was used up before the search began"
 
     search: str = option(
         "proved", "how the search checks motions", choices=("proved", "sampled"), subject="search"
@@ -71,29 +88,37 @@ class EdgePlanner(ArmPlanner):
                 f"space is a {type(space).__name__}; planners take an ArmSpace, ArmSpace(robot, scene)"
             )
         rows = space.as_rows(starts, "start"), space.as_rows(goals, "goal")
-        return self._name_plan(space, rows, self._plan_rows(space, rows, rng))
+        try:
+            found = self._plan_rows(space, rows, rng)
+        except TimeOver:
+            return self._name_late(space)
+        return self._name_plan(space, rows, found)
 
-    def plan_each(
-        self, space: ArmSpace, problems: Sequence[tuple[Any, Any]], *, rng: Seed = 0, threads: int = 0
-    ) -> list[Plan]:
+    def plan_each(self, space: ArmSpace, problems: Problems, *, rng: Seed = 0, threads: int = 0) -> Plans:
         """See ArmPlanner.plan_each. threads: 0 for all."""
-        rows = list(problems) if are_rows(space, problems) else check_problems(space, problems)
-        found = self._plan_each_rows(space, rows, rng, threads)
-        return [self._name_plan(space, ends, plan) for ends, plan in zip(rows, found, strict=True)]
+        given = problems if isinstance(problems, ArmProblems) else join_problems(space, problems)
+        try:
+            found = self._plan_each_rows(space, given, rng, threads)
+        except TimeOver:
+            return Plans(self._name_late(space) for _ in range(len(given)))
+        source = FoundPlans(self, space, given, found)
+        return Plans._of_source(
+            source, range(len(given)), self._list_statuses(found), found.cost, found.corners
+        )
 
     def _plan_rows(self, space: ArmSpace, rows: tuple[Array, Array], rng: Seed) -> ArmPlan:
         """The core's plan from rows of starts (s, dof) to rows of goals (g, dof)."""
         raise NotImplementedError(f"{type(self).__name__} defines no _plan_rows")
 
-    def _plan_each_rows(
-        self, space: ArmSpace, rows: list[tuple[Array, Array]], rng: Seed, threads: int
-    ) -> list[ArmPlan]:
-        """The core's plan of each problem."""
+    def _plan_each_rows(self, space: ArmSpace, problems: ArmProblems, rng: Seed, threads: int) -> ArmPlans:
+        """The core's plans of many problems."""
         raise NotImplementedError(f"{type(self).__name__} defines no _plan_each_rows")
 
-    def _make_options(self, rng: Seed, range: float = 1.0, improve: int = 0) -> ArmOptions:
+    def _make_options(
+        self, rng: Seed, range: float = 1.0, improve: int = 0, time_limit: float | None = None
+    ) -> ArmOptions:
         """The options as the core takes them. range: longest motion of a tree [rad or m]; improve: motions
-        that may be checked for shorter paths."""
+        that may be checked for shorter paths; time_limit: what is left of it [s]."""
         return ArmOptions(
             self.search == "proved",
             self.certify,
@@ -101,7 +126,7 @@ class EdgePlanner(ArmPlanner):
             draw_seed(rng),
             self.edges,
             improve,
-            self.time_limit,
+            self.time_limit if time_limit is None else time_limit,
             range,
             self.resolution,
         )
@@ -123,6 +148,15 @@ class EdgePlanner(ArmPlanner):
             planner=self,
         )
 
+    def _name_late(self, space: ArmSpace) -> Plan:
+        """The plan where time was over before the search."""
+        path = np.empty((0, space.dof))
+        return Plan("undetermined", self._late, path, inf, -1, -1, False, {}, space, self)
+
+    def _list_statuses(self, found: Any) -> tuple[str, ...]:
+        """The status of each of the core's plans."""
+        return tuple(map(STATUSES_OF_ENDS.__getitem__, found.status.tolist()))
+
     def _explain_end(self, space: ArmSpace, rows: tuple[Array, Array], found: Any) -> tuple[str, str]:
         """The status of a plan, and its reason in words."""
         return explain_end(space, rows, found, self.approach)
@@ -132,40 +166,52 @@ class EdgePlanner(ArmPlanner):
         return dict(found.stats)
 
 
-def are_rows(space: ArmSpace, problems: Sequence[tuple[Any, Any]]) -> bool:
-    """Whether all starts and goals are rows (n, dof) already, as the core takes them: checked in one go."""
-    ends = [rows for problem in problems for rows in problem]
-    are_plain = bool(ends) and all(
-        type(rows) is np.ndarray
-        and rows.dtype == np.float64
-        and rows.ndim == 2
-        and rows.shape[1] == space.dof
-        and rows.flags.carray
-        and len(rows)
-        for rows in ends
-    )
-    return are_plain and bool(np.abs(np.concatenate(ends)).max(initial=0.0) <= LARGEST_NUMBER)
+class FoundPlans(PlanSource):
+    """The plans that the core found, named by their planner."""
+
+    def __init__(self, planner: EdgePlanner, space: ArmSpace, problems: ArmProblems, found: ArmPlans) -> None:
+        super().__init__([None] * len(problems), space.dof)
+        self._planner, self._space, self._problems, self._found = planner, space, problems, found
+
+    def path(self, k: int) -> Array:
+        """See PlanSource."""
+        return self._found.plan(k).path
+
+    def _make_plan(self, k: int) -> Plan:
+        return self._planner._name_plan(self._space, self._problems[k], self._found.plan(k))
 
 
-def check_problems(space: ArmSpace, problems: Sequence[tuple[Any, Any]]) -> list[tuple[Array, Array]]:
-    """Starts and goals as rows (n, dof); InputError, with its number, for a problem that is not valid."""
-    return [
-        (space.as_rows(starts, f"start {k}"), space.as_rows(goals, f"goal {k}"))
-        for k, (starts, goals) in enumerate(problems)
-    ]
+def join_problems(
+    space: ArmSpace, problems: Sequence[tuple[Any, Any]], time_limits: Sequence[float] | None = None
+) -> ArmProblems:
+    """Pairs of starts and goals as the core takes them, and what time each has.
+
+    Raises InputError, with its number, for a problem that is not valid.
+    """
+    starts = [space.as_rows(rows, f"start {k}") for k, (rows, _) in enumerate(problems)]
+    goals = [space.as_rows(rows, f"goal {k}") for k, (_, rows) in enumerate(problems)]
+    limits = None if time_limits is None else np.array(time_limits, dtype=np.float64)
+    return ArmProblems(*join_rows(starts, space.dof), *join_rows(goals, space.dof), limits)
+
+
+def join_rows(parts: list[Array], dof: int) -> tuple[Array, npt.NDArray[np.int64]]:
+    """The rows of all parts (m, dof), and how many each has (n,)."""
+    counts = np.array([len(rows) for rows in parts], dtype=np.int64)
+    return np.concatenate(parts) if parts else np.empty((0, dof)), counts
 
 
 def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan, approach: str) -> tuple[str, str]:
     """The status of a plan, and its reason in words."""
     end = ENDS[found.status]
-    if end == "found":
+    status = STATUS_OF_END[end]
+    if status == "found":
         corners = len(found.path)
-        return "found", f"found a path of length {shown(found.cost)} with {corners} corners"
-    if end == "invalid start":
-        return "invalid_start", explain_rows(space, rows[0], found.starts, "start")
-    if end == "invalid goals":
-        return "invalid_goal", explain_rows(space, rows[1], found.goals, "goal")
-    return "undetermined", explain_budget(space, found, end, approach)
+        return status, f"found a path of length {shown(found.cost)} with {corners} corners"
+    if status == "invalid_start":
+        return status, explain_rows(space, rows[0], found.starts, "start")
+    if status == "invalid_goal":
+        return status, explain_rows(space, rows[1], found.goals, "goal")
+    return status, explain_budget(space, found, end, approach)
 
 
 def explain_rows(space: ArmSpace, rows: Array, reports: Sequence[Any], subject: str) -> str:

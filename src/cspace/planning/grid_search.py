@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from cspace._core import ArmPlan, GridRule, plan_each_on_grid, plan_on_grid
+from cspace._core import ArmPlan, ArmPlans, ArmProblems, GridRule, plan_each_on_grid, plan_on_grid
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.planning.arm_planner import Seed
@@ -167,12 +167,12 @@ class GridSearch(EdgePlanner):
         rule, options = self._make_rule(space), self._make_options(rng)
         return plan_on_grid(space.checker.core, space.bounds, space.wraps, *rows, options, rule)
 
-    def _plan_each_rows(
-        self, space: ArmSpace, rows: list[tuple[Array, Array]], rng: Seed, threads: int
-    ) -> list[ArmPlan]:
+    def _plan_each_rows(self, space: ArmSpace, problems: ArmProblems, rng: Seed, threads: int) -> ArmPlans:
         """See EdgePlanner."""
         rule, options = self._make_rule(space), self._make_options(rng)
-        return plan_each_on_grid(space.checker.core, space.bounds, space.wraps, rows, options, rule, threads)
+        return plan_each_on_grid(
+            space.checker.core, space.bounds, space.wraps, problems, options, rule, threads
+        )
 
     def _list_stats(self, space: ArmSpace, found: Any) -> dict[str, Any]:
         """See EdgePlanner."""

@@ -16,7 +16,15 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace._core import FieldRule, evaluate_potential, plan_by_field, plan_each_by_field
+from cspace._core import (
+    ArmPlans,
+    ArmProblems,
+    FieldRest,
+    FieldRule,
+    evaluate_potential,
+    plan_by_field,
+    plan_each_by_field,
+)
 from cspace.arrays import Array, as_floats
 from cspace.planning.arm_planner import Seed
 from cspace.planning.edge_planner import ENDS, EdgePlanner
@@ -186,15 +194,22 @@ class PotentialField(EdgePlanner):
         rule, options = self._make_rule(space), self._make_options(rng)
         return _Found(*plan_by_field(space.checker.core, space.bounds, space.wraps, *rows, options, rule))
 
-    def _plan_each_rows(
-        self, space: ArmSpace, rows: list[tuple[Array, Array]], rng: Seed, threads: int
-    ) -> list[Any]:
+    def _plan_each_rows(self, space: ArmSpace, problems: ArmProblems, rng: Seed, threads: int) -> Any:
         """See EdgePlanner."""
         rule, options = self._make_rule(space), self._make_options(rng)
-        found = plan_each_by_field(
-            space.checker.core, space.bounds, space.wraps, rows, options, rule, threads
+        return _FoundEach(
+            *plan_each_by_field(
+                space.checker.core, space.bounds, space.wraps, problems, options, rule, threads
+            )
         )
-        return [_Found(*each) for each in found]
+
+    def _list_statuses(self, found: Any) -> tuple[str, ...]:
+        """See EdgePlanner."""
+        statuses = super()._list_statuses(found)
+        return tuple(
+            "local_minimum" if status == "undetermined" and is_minimum(rest) else status
+            for status, rest in zip(statuses, found.rests, strict=True)
+        )
 
     def _list_stats(self, space: ArmSpace, found: Any) -> dict[str, Any]:
         """See EdgePlanner."""
@@ -230,7 +245,7 @@ class PotentialField(EdgePlanner):
         saddles = f", over {rest.saddles} saddle{'s' * (rest.saddles != 1)}" if rest.saddles else ""
         if ENDS[found.status] == "found":
             return "found", f"descended the potential along a path of length {shown(found.cost)}{saddles}"
-        status = "local_minimum" if rest.kind in ("minimum", "crease") else "undetermined"
+        status = "local_minimum" if is_minimum(found.rest) else "undetermined"
         ended = f"the descent ended {shown(rest.distance)} from the goal{saddles}"
         why = SAID.get(rest.kind, "the path to the goal as given is not proved")
         pushes = [
@@ -239,6 +254,23 @@ class PotentialField(EdgePlanner):
             if each.force > LEAST_NAMED * rest.pushes[0].force
         ]
         return status, f"{ended}: {why}" + (f"; {join_words(pushes)}" if pushes else "")
+
+
+def is_minimum(rest: FieldRest) -> bool:
+    """Whether the potential rises all around where a descent ended."""
+    return rest.kind >= 0 and RESTS[rest.kind] in ("minimum", "crease")
+
+
+class _FoundEach:
+    """Plans of the core with how their descents ended."""
+
+    def __init__(self, plans: ArmPlans, rests: list[FieldRest]) -> None:
+        self.status, self.cost, self.corners = plans.status, plans.cost, plans.corners
+        self.plans, self.rests = plans, rests
+
+    def plan(self, k: int) -> _Found:
+        """One of them."""
+        return _Found(self.plans.plan(k), self.rests[k])
 
 
 class _Found:

@@ -5,7 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from cspace._core import ArmPlan, RoadmapWorld, plan_each_on_roadmap, plan_on_roadmap
+from cspace._core import (
+    ArmOptions,
+    ArmPlan,
+    ArmPlans,
+    ArmProblems,
+    RoadmapWorld,
+    plan_each_on_roadmap,
+    plan_on_roadmap,
+)
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.planning.arm_planner import Seed
@@ -14,6 +22,7 @@ from cspace.planning.plan_result import Plan
 from cspace.planning.roadmap import MOST_NEIGHBOURS, NEIGHBOURS, SAMPLES, Roadmap
 from cspace.planning.roadmap_files import MOST_SAMPLES
 from cspace.planning.space import ArmSpace
+from cspace.planning.time_limits import TimeLimit
 from cspace.search import draw_seed, option
 from cspace.tables import join_words, shown
 
@@ -30,13 +39,17 @@ class RoadmapPlanner(EdgePlanner):
     `_wanted_neighbours` how many each node is joined to.
     """
 
-    samples: int = option(SAMPLES, "points drawn for the roadmap", minimum=0, maximum=MOST_SAMPLES)
+    samples: int = option(SAMPLES, "points drawn for the roadmap", minimum=1, maximum=MOST_SAMPLES)
     roadmap: Roadmap | str | None = option(
         None,
         "a Roadmap, or the path of a saved one; by default one is made of samples= and the seed, and kept",
     )
 
     _is_lazy = True
+    _late = (
+        "the time limit was used up before there was a roadmap; make one once with"
+        " roadmap = cs.planning.Roadmap(robot), and give it as roadmap="
+    )
 
     @property
     def _wanted_neighbours(self) -> int | None:
@@ -63,21 +76,25 @@ class RoadmapPlanner(EdgePlanner):
         kept[key] = found
         return found
 
-    def _open_world(self, space: ArmSpace, rng: Seed) -> RoadmapWorld:
-        """The roadmap in the scene of a space."""
-        return self._roadmap_of(space, rng)._world(space, self.search == "proved", self.resolution)
+    def _open_world(self, space: ArmSpace, rng: Seed) -> tuple[RoadmapWorld, ArmOptions]:
+        """The roadmap in the scene of a space, and the options as the core takes them, with the time that is
+        left. Raises TimeOver where none is."""
+        limit = TimeLimit(self.time_limit)
+        with limit.enforce():
+            world = self._roadmap_of(space, rng)._world(space, self.search == "proved", self.resolution)
+        return world, self._make_options(rng, time_limit=limit.left)
 
     def _plan_rows(self, space: ArmSpace, rows: tuple[Array, Array], rng: Seed) -> ArmPlan:
         """See EdgePlanner."""
-        world, options = self._open_world(space, rng), self._make_options(rng)
+        world, options = self._open_world(space, rng)
         return plan_on_roadmap(world, space.bounds, space.wraps, *rows, options, self._is_lazy)
 
-    def _plan_each_rows(
-        self, space: ArmSpace, rows: list[tuple[Array, Array]], rng: Seed, threads: int
-    ) -> list[ArmPlan]:
+    def _plan_each_rows(self, space: ArmSpace, problems: ArmProblems, rng: Seed, threads: int) -> ArmPlans:
         """See EdgePlanner."""
-        world, options = self._open_world(space, rng), self._make_options(rng)
-        return plan_each_on_roadmap(world, space.bounds, space.wraps, rows, options, self._is_lazy, threads)
+        world, options = self._open_world(space, rng)
+        return plan_each_on_roadmap(
+            world, space.bounds, space.wraps, problems, options, self._is_lazy, threads
+        )
 
     def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan) -> Plan:
         """See EdgePlanner."""

@@ -136,6 +136,10 @@ class Roadmap:
             ) from error
         return cls._restore(geometry, rule, core)
 
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """What a file holds of it, and the geometry."""
+        return unpack_roadmap, (self.geometry, self._rule, self.nodes, self.edges)
+
     def _world(self, space: ArmSpace, proves_search: bool, resolution: float) -> RoadmapWorld:
         """What is known of it in a scene; InputError for a space of another robot or a larger margin."""
         self._check_space(space)
@@ -191,7 +195,7 @@ def check_rule(samples: Any, neighbours: Any, margin: Any, seed: int) -> dict[st
     """What a roadmap is made of, checked; neighbours 0: as PRM* needs."""
     count = 0 if neighbours is None else whole_number(neighbours, "neighbours", 1, MOST_NEIGHBOURS)
     gap = bounded_number(margin, "margin", 0.0, "it must be a length [m], 0 or more", largest=LARGEST_NUMBER)
-    points = whole_number(samples, "samples", 0, MOST_SAMPLES)
+    points = whole_number(samples, "samples", 1, MOST_SAMPLES)
     return {"samples": points, "neighbours": count, "margin": gap, "seed": seed}
 
 
@@ -211,6 +215,13 @@ def restore_core(
     numbers = rule["samples"], rule["neighbours"], rule["seed"]
     core = restore_roadmap(space.checker.core, space.bounds, space.wraps, *numbers, nodes, edges)
     return rule, core
+
+
+def unpack_roadmap(
+    geometry: RobotGeometry, rule: Mapping[str, Any], nodes: Array, edges: npt.NDArray[np.int32]
+) -> Roadmap:
+    """The roadmap that was pickled."""
+    return Roadmap._restore(geometry, *restore_core(geometry, rule, nodes, edges))
 
 
 def fingerprint_geometry(geometry: RobotGeometry) -> str:

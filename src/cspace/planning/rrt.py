@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cspace._core import ArmOptions, ArmPlan, TreeOptions, plan_arm, plan_arms
+from cspace._core import ArmOptions, ArmPlan, ArmPlans, ArmProblems, TreeOptions, plan_arm, plan_arms
 from cspace.arrays import Array
 from cspace.planning.arm_planner import Seed
 from cspace.planning.edge_planner import EdgePlanner
@@ -40,12 +40,10 @@ class RRT(EdgePlanner):
         options, tree = self._core_options(rng), self._tree_options()
         return plan_arm(space.checker.core, space.bounds, space.wraps, *rows, options, tree)
 
-    def _plan_each_rows(
-        self, space: ArmSpace, rows: list[tuple[Array, Array]], rng: Seed, threads: int
-    ) -> list[ArmPlan]:
+    def _plan_each_rows(self, space: ArmSpace, problems: ArmProblems, rng: Seed, threads: int) -> ArmPlans:
         """See EdgePlanner."""
         options, tree = self._core_options(rng), self._tree_options()
-        return plan_arms(space.checker.core, space.bounds, space.wraps, rows, options, threads, tree)
+        return plan_arms(space.checker.core, space.bounds, space.wraps, problems, options, threads, tree)
 
     def _core_options(self, rng: Seed) -> ArmOptions:
         """The options as the core takes them."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cspace._core import ArmOptions, ArmPlan, plan_arm, plan_arms
+from cspace._core import ArmOptions, ArmPlan, ArmPlans, ArmProblems, plan_arm, plan_arms
 from cspace.arrays import Array
 from cspace.planning.arm_planner import Seed
 from cspace.planning.edge_planner import EdgePlanner
@@ -31,12 +31,10 @@ class RRTConnect(EdgePlanner):
         options = self._core_options(rng)
         return plan_arm(space.checker.core, space.bounds, space.wraps, *rows, options)
 
-    def _plan_each_rows(
-        self, space: ArmSpace, rows: list[tuple[Array, Array]], rng: Seed, threads: int
-    ) -> list[ArmPlan]:
+    def _plan_each_rows(self, space: ArmSpace, problems: ArmProblems, rng: Seed, threads: int) -> ArmPlans:
         """See EdgePlanner."""
         options = self._core_options(rng)
-        return plan_arms(space.checker.core, space.bounds, space.wraps, rows, options, threads)
+        return plan_arms(space.checker.core, space.bounds, space.wraps, problems, options, threads)
 
     def _core_options(self, rng: Seed) -> ArmOptions:
         """The options as the core takes them."""

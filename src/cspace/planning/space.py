@@ -40,6 +40,10 @@ class ArmSpace:
         self.bounds, self.wraps = kept["bounds"]
         self.lower, self.upper = self.bounds
 
+    def __reduce__(self) -> tuple[type[ArmSpace], tuple[HasGeometry, Scene | None, float]]:
+        """What it is made of: the checks are compiled anew."""
+        return type(self), (self.robot, self.scene, self.margin)
+
     @cached_property
     def reach(self) -> float:
         """The farthest that a sphere may be from the axis of a joint that moves it [m]."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
+from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
@@ -47,6 +48,13 @@ class Planner:
     def __init_subclass__(cls) -> None:
         cls.name = vars(cls).get("name", cls.__name__)
 
+    def __new__(cls: type[Same], *values: Any, **options: Any) -> Same:
+        """Raises InputTypeError for an option that the class does not have."""
+        own: Any = cls
+        if options and (known := parameters_of(own)) is not None:
+            check_names(options, known, cls.name or cls.__name__)
+        return super().__new__(cls)
+
     def __post_init__(self) -> None:
         for name, each in self.options.items():
             if (value := getattr(self, name)) is not each.default:
@@ -65,11 +73,7 @@ class Planner:
 
     def with_options(self: Same, options: Mapping[str, Any]) -> Same:
         """The same planner with other options; InputTypeError for an unknown name, else as for new ones."""
-        for name in options:
-            if name not in self.options:
-                raise InputTypeError(
-                    str(suggest("option", name, self.options, owner=f"planner {self.name!r}"))
-                )
+        check_names(options, self.options, self.name)
         return type(self)(**{**self.values, **options})
 
     def _in_force(self: Same, **values: Any) -> Same:
@@ -94,6 +98,21 @@ class Planner:
 
     def __hash__(self) -> int:
         return hash((type(self), *(value for value in self.values.values() if not np.ndim(value))))
+
+
+@cache
+def parameters_of(cls: type[Any]) -> tuple[str, ...] | None:
+    """The names that objects of a class are made with; None if it takes any."""
+    found = signature(cls.__init__).parameters
+    takes_any = any(each.kind is Parameter.VAR_KEYWORD for each in found.values())
+    return None if takes_any else tuple(found)[1:]
+
+
+def check_names(options: Iterable[str], known: Iterable[str], planner: str) -> None:
+    """Raises InputTypeError for the first option that is not known, with the nearest names."""
+    for name in options:
+        if name not in known:
+            raise InputTypeError(str(suggest("option", name, known, owner=f"planner {planner!r}")))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,76 @@
+"""GoalSearch: the plan to a goal of any kind, in the time that its planner has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from math import inf
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cspace._core import TimeOver
+from cspace.arrays import Array
+from cspace.plan_motion.find import explain_goals, find_goals
+from cspace.plan_motion.goals import Goals
+from cspace.planning import ArmPlanner, ArmSpace, Plan
+from cspace.planning.arm_planner import Seed
+from cspace.planning.time_limits import TimeLimit
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
+
+LATE = "the time limit was used up before a configuration of the goal was found"
+
+
+class GoalSearch:
+    """Finds the configurations of one goal and plans to them; both share the time limit of the planner."""
+
+    def __init__(
+        self, robot: Robot, planner: ArmPlanner, space: ArmSpace, rng: Seed, seconds: float | None = None
+    ) -> None:
+        self.robot, self.planner, self.space, self.rng = robot, planner, space, rng
+        self.limit = TimeLimit(getattr(planner, "time_limit", inf) if seconds is None else seconds)
+
+    def find(self, starts: Array, goal: Any) -> Goals:
+        """The configurations of a goal, as find_goals; none if they take too long."""
+        return self._find(partial(find_goals, self.robot, self.space, starts, goal))
+
+    def plan(self, starts: Array, goals: Goals) -> Plan:
+        """A plan to the configurations of a goal; if none of them is free and others exist, to those."""
+        if not len(goals.rows):
+            return make_negative(self.space, self.planner, goals.status, goals.reason)
+        found = self._plan_rows(starts, goals)
+        if found.status == "invalid_goal" and not goals.is_given:
+            return self.plan_to_more(starts, goals)
+        return found
+
+    def plan_to_more(self, starts: Array, goals: Goals) -> Plan:
+        """A plan where no configuration of a goal is free: to further ones, or the reason why there is
+        none."""
+        if goals.find_more is not None:
+            return self.plan(starts, self._find(goals.find_more))
+        return make_negative(self.space, self.planner, *explain_goals(self.space, goals))
+
+    def _find(self, find: Callable[[], Goals]) -> Goals:
+        if self.limit.is_endless:
+            return find()
+        try:
+            with self.limit.enforce():
+                return find()
+        except TimeOver:
+            return Goals(np.empty((0, self.space.dof)), LATE, is_whole=False)
+
+    def _plan_rows(self, starts: Array, goals: Goals) -> Plan:
+        if self.limit.is_endless or goals.is_given:
+            return self.planner.plan(self.space, starts, goals.rows, rng=self.rng)
+        limited = self.planner.with_options({"time_limit": self.limit.left})
+        found = limited.plan(self.space, starts, goals.rows, rng=self.rng)
+        return replace(found, planner=self.planner)
+
+
+def make_negative(space: ArmSpace, planner: ArmPlanner, status: str, reason: str) -> Plan:
+    """A plan without a path."""
+    path = np.empty((0, space.dof))
+    return Plan(status, reason, path, np.inf, -1, -1, False, {}, space, planner)
