@@ -48,11 +48,11 @@ if TYPE_CHECKING:
 
 
 EXAMPLES: Final = """
-cspace plan ur5e --geometry skeleton --to up --scene cell.toml --plot way.png
-cspace plan ur5e --geometry skeleton --from up --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
+cspace plan ur5e --to up --scene cell.toml --plot way.png
+cspace plan ur5e --from up --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
 cspace plan panda --spheres spheres.json --from ready --to 0 0 0 -pi/2 0 pi/2 0 --scene cell.toml -o way.yaml
-cspace plan ur5e --geometry skeleton --xyz 0.4 0.2 0.4 --direction 0 0 -1 --margin 5mm --json
-cspace plan ur5e --geometry skeleton --xyz 0.4 0.2 0.4 --box 0.1 0.1 0 --direction 0 0 -1 --within 0.2
+cspace plan ur5e --xyz 0.4 0.2 0.4 --direction 0 0 -1 --margin 5mm --json
+cspace plan ur5e --xyz 0.4 0.2 0.4 --box 0.1 0.1 0 --direction 0 0 -1 --within 0.2
 cspace plan arm.urdf --from 0 0 0 0 0 0 --to 1 0 0 0 0 0 --to -1 0 0 0 0 0 --scene cell.toml --seed 7
 """
 HOME: Final = "home"
