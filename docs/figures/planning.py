@@ -91,11 +91,27 @@ def potential_of_two_joints() -> Sequence[Any]:
     return artists
 
 
+def caught_arm() -> Sequence[Any]:
+    """A descent of the lectures that stops before a box."""
+    spheres = [[x, 0, 0, 0.05] for x in (0.25, 0.5, 0.75, 1.0)]
+    robot = cs.load_robot("planar_2r").with_spheres({"link_1": spheres, "link_2": spheres})
+    scene = cs.Scene(
+        [
+            cs.Box([0.5, 0.5, 0.5], [1.2, 1.3, 0], name="box"),
+            cs.Sphere(0.3, [-1.4, 0.6, 0], name="ball"),
+        ]
+    )
+    field = {"planner": "potential_field", "k_r": 0.001, "rho_0": 0.3}
+    caught = cs.plan(robot, [0.2, 0.3], [1.8, 0.8], scene, **field)
+    return plot.plan(caught, title="the descent stops before the box")
+
+
 PICTURES: tuple[Callable[[], Sequence[Any]], ...] = (
     plan_around_a_wall,
     shapes_of_an_arm,
     plan_with_a_bottle,
     potential_of_two_joints,
+    caught_arm,
 )
 
 

@@ -28,7 +28,7 @@ GHOST: Final = (0.28, 0.50)
 """Opacity of the poses between, and of the start."""
 
 
-STOP: Final = 4.0
+STOP: Final = 6.0
 """Radius of the ball where a descent stopped, in radii of the path of the tip."""
 
 
