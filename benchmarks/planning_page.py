@@ -1,4 +1,4 @@
-"""The tables on docs/planning.md, from the results of the benchmarks of planning; tools/pages.py writes them."""
+"""The tables on docs/planning.md, from the results of the benchmarks; tools/pages.py writes them."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from typing import Any, Final, cast
 from cspace.arrays import Array
 from cspace.collision.scene_files import read_scene, write_scene
 from cspace.errors import InputError, InputTypeError, Renamed, suggest
-from cspace.shapes import Shape
+from cspace.shapes import HalfSpace, Shape
 from cspace.shapes.shape import check_place
 from cspace.tables import html_table, one_line, show_fields, shown
 
@@ -153,9 +153,11 @@ class Scene(Renamed):
         T_frame_object (4, 4), or a position (3,): the pose of the object in the frame. touch: names of links
         and objects that it may touch, such as the fingers; what moves with the frame needs no mention.
         Attaching again replaces frame, pose and touch. Raises UnknownNameError for an object that does not
-        exist.
+        exist, InputError for a half space.
         """
         shape = self[name]
+        if isinstance(shape, HalfSpace):
+            raise InputError(f"{name!r} is a half space, which is unbounded; attach a box in its place")
         if isinstance(touch, str):
             raise InputTypeError(f"touch is the string {touch!r}; write a list of names, [{touch!r}]")
         place = check_place(T_frame_object, f"T_frame_object of {name!r}")

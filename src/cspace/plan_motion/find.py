@@ -13,6 +13,7 @@ from cspace.plan_motion.parts import solve_parts
 from cspace.plan_motion.poses import solve_pose
 from cspace.plan_motion.regions import sample_region
 from cspace.planning import ArmSpace, Region
+from cspace.planning.space import are_names
 from cspace.spatial import as_pose
 from cspace.spatial.checks import one_pose
 
@@ -34,13 +35,15 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals
     """
     if space.dof != POSE_ROWS and (plain := space.plain_rows(goal)) is not None:
         return Goals(plain, is_given=True)
+    if are_names(goal):
+        return Goals(space.as_rows(goal, "goal"), is_given=True)
     if isinstance(goal, Region):
         if not goal.is_exact:
             return sample_region(robot, space, starts[0], goal)
         goal = goal.goal
     if isinstance(goal, Mapping):
         return solve_parts(robot, space, starts[0], goal)
-    shape = () if isinstance(goal, str) else shape_of(goal, "goal")
+    shape = shape_of(goal, "goal")
     if shape == (4, 4) and (space.dof != POSE_ROWS or is_pose(goal)):
         return solve_pose(robot, space, starts[0], goal)
     if not shape and is_pose(goal):  # an object that holds a pose, such as scipy's RigidTransform
@@ -54,8 +57,8 @@ def check_kind(goal: Any, shape: tuple[int, ...], dof: int) -> None:
     if len(shape) not in (1, 2):
         said = f"has shape {shape}" if shape else f"is a {type(goal).__name__}"
         raise InputTypeError(
-            f"goal {said}; it must be configurations (dof,) or (g, dof), one pose (4, 4), a dict of keywords"
-            " of robot.ik, or a cs.planning.Region"
+            f"goal {said}; it must be configurations (dof,) or (g, dof), one pose (4, 4), a named pose, a"
+            " dict of keywords of robot.ik, or a cs.planning.Region"
         )
     if shape == (POSITION_SIZE,) and dof != POSITION_SIZE:
         raise InputError(

@@ -42,11 +42,11 @@ def plan(
 ) -> Plan:
     """A free way of a robot from a start to a goal, every motion of it proved.
 
-    start: a configuration (dof,) [rad or m], or several (s, dof) to choose from. goal: a configuration (dof,)
-    or several (g, dof); a pose (4, 4) of the tip, reached by whichever of its IK solutions within the limits
-    is easiest; the keywords of `robot.ik` as a dict, such as {"position": p}; or a `planning.Region` of
-    poses, of which free configurations are sampled. Of redundant arms the solutions are samples over the
-    self-motion. scene: None without obstacles. planner: a name of
+    start: a configuration (dof,) [rad or m], or several (s, dof) to choose from; or a name of
+    `robot.named_poses`, such as "home". goal: the same; or a pose (4, 4) of the tip, reached by whichever of
+    its IK solutions within the limits is easiest; the keywords of `robot.ik` as a dict, such as
+    {"position": p}; or a `planning.Region` of poses, of which free configurations are sampled. Of redundant
+    arms the solutions are samples over the self-motion. scene: None without obstacles. planner: a name of
     `cs.planning.PLANNERS`, or an ArmPlanner. margin [m]: everything keeps so far away from everything else.
     rng: seed or generator; the same seed gives the same plan on every machine. options: those of the planner.
     verify: "mesh" checks the path once more, at samples, with the exact shapes of the links in place of their
@@ -67,10 +67,10 @@ def plan(
     found = _plan_to_goals(chosen, space, starts, goals, rng)
     if found.status == "invalid_start":
         raise InputError(
-            f"{found.reason}; robot.escape leads away from there, or allow the pair in the scene"
+            f"{found.reason}; robot.escape leads out of a contact, and scene.allow(a, b) permits it"
         )
     if found.status == "invalid_goal":
-        raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
+        raise InputError(f"{found.reason}; choose another goal, or permit a contact by scene.allow(a, b)")
     return found if judge is None or not found else _verify_plan(found, chosen, judge)
 
 

@@ -17,8 +17,8 @@ from cspace.cli.arguments import (
     add_option,
     add_robot,
     named_value,
+    read_angle,
     read_length,
-    read_number,
     read_radians,
     read_seed,
     split_numbers,
@@ -52,7 +52,7 @@ cspace plan ur5e --to up --scene cell.toml --plot way.png
 cspace plan ur5e --from up --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
 cspace plan panda --spheres spheres.json --from ready --to 0 0 0 -pi/2 0 pi/2 0 --scene cell.toml -o way.yaml
 cspace plan ur5e --xyz 0.4 0.2 0.4 --direction 0 0 -1 --margin 5mm --json
-cspace plan ur5e --xyz 0.4 0.2 0.4 --box 0.1 0.1 0 --direction 0 0 -1 --within 0.2
+cspace plan ur5e --xyz 0.4 0.2 0.4 --box 0.1 0.1 0 --direction 0 0 -1 --within 20deg
 cspace plan arm.urdf --from 0 0 0 0 0 0 --to 1 0 0 0 0 0 --to -1 0 0 0 0 0 --scene cell.toml --seed 7
 """
 HOME: Final = "home"
@@ -96,8 +96,8 @@ def add_region(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("region")
     text = "with --xyz: the tip may be anywhere in a box with these edges around it: 0.1, or 10cm"
     add_option(group, "--box SX SY SZ", text, read_length)
-    text = "with --direction or an orientation: by what angle it may deviate [rad, or degrees with --deg]"
-    add_option(group, "--within ANGLE", text, read_number)
+    text = "with --direction or an orientation: by what angle it may deviate: 0.35, or 20deg"
+    add_option(group, "--within ANGLE", text, read_angle)
 
 
 def add_planner(parser: argparse.ArgumentParser) -> None:

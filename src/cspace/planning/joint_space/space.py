@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 from math import inf, prod
 from time import perf_counter
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -41,6 +42,9 @@ MOST_SAMPLES: Final = 10**10
 """Samples of a volume: an hour's work, and an error of five millionths."""
 
 
+EXACT_ONLY: Final = "only planar arms with two joints have an exact space, cs.configuration_space(arm, scene)"
+
+
 class JointSpace(Renamed):
     """The configurations of a robot with collision geometry, free or blocked, for any number of joints.
 
@@ -55,6 +59,12 @@ class JointSpace(Renamed):
     Raises InputError for a robot without collision geometry, a prismatic joint without limits, a negative
     margin, and names of the scene that do not fit the robot.
     """
+
+    _elsewhere = MappingProxyType(
+        dict.fromkeys(("path", "connected"), "cs.plan(robot, start, goal, scene) finds paths")
+        | dict.fromkeys(("bitmap", "cells", "obstacle_map"), "slice((i, j)) has the cells of two joints")
+        | dict.fromkeys(("components", "component", "boundaries", "sections", "link_radius"), EXACT_ONLY)
+    )
 
     def __init__(
         self,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -28,6 +29,9 @@ MOST_CELLS: Final = 30_000
 """Cells of a bitmap along one joint: more than a gigabyte is no picture."""
 
 
+AS_JOINT_SPACE: Final = "cs.configuration_space(arm, scene, exact=False) has it"
+
+
 class ConfigurationSpace(Renamed):
     """The configurations of a planar arm with two revolute joints, free or blocked by obstacles.
 
@@ -41,6 +45,15 @@ class ConfigurationSpace(Renamed):
 
     Lozano-Pérez 1983.
     """
+
+    _elsewhere = MappingProxyType(
+        {
+            "slice": "bitmap(n) is the whole space; " + AS_JOINT_SPACE,
+            "project": AS_JOINT_SPACE,
+            "volume": "components[k].area is exact; " + AS_JOINT_SPACE,
+        }
+        | dict.fromkeys(("robot", "scene", "margin"), AS_JOINT_SPACE)
+    )
 
     def __init__(self, arm: PlanarArm, sections: dict[str, list[Piece]], link_radius: float) -> None:
         self.arm, self.sections, self.link_radius = arm, sections, link_radius
