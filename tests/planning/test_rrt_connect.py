@@ -190,7 +190,7 @@ BAD = {
     "goal": (lambda r, s: cs.plan(r, [2, 0], [0, 0], s), InputError, "goal: link_2 touches ball"),
     "shape": (lambda r, s: cs.plan(r, [0, 0, 0], [2, 0], s), InputError, "start has shape"),
     "nan": (lambda r, s: cs.plan(r, [0, 0], [np.nan, 0], s), InputError, "goal holds nan"),
-    "word": (lambda r, s: cs.plan(r, [2, 0], "home", s), InputTypeError, "goal is a str"),
+    "word": (lambda r, s: cs.plan(r, [2, 0], "home", s), UnknownNameError, "no named pose .home."),
     "none": (lambda r, s: cs.plan(r, [2, 0], None, s), InputTypeError, "goal is a NoneType"),
     "no start": (lambda r, s: cs.plan(r, None, [2, 0], s), InputError, "start has shape"),
     "ragged": (lambda r, s: cs.plan(r, [2, 0], [[1], [1, 2]], s), InputTypeError, "goal must be numbers"),
