@@ -54,7 +54,7 @@ class HasShapes(Protocol):
     def collision(self) -> RobotGeometry:
         """What collision checks use."""
 
-    def fk(self, q: Any, frame: Any = None) -> Array:
+    def fk(self, q: ArrayLike, frame: str | None = None) -> Array:
         """Poses of a frame."""
 
 

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from cspace.arrays import Array, shape_of
 from cspace.collision.checks import explain_contacts
 from cspace.errors import InputError, InputTypeError
-from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.goals import GoalLike, Goals
 from cspace.plan_motion.parts import solve_parts
 from cspace.plan_motion.poses import solve_pose
 from cspace.plan_motion.regions import sample_region
 from cspace.planning import ArmSpace, Region
 from cspace.planning.space import are_names
 from cspace.spatial import as_pose
-from cspace.spatial.checks import one_pose
+from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -27,7 +27,7 @@ POSITION_SIZE: Final = 3
 """Values of a position, which is often given where a configuration is expected."""
 
 
-def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals:
+def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: GoalLike) -> Goals:
     """The configurations (g, dof) of a goal as `plan` takes it.
 
     Those of poses, partial goals and regions are sorted by their distance from the first of the starts
@@ -52,7 +52,7 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals
     return Goals(space.as_rows(goal, "goal"), is_given=True)
 
 
-def check_kind(goal: Any, shape: tuple[int, ...], dof: int) -> None:
+def check_kind(goal: object, shape: tuple[int, ...], dof: int) -> None:
     """Raises InputTypeError or InputError for a value that is not a goal; names the kind that it is like."""
     if len(shape) not in (1, 2):
         said = f"has shape {shape}" if shape else f"is a {type(goal).__name__}"
@@ -67,7 +67,7 @@ def check_kind(goal: Any, shape: tuple[int, ...], dof: int) -> None:
         )
 
 
-def is_pose(goal: Any) -> bool:
+def is_pose(goal: PoseLike) -> bool:
     """Whether a goal is a pose: not four configurations of four joints, which are (4, 4) numbers too."""
     try:
         as_pose(goal)

@@ -14,7 +14,7 @@ from cspace.arrays import Array, whole_number
 from cspace.collision import MeshJudge, Scene
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.plan_motion.find import explain_goals, find_goals
-from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.goals import GoalLike, Goals
 from cspace.planning import ArmPlanner, ArmSpace, Plan, find_planner
 from cspace.robot import Robot
 from cspace.tables import html_table, one_line, shown
@@ -31,7 +31,7 @@ MOST_THREADS: Final = 1024
 def plan(
     robot: Robot,
     start: ArrayLike,
-    goal: Any,
+    goal: GoalLike,
     scene: Scene | None = None,
     *,
     planner: str | ArmPlanner = "rrt_connect",
@@ -77,7 +77,7 @@ def plan(
 def plan_many(
     robot: Robot,
     starts: ArrayLike,
-    goals: Any,
+    goals: ArrayLike | Sequence[GoalLike],
     scene: Scene | None = None,
     *,
     planner: str | ArmPlanner = "rrt_connect",
@@ -123,7 +123,7 @@ def plan_many(
     return Plans(plans)
 
 
-def _check_each(goals: Sequence[Any], dof: int) -> None:
+def _check_each(goals: Sequence[GoalLike], dof: int) -> None:
     """Raises InputError where the goals are the numbers of one configuration."""
     if any(isinstance(goal, (int, float, np.number)) for goal in goals):
         raise InputError(

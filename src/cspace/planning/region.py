@@ -31,11 +31,11 @@ class Region:
     """A set of poses of the tip: a goal of `cs.plan`.
 
     box: (size (3,) [m], T_world_box), the edges of a box and the pose (4, 4) or position (3,) of its middle,
-    in which the tip lies; None: anywhere. direction: where an axis of the tip points in the world, (3,) or
-    a name such as "-z". axis: that axis, "x", "-z" or (3,) in the tip. within [rad]: by how much it may deviate. rotation (3, 3):
-    instead of a direction, the whole orientation, which deviates by a turn of at most `within`. Without
-    direction and rotation the tip may be turned in any way. A size of zero fixes the position, within=0 the
-    direction or orientation.
+    in which the tip lies; None: anywhere. direction: where an axis of the tip points in the world, (3,) or a
+    name such as "-z". axis: that axis, "x", "-z" or (3,) in the tip. within [rad]: by how much it may
+    deviate. rotation (3, 3): instead of a direction, the whole orientation, which deviates by a turn of at
+    most `within`. Without direction and rotation the tip may be turned in any way. A size of zero fixes the
+    position, within=0 the direction or orientation.
 
     Raises InputError for a region without any part, sizes that are negative, a direction that is zero, and
     an angle outside 0 to π; InputTypeError for parts that do not go together.
