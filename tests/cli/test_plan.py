@@ -17,7 +17,7 @@ from cli import schema
 from cli.run import ROOT, cspace
 from cspace.cli import progress
 from cspace.cli.exits import Exit
-from cspace.cli.path_files import yaml_number
+from cspace.planning.plan_files import yaml_number
 
 CELL = ROOT / "examples/cell.toml"
 START, GOAL = [-60, -80, 90, -100, -90, 0], [60, -80, 90, -100, -90, 0]

@@ -44,9 +44,8 @@ SHELL_WORDS: Final[Mapping[str, str]] = MappingProxyType(
         "cs.robots.search()": "cspace robots WORD",
         "robot.with_spheres(…)": "--spheres FILE",
         'load the robot with geometry="skeleton"': "--geometry skeleton",
-        "robot.escape leads out of a contact, and scene.allow(a, b) permits it": "move it away from there, or"
-        " list the pair under allowed in the scene",
-        "permit a contact by scene.allow(a, b)": "list the pair under allowed in the scene",
+        "robot.escape leads out of it": "move it away from there",
+        "permit it by scene.allow": "list the pair under allowed in the scene: ",
     }
 )
 """What messages of the library say for Python, and what is typed instead."""

@@ -65,12 +65,8 @@ def plan(
     starts = space.as_rows(start, "start")
     goals = find_goals(robot, space, starts, goal)
     found = _plan_to_goals(chosen, space, starts, goals, rng)
-    if found.status == "invalid_start":
-        raise InputError(
-            f"{found.reason}; robot.escape leads out of a contact, and scene.allow(a, b) permits it"
-        )
-    if found.status == "invalid_goal":
-        raise InputError(f"{found.reason}; choose another goal, or permit a contact by scene.allow(a, b)")
+    if found.status in ("invalid_start", "invalid_goal"):
+        raise InputError(found.reason)
     return found if judge is None or not found else _verify_plan(found, chosen, judge)
 
 

@@ -105,22 +105,34 @@ class ArmSpace:
         for k in np.flatnonzero((q < self.lower) | (q > self.upper)).tolist():
             if not self.wraps[k]:
                 low, high = self.lower[k], self.upper[k]
+                typed = " rad" if k not in self.geometry.prismatic and abs(q[k]) > TURN else ""
                 return (
-                    f"joint {self.geometry.joint_names[k]!r} is at {q[k]:.9g}, outside its limits"
+                    f"joint {self.geometry.joint_names[k]!r} is at {q[k]:.9g}{typed}, outside its limits"
                     f" {low:.9g} to {high:.9g}"
                 )
         return ""
 
     def describe_contact(self, q: Array, found: tuple[bool, int, int] | None) -> str:
-        """What touches at q, and how deep, in words."""
+        """What touches at q, how deep, and what to do, in words."""
         if found is None:
             return ""
         a, b = self.checker.name_pair(found)
+        if not found[0] and self._is_fixed(a):
+            return f"{a} touches {b}, and no joint moves either; permit it by scene.allow({a!r}, {b!r})"
         nearest = self.clearance(q)
         if nearest.pair is not None and nearest.distance < 0.0:
             a, b = nearest.pair
-            return f"{a} touches {b}, {1000 * -nearest.distance:.3g} mm deep"
-        return f"{a} is closer to {b} than the margin of {1000 * self.margin:.3g} mm"
+            text = f"{a} touches {b}, {1000 * -nearest.distance:.3g} mm deep"
+        else:
+            text = f"{a} is closer to {b} than the margin of {1000 * self.margin:.3g} mm"
+        return f"{text}; robot.escape leads out of it, or permit it by scene.allow({a!r}, {b!r})"
+
+    def _is_fixed(self, link: str) -> bool:
+        """Whether a link or an attached object is fixed to the base."""
+        geometry = self.geometry
+        if link in geometry.links:
+            return bool(geometry.link_bodies[geometry.links.index(link)] == 0)
+        return self.scene is not None and geometry.frames[self.scene.attached[link].frame][0] < 0
 
     def __repr__(self) -> str:
         objects = 0 if self.scene is None else len(self.scene)

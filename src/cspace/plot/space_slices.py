@@ -69,8 +69,9 @@ def space_projection(
 ) -> list[Any]:
     """Draw a projection of a configuration space: the share of free samples, grey where none is free.
 
-    part: a Projection. q (dof,) or (k, dof), path (m, dof), ax, title: as of space_slice. Returns the artists,
-    the last of them a bar of colours. Raises InputTypeError for what is not a Projection, MissingExtraError without matplotlib.
+    part: a Projection. q (dof,) or (k, dof), path (m, dof), ax, title: as of space_slice. Returns the
+    artists, the last of them a bar of colours. Raises InputTypeError for what is not a Projection,
+    MissingExtraError without matplotlib.
     """
     if not hasattr(part, "is_free"):
         raise InputTypeError(

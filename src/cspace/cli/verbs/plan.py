@@ -26,7 +26,6 @@ from cspace.cli.arguments import (
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.goals import GOAL_WORDS, Goal, add_goal, goal_of, name_options
 from cspace.cli.output import Output, Table, check_format, check_writable
-from cspace.cli.path_files import check_path_file, write_path
 from cspace.cli.progress import show_progress
 from cspace.cli.robot import (
     FEWER_DECIMALS,
@@ -139,7 +138,10 @@ def check_targets(args: argparse.Namespace) -> None:
         check_format(args.plot)
         check_writable(args.plot)
     if args.output is not None:
-        check_path_file(args.output)
+        from cspace.planning.plan_files import check_ending
+
+        check_ending(args.output)
+        check_writable(args.output)
 
 
 def options_of_planner(args: argparse.Namespace) -> dict[str, Any]:
@@ -254,7 +256,7 @@ def goal_wanted(args: argparse.Namespace, goal: Array | Goal) -> Any:
 def write_files(args: argparse.Namespace, robot: Robot, plan: Plan, scene: Scene | None) -> list[str]:
     """Write the path and the picture that were requested; returns the files."""
     if args.output is not None:
-        write_path(args.output, robot, plan)
+        plan.save(args.output)
     if args.plot is not None:
         from cspace import plot
 
