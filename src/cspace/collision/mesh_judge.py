@@ -18,7 +18,7 @@ from cspace.arrays import Array, bounded_number, positive_number
 from cspace.collision.checker import touching_pairs
 from cspace.collision.checks import as_configurations, flat_rows, one_configuration, read_geometry
 from cspace.collision.link_shapes import described_solids, skeleton_solids
-from cspace.collision.robot_geometry import RobotGeometry
+from cspace.collision.robot_geometry import SKELETON, RobotGeometry
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError, MissingExtraError
 from cspace.kinematics import Assembly
@@ -39,9 +39,6 @@ CHUNK: Final = 1024
 
 SOLIDS: Final = (Box, Capsule, Cylinder, HalfSpace, Sphere)
 """What coal knows as solids."""
-
-SKELETON: Final = "capsules of the skeleton"
-"""The source of a geometry whose shapes are the capsules along the arm."""
 
 
 class HasShapes(Protocol):

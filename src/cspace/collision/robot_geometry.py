@@ -34,6 +34,11 @@ from cspace.tolerances import LARGEST_NUMBER
 GEOMETRIES: Final = ("collision", "skeleton")
 """What the geometry of a robot is made from: the elements of its description, or capsules along the arm."""
 
+SKELETON: Final = "capsules of the skeleton"
+DESCRIBED: Final = "collision elements of the description"
+GIVEN: Final = "spheres as given"
+"""The sources of a geometry."""
+
 FREE_TRAVEL: Final = 1.0
 """How far prismatic joints without limits move in samples [m]."""
 
@@ -237,7 +242,7 @@ def robot_geometry(
     radii = split_rows(spheres[:, 3], sphere_links)
     without_pairs = RobotGeometry(
         robot=robot.name,
-        source="capsules of the skeleton" if skeleton else "collision elements of the description",
+        source=SKELETON if skeleton else DESCRIBED if described is None else GIVEN,
         reason="" if len(spheres) else missing_reason(robot, description),
         links=links,
         link_bodies=link_bodies,

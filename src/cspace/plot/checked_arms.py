@@ -46,6 +46,13 @@ class CheckedArm:
         shapes = [shape for own in self.links.values() for shape in own] + [*self.carried]
         return np.concatenate([np.zeros((0, 3)), *(shape.bounds for shape in shapes)])
 
+    @cached_property
+    def points(self) -> Array:
+        """Points (m, 3) that should be seen: those of the skeleton, and the middles of what moves."""
+        moving = [shape for name, own in self.links.items() if name not in self.fixed for shape in own]
+        middles = [shape.pose[None, :3, 3] for shape in [*moving, *self.carried]]
+        return np.concatenate([self.skeleton.points, *middles])
+
     def link_bodies(self, tints: Mapping[str, Array]) -> list[Body]:
         """The bodies of the links that have a tint."""
         return [

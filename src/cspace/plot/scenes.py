@@ -123,17 +123,19 @@ def obstacle_groups(
     more: Sequence[Array] = (),
     marked: Collection[str] = (),
 ) -> list[Group]:
-    """The obstacles; those that hide much of the arms, or of more points (m, 3), are transparent.
+    """The obstacles; those that hide much of the arms, or of the last one, are transparent.
 
-    marked: names of obstacles in the colour of pushes.
+    more: points (m, 3) that count with all arms. marked: names of obstacles in the colour of pushes.
     """
     if scene is None:
         return []
     shapes = scene.obstacles
     around = np.array([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()]).T
     eye = look_along(axes.elev, axes.azim)[2]
-    points = np.concatenate([NO_POINTS, *(arm.skeleton.points for arm in arms), *more])
-    hides = Blockers(shapes).hide(points, eye).mean(axis=1) if len(points) else np.zeros(len(shapes))
+    drawn = [arm.points for arm in arms]
+    seen = [np.concatenate([*drawn, *more]), drawn[-1]] if drawn else []
+    blockers = Blockers(shapes)
+    hides = np.max([np.zeros(len(shapes)), *(blockers.hide(each, eye).mean(axis=1) for each in seen)], axis=0)
     solid: list[Body] = []
     glass = []
     for shape, share in zip(shapes, hides, strict=True):
