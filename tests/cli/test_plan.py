@@ -121,6 +121,12 @@ def test_where_a_descent_ended_keeps_its_names(tmp_path):
     assert rest["kind"] == own.stats["rest"].kind == "minimum"
     assert rest["q"] == own.stats["rest"].q.tolist()
     assert rest["pushes"][0]["other"] == "box"
+    drawn = cspace(
+        f"plan planar_2r {ends} --planner potential_field --plot {tmp_path}/stop.png -o {tmp_path}/w.csv"
+    )
+    assert drawn.code == Exit.NEGATIVE
+    assert (tmp_path / "stop.png").stat().st_size > 10_000
+    assert not (tmp_path / "w.csv").exists()
 
 
 @pytest.mark.parametrize("ending", ["yaml", "yml", "json", "csv"])

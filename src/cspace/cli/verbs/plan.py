@@ -119,7 +119,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         plan, seconds = find_plan(args, robot, start, goal, scene, options)
     except (InputError, InputTypeError) as error:
         raise UsageError(name_options(str(error))) from error
-    written = write_files(args, robot, plan, scene) if plan else []
+    written = write_files(args, robot, plan)
     if out.as_json:
         out.document(plan_document(args, robot, start, goal, plan, seconds, written))
     else:
@@ -253,16 +253,19 @@ def goal_wanted(args: argparse.Namespace, goal: Array | Goal) -> Any:
     )
 
 
-def write_files(args: argparse.Namespace, robot: Robot, plan: Plan, scene: Scene | None) -> list[str]:
-    """Write the path and the picture that were requested; returns the files."""
-    if args.output is not None:
+def write_files(args: argparse.Namespace, robot: Robot, plan: Plan) -> list[Path]:
+    """Write the path and the picture that were requested, of a failed descent the picture; the files."""
+    written = []
+    if args.output is not None and plan:
         plan.save(args.output)
-    if args.plot is not None:
+        written.append(args.output)
+    if args.plot is not None and (plan or "rest" in plan.stats):
         from cspace import plot
 
         with show_progress("drawing the motion"):
-            plot.save(plot.plan(plan, title=f"{robot.name}: {plan.reason}"), args.plot)
-    return [str(path) for path in (args.output, args.plot) if path is not None]
+            plot.save(plot.plan(plan, title=f"{robot.name}: {plan.reason.partition(':')[0]}"), args.plot)
+        written.append(args.plot)
+    return written
 
 
 def plan_document(
@@ -272,7 +275,7 @@ def plan_document(
     goal: Array | Goal,
     plan: Plan,
     seconds: float,
-    written: list[str],
+    written: list[Path],
 ) -> dict[str, Any]:
     """The plan as JSON data [rad, m]; numbers that do not exist are null."""
     tip_goal = goal if isinstance(goal, Goal) else Goal()
@@ -304,7 +307,7 @@ def plan_document(
         "clearance": finite_number(plan.clearance),
         "seconds": seconds,
         "stats": {name: name_fields(value) for name, value in plan.stats.items()},
-        "written": written,
+        "written": [str(path) for path in written],
     }
 
 
