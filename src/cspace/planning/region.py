@@ -17,10 +17,12 @@ from cspace.spatial.checks import one_pose
 from cspace.spatial.poses import assemble, invert_pose, transform_points
 from cspace.spatial.vectors import AXES, Z, frame_along, length_and_direction
 from cspace.tables import one_line
-from cspace.tolerances import FARTHEST, IN_REGION, SMALL_TURN
+from cspace.tolerances import FARTHEST, IN_REGION, LARGEST_NUMBER, SMALL_TURN
 
 HALVINGS: Final = 53
 """Bisections after which an angle has all bits of a double."""
+
+WITHIN: Final = "it must be an angle [rad], 0 to π"
 
 DIMENSIONS: Final = 6
 """Of the samples of a region: three for the position and three for the orientation."""
@@ -48,7 +50,9 @@ class Region:
     within: float = 0.0
 
     def __post_init__(self) -> None:
-        angle = bounded_number(self.within, "within", 0.0, "it must be an angle [rad], 0 to π", np.pi)
+        angle = bounded_number(self.within, "within", 0.0, WITHIN, LARGEST_NUMBER)
+        if angle > np.pi:
+            raise InputError(f"within is {angle:g}; {WITHIN}")
         if self.direction is not None and self.rotation is not None:
             raise InputTypeError("a Region takes a direction or a rotation, not both")
         has_axis = not isinstance(self.axis, str) or self.axis != "z"
