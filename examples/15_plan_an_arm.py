@@ -4,7 +4,7 @@ import numpy as np
 
 import cspace as cs
 
-robot = cs.load_robot("ur5e", geometry="skeleton")
+robot = cs.load_robot("ur5e")
 scene = cs.Scene(
     [
         cs.Box([0.1, 0.6, 0.5], [0.55, 0.0, 0.35], name="wall"),

@@ -1,5 +1,5 @@
 """Writes the generated parts of docs/: the index of rooms, the index of the lectures, the examples in C++,
-the options of planners.
+the options of planners, the measurements of planning.
 
 Usage: python tools/pages.py [--check]
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
-sys.path.insert(0, str(ROOT / "src"))
+sys.path[:0] = [str(ROOT / "src"), str(ROOT / "benchmarks")]
 COURSE = ("spatial", "robots", "catalogue", "kinematics", "ik", "subproblems", "redundancy", "tracking")
 COURSE += (
     "differential-kinematics",
@@ -102,7 +102,10 @@ def filled(page: Path, parts: dict[str, str]) -> str:
 
 def generated() -> dict[Path, str]:
     """Each page with generated parts and the text it should have."""
+    import planning_page
+
     parts = {
+        DOCS / "planning.md": planning_page.parts(),
         DOCS / "index.md": {"rooms": rooms()},
         DOCS / "lectures.md": {"lectures": lectures()},
         DOCS / "planners.md": {"options": options()},

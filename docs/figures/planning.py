@@ -17,12 +17,11 @@ LINK_RADIUS = 0.04
 """Of the links of planar_2r in its picture [m]."""
 LEVELS_TO = 2.5
 """The highest band of a potential: beyond it, at obstacles, it rises without bound."""
-TOUCHED = ("wrist_1_link", "wrist_2_link", "wrist_3_link")
 
 
 def plan_around_a_wall() -> Sequence[Any]:
     """The example of the page on planning."""
-    robot = cs.load_robot("ur5e", geometry="skeleton")
+    robot = cs.load_robot("ur5e")
     scene = cs.Scene(
         [
             cs.Box([0.1, 0.6, 0.5], [0.55, 0.0, 0.35], name="wall"),
@@ -33,9 +32,9 @@ def plan_around_a_wall() -> Sequence[Any]:
     return plot.plan(cs.plan(robot, start, goal, scene), title="ur5e: around a wall, every motion proved")
 
 
-def spheres_of_an_arm() -> Sequence[Any]:
+def shapes_of_an_arm() -> Sequence[Any]:
     """What collision checks use of a UR5e, and the scene of the page on collision."""
-    robot = cs.load_robot("ur5e", geometry="skeleton")
+    robot = cs.load_robot("ur5e")
     scene = cs.Scene(
         [
             cs.Box([0.8, 1.2, 0.04], [0.6, 0.0, -0.1], name="table"),
@@ -43,12 +42,12 @@ def spheres_of_an_arm() -> Sequence[Any]:
         ]
     )
     q = np.radians([0, -120, 60, -90, -90, 0])
-    return plot.spheres(robot, q, scene, title="ur5e: the spheres of its links, a table and a ball")
+    return plot.collision(robot, q, scene, title="ur5e: the capsules of its links, a table and a ball")
 
 
 def plan_with_a_bottle() -> Sequence[Any]:
     """A bottle is carried over a divider."""
-    robot = cs.load_robot("ur5e", geometry="skeleton")
+    robot = cs.load_robot("ur5e")
     scene = cs.Scene(
         [
             cs.Box([0.9, 1.4, 0.04], [0.4, 0.0, -0.05], name="table"),
@@ -56,7 +55,7 @@ def plan_with_a_bottle() -> Sequence[Any]:
             cs.Capsule(0.04, 0.12, [0.45, -0.4, 0.07], name="bottle"),
             cs.HalfSpace(offset=-0.6, name="floor"),
         ]
-    ).attach("bottle", "tool0", cs.pose([0.0, 0.0, 0.13]), touch=TOUCHED)
+    ).attach("bottle", "tool0", cs.pose([0.0, 0.0, 0.13]), touch=["wrist_3_link"])
     ends = [cs.pose([0.45, y, 0.25], rpy=[np.pi, 0.0, 0.0]) for y in (-0.4, 0.4)]
     start = next(q for q in robot.ik(ends[0]).within().q if not robot.collides(q, scene))
     return plot.plan(cs.plan(robot, start, ends[1], scene), title="ur5e: a bottle is carried over a divider")
@@ -92,11 +91,27 @@ def potential_of_two_joints() -> Sequence[Any]:
     return artists
 
 
+def caught_arm() -> Sequence[Any]:
+    """A descent of the lectures that stops before a box."""
+    spheres = [[x, 0, 0, 0.05] for x in (0.25, 0.5, 0.75, 1.0)]
+    robot = cs.load_robot("planar_2r").with_spheres({"link_1": spheres, "link_2": spheres})
+    scene = cs.Scene(
+        [
+            cs.Box([0.5, 0.5, 0.5], [1.2, 1.3, 0], name="box"),
+            cs.Sphere(0.3, [-1.4, 0.6, 0], name="ball"),
+        ]
+    )
+    field = {"planner": "potential_field", "k_r": 0.001, "rho_0": 0.3}
+    caught = cs.plan(robot, [0.2, 0.3], [1.8, 0.8], scene, **field)
+    return plot.plan(caught, title="the descent stops before the box")
+
+
 PICTURES: tuple[Callable[[], Sequence[Any]], ...] = (
     plan_around_a_wall,
-    spheres_of_an_arm,
+    shapes_of_an_arm,
     plan_with_a_bottle,
     potential_of_two_joints,
+    caught_arm,
 )
 
 

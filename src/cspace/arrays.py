@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, shown
 from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
@@ -191,6 +191,8 @@ def _converted(value: Any, subject: str) -> Array:
     if _holds_truth(array) or _holds_truth(value):
         what = f"a number, got the truth value {value}" if array.ndim == 0 else "numbers, got truth values"
         raise InputTypeError(f"{subject} must be {what}")
+    if isinstance(value, str):
+        raise InputTypeError(f"{subject} must be numbers, got the text {shown(value)}")
     if numbers is None:
         raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__} of {array.dtype}")
     return numbers

@@ -208,12 +208,17 @@ def name_new_keywords(function: Callable[Given, Answer]) -> Callable[Given, Answ
 
 
 def attribute_error(owner: object, name: str) -> AttributeError:
-    """The error for an unknown attribute, with the new name of an old attribute."""
+    """The error for an unknown attribute, with the new name of an old attribute.
+
+    The `_elsewhere` of the class names attributes of other classes, with what to do instead.
+    """
     text = f"{type(owner).__name__!r} object has no attribute {name!r}"
     own = owner.__dict__ if type(owner).__dictoffset__ else ()
     known = {*dir(type(owner)), *getattr(type(owner), "__annotations__", ()), *own}
     if (ours := RENAMED.get(name)) in known:
         text += f": use {ours}"
+    elif hint := getattr(type(owner), "_elsewhere", {}).get(name):
+        text += f"; {hint}"
     return AttributeError(text, name=name, obj=owner)
 
 

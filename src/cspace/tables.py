@@ -9,7 +9,16 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-__all__ = ["align_cells", "html_table", "join_words", "markdown_table", "one_line", "show_fields", "shown"]
+__all__ = [
+    "align_cells",
+    "count_things",
+    "html_table",
+    "join_words",
+    "markdown_table",
+    "one_line",
+    "show_fields",
+    "shown",
+]
 
 Record = TypeVar("Record")
 
@@ -28,6 +37,11 @@ def shown(value: float) -> str:
 def join_words(words: Sequence[str]) -> str:
     """Words as a list in a sentence: a, b and c."""
     return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+
+
+def count_things(number: int, noun: str, plural: str = "") -> str:
+    """ "1 cell", "2 cells": a number and what it counts; plural: where it is not the noun and an s."""
+    return f"{number} {noun if number == 1 else plural or noun + 's'}"
 
 
 def one_line(kind: str, text: str) -> str:

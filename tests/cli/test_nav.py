@@ -106,7 +106,7 @@ def test_planners_and_their_options():
         (f"{YARD} --goal 9 9 --planner rrt --option rng=1 --seed 2", ["rng", "twice"]),
         (f"{YARD} --goal 9 9 --planner a_star --seed 2", ["rng", "a_star"]),
         (f"{YARD} --goal 9 9 --planner a_star --option metric=octil", ["octil", "'octile'"]),
-        (f"{YARD} --goal 9 9 --planner a_star --option costs=2", ["costs", "Python"]),
+        (f"{YARD} --goal 9 9 --planner a_star --option costs=2", ["costs", "cells"]),
         (f"{YARD} --goal 9 9 --planner theta_star --option lazy=maybe", ["lazy", "'maybe'", "true or false"]),
         (f"{YARD} --goal 9 9 --plot nowhere/ways.png", ["nowhere"]),
         (f"{YARD} --goal 9 9 --planner bug_3", ["bug_3", "bug_2"]),

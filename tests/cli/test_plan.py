@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import re
 import time
 
@@ -16,7 +17,7 @@ from cli import schema
 from cli.run import ROOT, cspace
 from cspace.cli import progress
 from cspace.cli.exits import Exit
-from cspace.cli.path_files import yaml_number
+from cspace.planning.plan_files import yaml_number
 
 CELL = ROOT / "examples/cell.toml"
 START, GOAL = [-60, -80, 90, -100, -90, 0], [60, -80, 90, -100, -90, 0]
@@ -120,9 +121,12 @@ def test_where_a_descent_ended_keeps_its_names(tmp_path):
     assert rest["kind"] == own.stats["rest"].kind == "minimum"
     assert rest["q"] == own.stats["rest"].q.tolist()
     assert rest["pushes"][0]["other"] == "box"
-    array = cspace(f"plan planar_2r {ends} --planner grid_search --option cells=60")
-    assert array.code == Exit.USAGE
-    assert "cs.plan in Python" in array.err
+    drawn = cspace(
+        f"plan planar_2r {ends} --planner potential_field --plot {tmp_path}/stop.png -o {tmp_path}/w.csv"
+    )
+    assert drawn.code == Exit.NEGATIVE
+    assert (tmp_path / "stop.png").stat().st_size > 10_000
+    assert not (tmp_path / "w.csv").exists()
 
 
 @pytest.mark.parametrize("ending", ["yaml", "yml", "json", "csv"])
@@ -196,7 +200,7 @@ FAULTS = [
     ("plan ur5e --geometry skeleton --to up --option rang=1", ["rang", "'range'", "rrt_connect"]),
     ("plan ur5e --geometry skeleton --to up --option range=far", ["range", "'far'", "number"]),
     ("plan ur5e --geometry skeleton --to up --option range=-1", ["range is -1"]),
-    ("plan ur5e --geometry skeleton --to up --margin 5km", ["--margin", "'5k'"]),
+    ("plan ur5e --geometry skeleton --to up --margin 5km", ["--margin", "'5km'"]),
     ("plan ur5e --geometry skeleton --to up --margin=-1", ["margin is -1"]),
     ("plan ur5e --geometry skeleton --to up --seed 1.5", ["--seed", "'1.5'"]),
     ("plan ur5e --geometry skeleton --to up --seed=-1", ["--seed", "'-1'"]),
@@ -269,3 +273,50 @@ def test_progress_appears_at_a_terminal_after_a_while_and_is_erased(monkeypatch)
     with progress.show_progress("planning"):
         time.sleep(0.1)
     assert stream.getvalue() == "", "nobody watches a pipe"
+
+
+@pytest.mark.parametrize(
+    ("typed", "plain"),
+    [
+        ("--within 20deg", f"--within {math.radians(20)!r}"),
+        ("--within 20° --box 10cm 100mm 0", f"--within {math.radians(20)!r} --box 0.1 0.1 0"),
+        ("--within 0.2rad --deg", f"--within {math.degrees(0.2)!r} --deg"),
+    ],
+)
+def test_units_may_be_typed(typed, plain):
+    goal = "plan ur5e --from up --xyz 40cm -20cm 0.4 --direction 0 0 -1 --json"
+    found, same = (cspace(f"{goal} {words}").json for words in (typed, plain))
+    np.testing.assert_allclose(found["goal"]["within"], same["goal"]["within"], rtol=1e-15)
+    np.testing.assert_allclose(found["path"], same["path"], atol=1e-9)
+
+
+def test_angles_of_joints_have_units():
+    found = cspace("plan ur5e --from 0 -90deg 0 -90° 0 0 --to 1rad -pi/2 0 -1 0 10deg --json").json
+    np.testing.assert_allclose(found["start"], [0, -np.pi / 2, 0, -np.pi / 2, 0, 0], rtol=1e-15)
+    np.testing.assert_allclose(found["path"][-1][-1], np.radians(10), rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("option", "name", "value"),
+    [
+        ("grid_search --option cells=60", "cells", [60, 60]),
+        ("grid_search --option cells=60,40", "cells", [60, 40]),
+        ("grid_search --option step=5deg", "step", np.radians(5)),
+        ("rrt_connect --option edges=1e5", "edges", 100000),
+        ("rrt_connect --option time_limit=1500ms", "time_limit", 1.5),
+        ("rrt_connect --option time_limit=inf", "time_limit", "inf"),
+        ("potential_field --option rho_0=25cm", "rho_0", 0.25),
+    ],
+)
+def test_options_take_units_lists_and_powers_of_ten(option, name, value):
+    found = cspace(f"plan planar_2r --from 0 0 --to 0.3 0.2 --planner {option} --json").json
+    given = (found["stats"] if name == "cells" else found["options"])[name]
+    assert given == (value if isinstance(value, str) else pytest.approx(value, rel=1e-15))
+
+
+@pytest.mark.parametrize("option", ["edges=1.5", "edges=5deg", "range=5kg", "cells=1,x", "step=cm"])
+def test_values_of_options_without_sense_are_refused(option):
+    planner = "rrt_connect" if option[0] in "er" else "grid_search"
+    found = cspace(f"plan planar_2r --from 0 0 --to 1 1 --planner {planner} --option {option}")
+    assert found.code == Exit.USAGE
+    assert option.split("=")[1] in found.err

@@ -164,3 +164,9 @@ def test_a_misuse_is_named(name):
     with pytest.raises(kind) as caught:
         call(table_and_can())
     assert text in str(caught.value)
+
+
+def test_a_half_space_cannot_be_attached():
+    scene = cs.Scene([cs.HalfSpace(name="floor")])
+    with pytest.raises(InputError, match="'floor' is a half space"):
+        scene.attach("floor", "tool0", np.eye(4))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
+from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.ik.near_rows import sort_near
 from cspace.plan_motion.find import find_goals
 from cspace.planning import ArmSpace
@@ -116,3 +117,30 @@ def test_an_object_that_holds_a_pose_is_a_goal_like_the_pose(name, seed):
     T = robot.fk(q)
     rows = [find_goals(robot, ArmSpace(robot), start[None], goal).rows for goal in (T, Held(T))]
     np.testing.assert_array_equal(*rows)
+
+
+def test_named_poses_are_starts_and_goals():
+    robot = cs.load_robot("ur5e")
+    poses = robot.named_poses
+    plan = cs.plan(robot, "home", "up")
+    np.testing.assert_array_equal(plan.path[[0, -1]], [poses["home"], poses["up"]])
+    either = cs.plan(robot, ["home"], ["up", "home"])
+    np.testing.assert_array_equal(either.path[-1], poses["home"])
+    many = cs.plan_many(robot, "home", ["up", poses["up"]])
+    np.testing.assert_array_equal(many[0].path, many[1].path)
+    with pytest.raises(UnknownNameError, match="did you mean 'home'"):
+        cs.plan(robot, "hoem", "up")
+    with pytest.raises(InputTypeError, match="RobotGeometry has no named poses"):
+        ArmSpace(robot.collision).as_rows("home", "start")
+
+
+def test_a_direction_has_a_name_in_every_goal():
+    robot = cs.load_robot("ur5e")
+    by_name, by_numbers = (
+        robot.ik(position=[0.4, 0.2, 0.3], direction=direction, near=robot.named_poses["up"])
+        for direction in ("-z", [0, 0, -1])
+    )
+    np.testing.assert_array_equal(by_name.q, by_numbers.q)
+    assert cs.plan(robot, "up", {"position": [0.4, 0.2, 0.3], "direction": "-z"})
+    with pytest.raises(InputError, match="'down' is unknown, expected x, y, z"):
+        robot.ik(position=[0.4, 0.2, 0.3], direction="down")

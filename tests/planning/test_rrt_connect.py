@@ -1,6 +1,7 @@
 """Plans of arms: paths judged at a hundred times the resolution, and failures with their causes."""
 
 import itertools
+import json
 import time
 
 import numpy as np
@@ -190,7 +191,7 @@ BAD = {
     "goal": (lambda r, s: cs.plan(r, [2, 0], [0, 0], s), InputError, "goal: link_2 touches ball"),
     "shape": (lambda r, s: cs.plan(r, [0, 0, 0], [2, 0], s), InputError, "start has shape"),
     "nan": (lambda r, s: cs.plan(r, [0, 0], [np.nan, 0], s), InputError, "goal holds nan"),
-    "word": (lambda r, s: cs.plan(r, [2, 0], "home", s), InputTypeError, "goal is a str"),
+    "word": (lambda r, s: cs.plan(r, [2, 0], "home", s), UnknownNameError, "no named pose .home."),
     "none": (lambda r, s: cs.plan(r, [2, 0], None, s), InputTypeError, "goal is a NoneType"),
     "no start": (lambda r, s: cs.plan(r, None, [2, 0], s), InputError, "start has shape"),
     "ragged": (lambda r, s: cs.plan(r, [2, 0], [[1], [1, 2]], s), InputTypeError, "goal must be numbers"),
@@ -310,3 +311,38 @@ def test_published_problems_are_solved_and_their_paths_are_free(name):
         assert plan, f"{group} {index}: {plan.reason}"
         rows = plan.sample(1.0 / 320.0)
         assert robot.clearance(rows, scene).distance.min() > -oracle.BAND
+
+
+def test_a_path_is_saved_in_every_format(tmp_path):
+    robot = cs.load_robot("ur5e")
+    plan = cs.plan(robot, "home", "up")
+    for ending in ("json", "yaml", "csv"):
+        plan.save(tmp_path / f"way.{ending}")
+    found = json.loads((tmp_path / "way.json").read_text(encoding="utf-8"))
+    assert found["path"] == plan.path.tolist()
+    assert (found["robot"], found["joints"]) == ("ur5e", list(robot.joint_names))
+    rows = np.loadtxt(tmp_path / "way.csv", delimiter=",", skiprows=1)
+    np.testing.assert_array_equal(rows, plan.path)
+    with pytest.raises(InputError, match=r"\.txt'; its name must end with one of \.yaml"):
+        plan.save(tmp_path / "way.txt")
+    with pytest.raises(InputError, match="no path to save: no IK solution"):
+        cs.plan(robot, "home", {"position": [9, 0, 0]}).save(tmp_path / "way.json")
+
+
+def test_names_of_other_libraries_are_explained():
+    plan = cs.plan(cs.load_robot("ur5e"), "home", "up")
+    for name, remedy in {"waypoints": "path has", "length": "use cost", "success": "is truthy"}.items():
+        with pytest.raises(AttributeError, match=f"'{name}'; .*{remedy}"):
+            getattr(plan, name)
+
+
+def test_errors_of_starts_name_what_helps():
+    robot = cs.load_robot("ur5e")
+    table = cs.Scene([cs.Box([1.0, 1.0, 0.1], [0.0, 0.0, -0.04], name="table")])
+    with pytest.raises(InputError, match=r"no joint moves either; permit it by scene\.allow\('base_link"):
+        cs.plan(robot, "up", "home", table)
+    assert cs.plan(robot, "up", "home", table.allow("base_link_inertia", "table"))
+    with pytest.raises(InputError, match=r"at -90 rad, outside its limits [-0-9. to]+$"):
+        cs.plan(robot, [0, -90, 0, 0, 0, 0], "home")
+    with pytest.raises(InputError, match=r"closer to .* than the margin of 50 mm; robot\.escape"):
+        cs.plan(robot, "home", "up", margin=0.05)

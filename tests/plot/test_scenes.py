@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import cspace as cs
 from cspace import plot
+from cspace.collision import clearance
 from cspace.errors import InputError, InputTypeError
 from cspace.planning import ArmSpace
+from cspace.plot import colors
 from cspace.plot.obstacles import MOST_FACES, MOST_POINTS, Blockers, bodies_of, plate_of
 from cspace.plot.plans import equal_steps
 from cspace.plot.raytrace.solids import Facets, Solid
@@ -162,28 +166,47 @@ def test_carried_objects_move_with_their_frame(ur5e):
     np.testing.assert_allclose(found[0].a, place, atol=1e-12)
 
 
-def test_spheres_are_those_of_the_checks(ur5e):
-    mounted = ur5e.with_base(cs.pose([0.3, -0.2, 0.5], rpy=[0, 0, 1]))
-    for robot in (ur5e, mounted):
-        groups = [g for g in plot.spheres(robot, UP)[0].scene.groups if g.opacity < 1]
-        assert len(groups) == len(robot.collision.links)
-        for name, group in zip(robot.collision.links, groups, strict=True):
-            balls = np.array([[*body.a, body.radius_a] for body in group.solids])
-            assert all(isinstance(body, Solid) for body in group.solids)
-            # a plane that touches the lowest ball of the link is as far away as the checks say
-            low = (balls[:, 2] - balls[:, 3]).min()
-            alone = robot.with_spheres({name: own_spheres(robot, name)})
-            floor = cs.Scene([cs.HalfSpace(offset=low - 1.0)])
-            assert alone.clearance(UP, floor).distance == pytest.approx(1.0, abs=1e-9)
+@pytest.mark.parametrize("name", ["ur5e", "panda", "fetch"])
+def test_shapes_are_those_of_the_checks(name):
+    rng = np.random.default_rng(9)
+    robot = cs.load_robot(name).with_base(random_place(rng))
+    geometry = replace(robot.collision, pairs=np.empty((0, 2), dtype=np.int64), _kept={})
+    for q in robot.random_configuration(4, rng=rng):
+        groups = [g for g in plot.collision(robot, q)[0].scene.groups if g.opacity < 1]
+        plt.close("all")
+        assert len(groups) == len(geometry.links)
+        assert sum(len(group.solids) for group in groups) == len(geometry)
+        points = np.array([end for g in groups for b in g.solids for end in (b.a, b.b)])
+        radii = np.array([r for g in groups for b in g.solids for r in (b.radius_a, b.radius_b)])
+        normal = rng.normal(size=3)
+        normal /= np.linalg.norm(normal)
+        low = (points @ normal - radii).min()  # a plane is as far from the drawn bodies as the checks say
+        plane = cs.Scene([cs.HalfSpace(normal, low - 0.3)])
+        assert clearance(geometry, q, plane).distance == pytest.approx(0.3, abs=1e-9)
 
 
-def own_spheres(robot, name) -> np.ndarray:
-    """The spheres of a link in its own frame."""
-    geometry = robot.collision
-    rows = geometry.spheres[geometry.sphere_links == geometry.links.index(name)].copy()
-    T = np.linalg.inv(geometry.frames[name][1])
-    rows[:, :3] = rows[:, :3] @ T[:3, :3].T + T[:3, 3]
-    return rows
+def test_arms_are_drawn_by_the_shapes_of_the_checks():
+    robot = cs.load_robot("ur5e")
+    drawn = [
+        [body for body in solids_in(draw()) if isinstance(body, Solid) and body.round]
+        for draw in (lambda: plot.scene(table(), robot, UP), lambda: plot.collision(robot, UP, table()))
+    ]
+    radii = [{round(body.radius_a, 9) for body in bodies} for bodies in drawn]
+    checked = {round(shape.radius, 9) for own in robot.collision.link_shapes.values() for shape in own}
+    assert checked <= radii[0]
+    assert checked <= radii[1]
+    without = cs.load_robot("ur10")
+    assert not without.collision
+    assert solids_in(plot.scene(table(), without, np.zeros(6)))
+
+
+def test_a_base_without_shapes_is_drawn(ur5e):
+    shapes = ur5e.collision.link_shapes
+    assert "base_link" not in shapes
+    bodies = solids_in(plot.scene(table(), ur5e, UP))
+    shoulder = shapes["shoulder_link"]
+    assert len(bodies) > sum(map(len, shapes.values()))
+    assert shoulder
 
 
 def test_a_mounted_arm_stands_on_its_base(ur5e):
@@ -213,9 +236,33 @@ def test_a_plan_is_drawn_from_start_to_goal(ur5e, wall_plan):
     tip = ur5e.fk(wall_plan.path)[:, :3, 3]
     np.testing.assert_allclose([tube[0].a, tube[len(tube) - len(tip) - 1].b], tip[[0, -1]], atol=1e-9)
     np.testing.assert_allclose([body.a for body in tube[-len(tip) :]], tip, atol=1e-12)
-    last = make_skeleton(ur5e, wall_plan.path[-1]).points
-    opaque = np.array([body.b for body in groups[-2].solids])
-    assert min(np.linalg.norm(opaque - last[-1], axis=1)) < 1e-9, "the goal is opaque"
+    last = [
+        shape.moved(ur5e.fk(wall_plan.path[-1], name)).bounds
+        for name, shapes in ur5e.collision.link_shapes.items()
+        for shape in shapes
+    ]
+    opaque = np.array([[*body.a, *body.b] for body in groups[-2].solids]).reshape(-1, 3)
+    inside = (np.min(last, axis=(0, 1)) <= opaque) & (opaque <= np.max(last, axis=(0, 1)))
+    assert inside[-2 * len(last) :].all(), "the goal is opaque"
+
+
+def is_obstacle(body) -> bool:
+    return isinstance(body, Facets) or body.radius_a == 0.3
+
+
+def test_a_failed_descent_is_drawn_to_where_it_stopped():
+    arm = cs.load_robot("planar_2r")
+    obstacles = [
+        cs.Box([0.5, 0.5, 0.5], [1.2, 1.3, 0], name="box"),
+        cs.Sphere(0.3, [-1.4, 0.6, 0], name="ball"),
+    ]
+    found = cs.plan(arm, [0.2, 0.3], [1.8, 0.8], cs.Scene(obstacles), planner="potential_field")
+    assert found.status == "local_minimum"
+    groups = plot.plan(found, poses=4)[0].scene.groups
+    stop = groups[-1].solids[-1]
+    np.testing.assert_allclose(stop.a, arm.fk(found.stats["rest"].q)[:3, 3], atol=1e-9)
+    obstacle_colors = {tuple(body.color) for group in groups for body in group.solids if is_obstacle(body)}
+    assert obstacle_colors == {colors.PUSHING, colors.OBSTACLE}, "the box pushes"
 
 
 def test_poses_are_at_equal_distances():
@@ -245,8 +292,8 @@ def test_a_planar_arm_is_drawn_in_space():
         (lambda robot, plan: plot.scene(table(), robot), InputError, "q is missing"),
         (lambda robot, plan: plot.scene(table(), robot, UP[:5]), InputError, "shape"),
         (lambda robot, plan: plot.scene(table(), robot, [UP, UP]), InputError, "one configuration"),
-        (lambda robot, plan: plot.spheres(cs.load_robot("ur10"), UP), InputError, "with_spheres"),
-        (lambda robot, plan: plot.spheres(robot, UP, "table"), InputTypeError, r"cspace\.Scene"),
+        (lambda robot, plan: plot.collision(cs.load_robot("ur10"), UP), InputError, "with_spheres"),
+        (lambda robot, plan: plot.collision(robot, UP, "table"), InputTypeError, r"cspace\.Scene"),
         (lambda robot, plan: plot.plan(robot), InputTypeError, r"cs\.plan"),
         (lambda robot, plan: plot.plan(plan, poses=1), InputError, "poses is 1"),
         (lambda robot, plan: plot.plan(plan, ax=plt.figure().add_subplot()), InputError, "3-D axes"),

@@ -44,7 +44,8 @@ SHELL_WORDS: Final[Mapping[str, str]] = MappingProxyType(
         "cs.robots.search()": "cspace robots WORD",
         "robot.with_spheres(…)": "--spheres FILE",
         'load the robot with geometry="skeleton"': "--geometry skeleton",
-        "robot.escape leads away from there": "move it away from there",
+        "robot.escape leads out of it": "move it away from there",
+        "permit it by scene.allow": "list the pair under allowed in the scene: ",
     }
 )
 """What messages of the library say for Python, and what is typed instead."""

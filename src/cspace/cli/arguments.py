@@ -8,7 +8,7 @@ import math
 import re
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, NoReturn
 
 from cspace.cli.exits import UsageError
@@ -21,6 +21,12 @@ NO_VALUE: Final = re.compile(r"(--[\w-]+=|-[a-z]=?)--")
 """An option with -- for its value, of which argparse makes none."""
 LENGTHS: Final = {"mm": 1000.0, "cm": 100.0, "m": 1.0}
 """The units of lengths, in units per metre; of those that fit the end of a word the first counts."""
+ANGLES: Final = {"deg": 180.0 / math.pi, "°": 180.0 / math.pi, "rad": 1.0}
+"""The units of angles, in units per radian."""
+TIMES: Final = {"ms": 1000.0, "s": 1.0}
+"""The units of times, in units per second."""
+UNITS: Final = {"m": LENGTHS, "rad": ANGLES, "s": TIMES}
+"""The units that a value may be typed in, by the unit of the value."""
 OPEN: Final = "any"
 """What is typed for a coordinate that does not matter."""
 
@@ -66,13 +72,13 @@ def add_option(where: Any, typed: str, text: str, read: Any = None, **more: Any)
     where.add_argument(*names, help=text, **more)
 
 
-class OfPi(float):
-    """A number typed as a multiple of π: of an angle its radians, also where angles are typed in degrees."""
+class Radians(float):
+    """A number typed as a multiple of π, or with a unit of angles: radians, also where degrees are typed."""
 
 
 def read_radians(value: float, *, degrees: bool) -> float:
     """A typed angle [rad]; `degrees`: it was typed in degrees, unless with pi."""
-    return math.radians(value) if degrees and not isinstance(value, OfPi) else float(value)
+    return math.radians(value) if degrees and not isinstance(value, Radians) else float(value)
 
 
 def read_number(text: str) -> float:
@@ -82,7 +88,7 @@ def read_number(text: str) -> float:
     if match:
         sign, factor, divisor = match.groups()
         value = math.pi * float(factor or 1) / float(divisor or 1) if float(divisor or 1) else math.inf
-        value = OfPi(-value if sign == "-" else value)
+        value = Radians(-value if sign == "-" else value)
     else:
         try:
             value = float(word)
@@ -108,9 +114,27 @@ def read_seconds(text: str) -> float:
 
 def read_length(text: str) -> float:
     """A length [m], or with its unit: 0.005, 5mm, 0.5cm."""
-    word = text.strip()
-    unit = next((unit for unit in LENGTHS if word.lower().endswith(unit)), "")
-    return read_number(word[: len(word) - len(unit)]) / LENGTHS.get(unit, 1.0)
+    return read_unit(text, LENGTHS)
+
+
+def read_angle(text: str) -> float:
+    """A number as by read_number, or an angle with its unit: 0.3, pi/2, 20deg, -90°, 0.3rad."""
+    unit = unit_of(text, ANGLES)
+    return Radians(read_unit(text, ANGLES)) if unit else read_number(text)
+
+
+def read_unit(text: str, units: Mapping[str, float]) -> float:
+    """A number, divided by the factor of the unit behind it."""
+    word, unit = text.strip(), unit_of(text, units)
+    try:
+        return read_number(word[: len(word) - len(unit)]) / units.get(unit, 1.0)
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(f"{word!r} is not a number") from None
+
+
+def unit_of(text: str, units: Iterable[str]) -> str:
+    """The unit at the end of a word, "" without one."""
+    return next((unit for unit in units if text.strip().lower().endswith(unit)), "")
 
 
 def read_seed(text: str) -> int:
@@ -128,7 +152,7 @@ def split_numbers(words: Sequence[str], option: str) -> list[float] | None:
     if len(words) == 1 and not is_number(words[0].strip()):
         return None
     try:
-        return [read_number(word) for word in words]
+        return [read_angle(word) for word in words]
     except argparse.ArgumentTypeError as error:
         raise UsageError(f"{option} takes a value per joint, or one named pose: {error}") from None
 
@@ -143,14 +167,14 @@ def named_value(text: str) -> tuple[str, str]:
 
 
 def named_number(text: str) -> tuple[str, float]:
-    """A name and a finite number with = between them."""
+    """A name and a finite number, or an angle with its unit, with = between them."""
     name, value = named_value(text)
-    return name, read_number(value)
+    return name, read_angle(value)
 
 
 def read_coordinate(text: str) -> float | None:
-    """A number, or `any` for a coordinate that does not matter."""
-    return None if text.strip().lower() == OPEN else read_number(text)
+    """A length, or `any` for a coordinate that does not matter."""
+    return None if text.strip().lower() == OPEN else read_length(text)
 
 
 def separate_values(words: Sequence[str]) -> list[str]:
@@ -184,10 +208,11 @@ def is_value(word: str) -> bool:
 
 def is_number(word: str) -> bool:
     """Whether a word reads as a number, finite or not."""
-    if OF_PI.fullmatch(word.lower()):
+    number = word[: len(word) - len(unit_of(word, [*ANGLES, *LENGTHS]))]
+    if OF_PI.fullmatch(number.lower()):
         return True
     try:
-        float(word)
+        float(number)
     except ValueError:
         return False
     return True
@@ -213,9 +238,8 @@ def add_chain(parser: argparse.ArgumentParser) -> None:
 
 def add_joints(parser: argparse.ArgumentParser) -> None:
     """One value per joint or a named pose, and a frame."""
-    parser.add_argument(
-        "q", metavar="Q", nargs="*", type=read_number, help="one value per joint [rad, m]; pi/2 may be typed"
-    )
+    text = "one value per joint [rad, m]; pi/2 or 90deg may be typed"
+    parser.add_argument("q", metavar="Q", nargs="*", type=read_angle, help=text)
     add_option(parser, "--pose NAME", "a named pose of the robot instead of values, such as home")
     add_option(parser, "--frame LINK", "a frame other than the tip")
 

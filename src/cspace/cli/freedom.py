@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any, Final
 
-from cspace.cli.arguments import add_option, named_number, read_number, read_radians
+from cspace.cli.arguments import add_option, named_number, read_angle, read_radians
 from cspace.cli.exits import UsageError
 from cspace.cli.robot import joint_called
 
@@ -25,10 +25,10 @@ def add_freedom(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("redundancy", "for redundant arms and partial goals")
     text = "joints locked at values; q7 is the seventh joint, whatever its name"
     add_option(group, "--locked JOINT=VALUE…", text, named_number, action="extend")
-    add_option(group, "--swivel A", "angle of the elbow on its circle", read_number)
+    add_option(group, "--swivel A", "angle of the elbow on its circle", read_angle)
     add_option(group, "--samples N", "the number of values of the redundant parameter (default: 16)", int)
     text = "a configuration: nearest solution first, or only it if the goal leaves degrees of freedom"
-    add_option(group, "--near Q…", text, read_number)
+    add_option(group, "--near Q…", text, read_angle)
     text = "for unreachable goals: the configuration that comes closest"
     add_option(group, "--least-squares", text, default=None)
 

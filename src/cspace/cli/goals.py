@@ -10,7 +10,14 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.cli.arguments import OPEN, add_option, read_coordinate, read_number, read_radians
+from cspace.cli.arguments import (
+    OPEN,
+    add_option,
+    read_angle,
+    read_coordinate,
+    read_number,
+    read_radians,
+)
 from cspace.cli.exits import UsageError
 
 ORIENTATIONS: Final = ("rpy", "wxyz", "xyzw", "rotation")
@@ -84,8 +91,8 @@ def add_goal(parser: argparse.ArgumentParser) -> None:
     text = f"position [m]; {OPEN}: does not matter"
     add_option(group, "--xyz --position X Y Z", text, read_coordinate)
     add_option(group, "--xy X Y", "position of a planar arm [m]", read_number)
-    add_option(group, "--angle A", "with --xy: the angle of the tip's x axis", read_number)
-    add_option(group, "--rpy R P Y", "orientation: roll, pitch, yaw about fixed x, y, z", read_number)
+    add_option(group, "--angle A", "with --xy: the angle of the tip's x axis", read_angle)
+    add_option(group, "--rpy R P Y", "orientation: roll, pitch, yaw about fixed x, y, z", read_angle)
     add_option(group, "--wxyz W X Y Z", "orientation: quaternion, real part first", read_number)
     add_option(group, "--xyzw X Y Z W", "orientation: quaternion, real part last", read_number)
     add_option(group, "--rotation R", "orientation: matrix, row by row", read_number, nargs=9)
@@ -178,7 +185,7 @@ def pointing_of(args: argparse.Namespace) -> dict[str, Any]:
     if args.angle_to is not None:
         axis, angle = args.angle_to
         try:
-            value = read_number(angle)
+            value = read_angle(angle)
         except argparse.ArgumentTypeError as error:
             raise UsageError(f"--angle-to takes an axis and an angle: {error}") from None
         parts["angle_to"] = (axis.strip(), read_radians(value, degrees=args.deg))

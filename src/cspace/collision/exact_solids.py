@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
-from cspace.shapes import Box, Capsule, Cylinder, Shape, cover_shape
+from cspace.shapes import Box, Capsule, Cylinder, Shape, Sphere, cover_shape
 from cspace.spatial.poses import transform_points
 from cspace.tolerances import FLAT_SHARE, LEAST_COVERED
 
@@ -48,6 +48,21 @@ def solid_row(shape: Shape) -> Array | None:
     else:
         return None
     return np.array([*head, *shape.pose[:3, :3].ravel(), *shape.pose[:3, 3]])
+
+
+def solid_of_row(row: Array) -> Box | Cylinder | Capsule:
+    """The solid of a row (16,), as solid_row makes it."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = row[4:13].reshape(3, 3), row[13:]
+    if row[0] == 0.0:
+        return Box(2.0 * row[1:4], T)
+    return (Cylinder if row[0] == 1.0 else Capsule)(row[1], 2.0 * row[3], T)
+
+
+def checked_shapes(shapes: PlacedShapes) -> tuple[Shape, ...]:
+    """The solids, and the spheres that count themselves, as shapes in the frame of the body."""
+    counted = shapes.spheres[shapes.sphere_solids < 0]
+    return (*map(solid_of_row, shapes.solids), *(Sphere(ball[3], ball[:3]) for ball in counted))
 
 
 def cover_solid(shape: Box | Cylinder | Capsule, cover: float) -> Array:

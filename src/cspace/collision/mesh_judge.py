@@ -18,7 +18,7 @@ from cspace.arrays import Array, bounded_number, positive_number
 from cspace.collision.checker import touching_pairs
 from cspace.collision.checks import as_configurations, flat_rows, one_configuration, read_geometry
 from cspace.collision.link_shapes import described_solids, skeleton_solids
-from cspace.collision.robot_geometry import RobotGeometry
+from cspace.collision.robot_geometry import SKELETON, RobotGeometry
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError, MissingExtraError
 from cspace.kinematics import Assembly
@@ -40,9 +40,6 @@ CHUNK: Final = 1024
 SOLIDS: Final = (Box, Capsule, Cylinder, HalfSpace, Sphere)
 """What coal knows as solids."""
 
-SKELETON: Final = "capsules of the skeleton"
-"""The source of a geometry whose shapes are the capsules along the arm."""
-
 
 class HasShapes(Protocol):
     """A Robot: its description, its geometry and its kinematics."""
@@ -54,7 +51,7 @@ class HasShapes(Protocol):
     def collision(self) -> RobotGeometry:
         """What collision checks use."""
 
-    def fk(self, q: Any, frame: Any = None) -> Array:
+    def fk(self, q: ArrayLike, frame: str | None = None) -> Array:
         """Poses of a frame."""
 
 

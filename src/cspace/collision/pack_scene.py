@@ -25,6 +25,7 @@ from cspace.shapes import (
     Sphere,
 )
 from cspace.shapes.shape import IDENTITY, check_place
+from cspace.spatial.checks import PoseLike
 from cspace.spatial.poses import invert_pose, transform_points
 from cspace.tables import show_fields
 
@@ -67,7 +68,7 @@ PACKED: Final = (*SOLIDS, Hull, Mesh, HeightField, PointCloud)
 """The shapes that have arrays."""
 
 
-def pack_scene(scene: Scene, T_world_base: Any = None) -> PackedScene:
+def pack_scene(scene: Scene, T_world_base: PoseLike | None = None) -> PackedScene:
     """The obstacles of a scene as arrays in the frame T_world_base (4, 4) of a robot's base, float64."""
     if T_world_base is None:
         return pack_obstacles(scene, IDENTITY)

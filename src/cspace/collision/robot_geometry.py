@@ -13,7 +13,13 @@ import numpy.typing as npt
 from cspace._core import CollisionChecker, CollisionRobot, compile_solids
 from cspace.arrays import Array, positive_number
 from cspace.collision.deficits import measure_deficits
-from cspace.collision.exact_solids import PlacedShapes, join_shapes, place_shape
+from cspace.collision.exact_solids import (
+    PlacedShapes,
+    checked_shapes,
+    join_shapes,
+    place_shape,
+    split_shapes,
+)
 from cspace.collision.link_pairs import SAMPLES, Allowed, adjacent_pairs, always_touching
 from cspace.collision.link_shapes import Solids, described_solids, skeleton_solids
 from cspace.collision.pack_scene import SOLIDS
@@ -22,11 +28,16 @@ from cspace.kinematics import Assembly, KinematicModel, random_configurations
 from cspace.model import Description
 from cspace.shapes import Shape
 from cspace.spatial.poses import invert_pose, transform_points
-from cspace.tables import one_line
+from cspace.tables import count_things, one_line
 from cspace.tolerances import LARGEST_NUMBER
 
 GEOMETRIES: Final = ("collision", "skeleton")
 """What the geometry of a robot is made from: the elements of its description, or capsules along the arm."""
+
+SKELETON: Final = "capsules of the skeleton"
+DESCRIBED: Final = "collision elements of the description"
+GIVEN: Final = "spheres as given"
+"""The sources of a geometry."""
 
 FREE_TRAVEL: Final = 1.0
 """How far prismatic joints without limits move in samples [m]."""
@@ -85,8 +96,13 @@ class RobotGeometry:
         return len(self.spheres) > 0
 
     def __len__(self) -> int:
-        """The number of spheres."""
-        return len(self.spheres)
+        """The number of solids and of spheres that count."""
+        return len(self.solids) + self.counted_spheres
+
+    @property
+    def counted_spheres(self) -> int:
+        """The number of spheres that count, beside those that only help to cover a solid."""
+        return int((self.sphere_solids < 0).sum())
 
     @property
     def collision(self) -> RobotGeometry:
@@ -133,6 +149,15 @@ class RobotGeometry:
         found: Mapping[str, float] = self._kept["deficits"]
         return found
 
+    @cached_property
+    def link_shapes(self) -> Mapping[str, tuple[Shape, ...]]:
+        """Link → the shapes that checks take, in the frame of the link: solids, and spheres that count."""
+        parts = split_shapes(self.shapes, self.sphere_links) if self else []
+        return {
+            name: tuple(shape.moved(invert_pose(self.frames[name][1])) for shape in checked_shapes(part))
+            for name, part in zip(self.links, parts, strict=True)
+        }
+
     @property
     def shapes(self) -> PlacedShapes:
         """The spheres and solids of all links."""
@@ -166,10 +191,13 @@ class RobotGeometry:
     def __repr__(self) -> str:
         if not self:
             return one_line("RobotGeometry", f"of {self.robot}: empty, {self.reason}")
+        solids, spheres = len(self.solids), self.counted_spheres
+        shapes = [count_things(n, noun) for n, noun in ((solids, "solid"), (spheres, "sphere")) if n]
+        excess = f", excess {1000 * self.excess:.3g} mm" if spheres else ""
         return one_line(
             "RobotGeometry",
-            f"of {self.robot}: {len(self)} spheres on {len(self.links)} links, {len(self.pairs)} pairs of"
-            f" links checked; {self.source}, excess {1000 * self.excess:.3g} mm",
+            f"of {self.robot}: {' and '.join(shapes)} on {count_things(len(self.links), 'link')},"
+            f" {count_things(len(self.pairs), 'pair')} checked{excess}; {self.source}",
         )
 
 
@@ -218,7 +246,7 @@ def robot_geometry(
     radii = split_rows(spheres[:, 3], sphere_links)
     without_pairs = RobotGeometry(
         robot=robot.name,
-        source="capsules of the skeleton" if skeleton else "collision elements of the description",
+        source=SKELETON if skeleton else DESCRIBED if described is None else GIVEN,
         reason="" if len(spheres) else missing_reason(robot, description),
         links=links,
         link_bodies=link_bodies,

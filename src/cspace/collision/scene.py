@@ -7,13 +7,14 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 from types import MappingProxyType
-from typing import Any, Final, cast
+from typing import Final, cast
 
 from cspace.arrays import Array
 from cspace.collision.scene_files import read_scene, write_scene
 from cspace.errors import InputError, InputTypeError, Renamed, suggest
-from cspace.shapes import Shape
+from cspace.shapes import HalfSpace, Shape
 from cspace.shapes.shape import check_place
+from cspace.spatial.checks import PoseLike
 from cspace.tables import html_table, one_line, show_fields, shown
 
 VERSIONS: Final = count(1)
@@ -135,7 +136,7 @@ class Scene(Renamed):
             }
         return new
 
-    def move(self, name: str, pose: Any) -> Scene:
+    def move(self, name: str, pose: PoseLike) -> Scene:
         """The scene with an object at another pose (4, 4) of the world, or position (3,).
 
         Raises UnknownNameError for an object that does not exist, InputError for an attached one.
@@ -147,15 +148,17 @@ class Scene(Renamed):
         new._objects[name] = shape.placed(pose)
         return new
 
-    def attach(self, name: str, frame: str, T_frame_object: Any, *, touch: Iterable[str] = ()) -> Scene:
+    def attach(self, name: str, frame: str, T_frame_object: PoseLike, *, touch: Iterable[str] = ()) -> Scene:
         """The scene with an object carried by a frame of the robot, as when a gripper holds it.
 
         T_frame_object (4, 4), or a position (3,): the pose of the object in the frame. touch: names of links
         and objects that it may touch, such as the fingers; what moves with the frame needs no mention.
         Attaching again replaces frame, pose and touch. Raises UnknownNameError for an object that does not
-        exist.
+        exist, InputError for a half space.
         """
         shape = self[name]
+        if isinstance(shape, HalfSpace):
+            raise InputError(f"{name!r} is a half space, which is unbounded; attach a box in its place")
         if isinstance(touch, str):
             raise InputTypeError(f"touch is the string {touch!r}; write a list of names, [{touch!r}]")
         place = check_place(T_frame_object, f"T_frame_object of {name!r}")
@@ -163,7 +166,7 @@ class Scene(Renamed):
         new._attached[shape.name] = Attachment(check_name(frame, "frame"), place, check_names(touch))
         return new
 
-    def detach(self, name: str, pose: Any = None) -> Scene:
+    def detach(self, name: str, pose: PoseLike | None = None) -> Scene:
         """The scene with an attached object as an obstacle again.
 
         pose (4, 4) or position (3,): where in the world; where it was before unless given. Raises
@@ -253,7 +256,7 @@ class Scene(Renamed):
         return frame, ", ".join(shown(x) for x in T[:3, 3])
 
 
-def check_shapes(objects: Any) -> list[Shape]:
+def check_shapes(objects: Iterable[Shape]) -> list[Shape]:
     """The shapes of a list; InputTypeError for anything else in it."""
     if isinstance(objects, Shape):
         raise InputTypeError("objects is one shape; write a list of shapes, in brackets")
@@ -281,7 +284,7 @@ def check_names(values: Iterable[object]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(check_name(value, "a name in touch") for value in values))
 
 
-def check_pair(pair: Any) -> tuple[str, str]:
+def check_pair(pair: Sequence[str]) -> tuple[str, str]:
     """Two different names, sorted."""
     if isinstance(pair, str) or len(pair) != 2:
         raise InputTypeError(f"an allowed pair is {pair!r}; it must be two names")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import Renamed
-from cspace.navigation.text import count_things
+from cspace.tables import count_things
 
 if TYPE_CHECKING:
     from cspace.search.planner import Trace

@@ -1,13 +1,10 @@
-"""Counted things in sentences."""
+"""Why there is no path, in words."""
 
 from __future__ import annotations
 
 from typing import Any
 
-
-def count_things(number: int, noun: str, plural: str = "") -> str:
-    """ "1 cell", "2 cells": a number and what it counts; plural: where it is not the noun and an s."""
-    return f"{number} {noun if number == 1 else plural or noun + 's'}"
+from cspace.tables import count_things
 
 
 def explain_division(world: Any) -> str:

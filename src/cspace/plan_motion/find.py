@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from cspace.arrays import Array, shape_of
 from cspace.collision.checks import explain_contacts
 from cspace.errors import InputError, InputTypeError
-from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.goals import GoalLike, Goals
 from cspace.plan_motion.parts import solve_parts
 from cspace.plan_motion.poses import solve_pose
 from cspace.plan_motion.regions import sample_region
 from cspace.planning import ArmSpace, Region
+from cspace.planning.space import are_names
 from cspace.spatial import as_pose
-from cspace.spatial.checks import one_pose
+from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -26,7 +27,7 @@ POSITION_SIZE: Final = 3
 """Values of a position, which is often given where a configuration is expected."""
 
 
-def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals:
+def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: GoalLike) -> Goals:
     """The configurations (g, dof) of a goal as `plan` takes it.
 
     Those of poses, partial goals and regions are sorted by their distance from the first of the starts
@@ -34,13 +35,15 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals
     """
     if space.dof != POSE_ROWS and (plain := space.plain_rows(goal)) is not None:
         return Goals(plain, is_given=True)
+    if are_names(goal):
+        return Goals(space.as_rows(goal, "goal"), is_given=True)
     if isinstance(goal, Region):
         if not goal.is_exact:
             return sample_region(robot, space, starts[0], goal)
         goal = goal.goal
     if isinstance(goal, Mapping):
         return solve_parts(robot, space, starts[0], goal)
-    shape = () if isinstance(goal, str) else shape_of(goal, "goal")
+    shape = shape_of(goal, "goal")
     if shape == (4, 4) and (space.dof != POSE_ROWS or is_pose(goal)):
         return solve_pose(robot, space, starts[0], goal)
     if not shape and is_pose(goal):  # an object that holds a pose, such as scipy's RigidTransform
@@ -49,13 +52,13 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: Any) -> Goals
     return Goals(space.as_rows(goal, "goal"), is_given=True)
 
 
-def check_kind(goal: Any, shape: tuple[int, ...], dof: int) -> None:
+def check_kind(goal: object, shape: tuple[int, ...], dof: int) -> None:
     """Raises InputTypeError or InputError for a value that is not a goal; names the kind that it is like."""
     if len(shape) not in (1, 2):
         said = f"has shape {shape}" if shape else f"is a {type(goal).__name__}"
         raise InputTypeError(
-            f"goal {said}; it must be configurations (dof,) or (g, dof), one pose (4, 4), a dict of keywords"
-            " of robot.ik, or a cs.planning.Region"
+            f"goal {said}; it must be configurations (dof,) or (g, dof), one pose (4, 4), a named pose, a"
+            " dict of keywords of robot.ik, or a cs.planning.Region"
         )
     if shape == (POSITION_SIZE,) and dof != POSITION_SIZE:
         raise InputError(
@@ -64,7 +67,7 @@ def check_kind(goal: Any, shape: tuple[int, ...], dof: int) -> None:
         )
 
 
-def is_pose(goal: Any) -> bool:
+def is_pose(goal: PoseLike) -> bool:
     """Whether a goal is a pose: not four configurations of four joints, which are (4, 4) numbers too."""
     try:
         as_pose(goal)

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
+from cspace.planning import Region
+from cspace.spatial.checks import PoseLike
+
+GoalLike: TypeAlias = ArrayLike | PoseLike | Mapping[str, Any] | Region
+"""A goal as `plan` takes it."""
 
 
 @dataclass(frozen=True, eq=False)

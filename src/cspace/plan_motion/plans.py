@@ -16,7 +16,7 @@ from cspace.collision import MeshJudge, Scene
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.plan_motion.find import POSE_ROWS
 from cspace.plan_motion.goal_search import GoalSearch, make_negative
-from cspace.plan_motion.goals import Goals
+from cspace.plan_motion.goals import GoalLike, Goals
 from cspace.plan_motion.poses import solve_each_pose
 from cspace.planning import ArmPlanner, ArmSpace, Plan, Plans, find_planner
 from cspace.planning.edge_planner import join_problems
@@ -35,7 +35,7 @@ MOST_THREADS: Final = 1024
 def plan(
     robot: Robot,
     start: ArrayLike,
-    goal: Any,
+    goal: GoalLike,
     scene: Scene | None = None,
     *,
     planner: str | ArmPlanner = "rrt_connect",
@@ -46,11 +46,11 @@ def plan(
 ) -> Plan:
     """A free way of a robot from a start to a goal, every motion of it proved.
 
-    start: a configuration (dof,) [rad or m], or several (s, dof) to choose from. goal: a configuration (dof,)
-    or several (g, dof); a pose (4, 4) of the tip, reached by whichever of its IK solutions within the limits
-    is easiest; the keywords of `robot.ik` as a dict, such as {"position": p}; or a `planning.Region` of
-    poses, of which free configurations are sampled. Of redundant arms the solutions are samples over the
-    self-motion. scene: None without obstacles. planner: a name of
+    start: a configuration (dof,) [rad or m], or several (s, dof) to choose from; or a name of
+    `robot.named_poses`, such as "home". goal: the same; or a pose (4, 4) of the tip, reached by whichever of
+    its IK solutions within the limits is easiest; the keywords of `robot.ik` as a dict, such as
+    {"position": p}; or a `planning.Region` of poses, of which free configurations are sampled. Of redundant
+    arms the solutions are samples over the self-motion. scene: None without obstacles. planner: a name of
     `cs.planning.PLANNERS`, or an ArmPlanner. margin [m]: everything keeps so far away from everything else.
     rng: seed or generator; the same seed gives the same plan on every machine. options: those of the planner.
     verify: "mesh" checks the path once more, at samples, with the exact shapes of the links in place of their
@@ -69,19 +69,15 @@ def plan(
     starts = space.as_rows(start, "start")
     search = GoalSearch(robot, chosen, space, rng)
     found = search.plan(starts, search.find(starts, goal))
-    if found.status == "invalid_start":
-        raise InputError(
-            f"{found.reason}; robot.escape leads away from there, or allow the pair in the scene"
-        )
-    if found.status == "invalid_goal":
-        raise InputError(f"{found.reason}; choose another goal, or allow the pair in the scene")
+    if found.status in ("invalid_start", "invalid_goal"):
+        raise InputError(found.reason)
     return found if judge is None or not found else _verify_plan(found, chosen, judge)
 
 
 def plan_many(
     robot: Robot,
     starts: ArrayLike,
-    goals: Any,
+    goals: ArrayLike | Sequence[GoalLike],
     scene: Scene | None = None,
     *,
     planner: str | ArmPlanner = "rrt_connect",
@@ -177,7 +173,7 @@ def _are_poses(goals: Array, dof: int) -> bool:
     return goals.dtype == np.float64 and goals.shape[1:] == (4, 4) and dof != POSE_ROWS
 
 
-def _check_each(goals: Sequence[Any], dof: int) -> None:
+def _check_each(goals: Sequence[GoalLike], dof: int) -> None:
     """Raises InputError where the goals are the numbers of one configuration."""
     if any(isinstance(goal, (int, float, np.number)) for goal in goals):
         raise InputError(

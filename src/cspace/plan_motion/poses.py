@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from cspace.ik.near_rows import solve_each_locked_near, solve_locked_near, sort_
 from cspace.plan_motion.goals import Goals
 from cspace.planning import ArmSpace
 from cspace.search.halton import halton_points
+from cspace.spatial.checks import PoseLike
 
 if TYPE_CHECKING:
     from cspace.ik import Solutions
@@ -30,7 +31,7 @@ MOST_VALUES: Final = 4096
 """Combinations of values of several redundant joints: ten milliseconds."""
 
 
-def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
+def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: PoseLike) -> Goals:
     """All IK solutions of a pose; of a redundant arm those at some values of its redundant joints."""
     if not robot.solver.is_redundant:
         return keep_solutions(robot, space, start, robot.ik(goal))

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, overload
+from typing import Any, Literal, cast, overload
 
 import numpy as np
 
 from cspace.collision import Scene
+from cspace.collision.checks import HasGeometry
 from cspace.errors import InputError, InputTypeError
 from cspace.planning.joint_space.space import JointSpace
-from cspace.planning.two_joints.configuration_space import ConfigurationSpace, exact_space
+from cspace.planning.two_joints.configuration_space import ConfigurationSpace, Obstacles, exact_space
 from cspace.planning.two_joints.planar_arm import is_planar_arm
 
 
 @overload
 def configuration_space(
-    robot: Any,
-    obstacles: Any = None,
+    robot: HasGeometry,
+    obstacles: Obstacles = None,
     *,
     link_radius: float = 0.0,
     limits: bool = True,
@@ -26,8 +27,8 @@ def configuration_space(
 ) -> ConfigurationSpace: ...
 @overload
 def configuration_space(
-    robot: Any,
-    obstacles: Any = None,
+    robot: HasGeometry,
+    obstacles: Obstacles = None,
     *,
     link_radius: float = 0.0,
     limits: bool = True,
@@ -37,8 +38,8 @@ def configuration_space(
 ) -> JointSpace: ...
 @overload
 def configuration_space(
-    robot: Any,
-    obstacles: Any = None,
+    robot: HasGeometry,
+    obstacles: Obstacles = None,
     *,
     link_radius: float = 0.0,
     limits: bool = True,
@@ -49,8 +50,8 @@ def configuration_space(
 
 
 def configuration_space(
-    robot: Any,
-    obstacles: Any = None,
+    robot: HasGeometry,
+    obstacles: Obstacles = None,
     *,
     link_radius: float = 0.0,
     limits: bool = True,
@@ -92,7 +93,7 @@ def configuration_space(
         return exact_space(robot, obstacles, link_radius=link_radius, limits=bool(limits), height=height)
     refuse_option("link_radius", link_radius != 0.0, "of planar arms; links have their collision geometry")
     refuse_option("height", height is not None, "of planar arms; a JointSpace takes the whole scene")
-    return JointSpace(robot, obstacles, margin=margin, limits=bool(limits))
+    return JointSpace(robot, cast("Scene | None", obstacles), margin=margin, limits=bool(limits))
 
 
 def refuse_option(name: str, is_given: bool, rule: str) -> None:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from cspace.arrays import Array, positive_number
+from cspace.errors import InputError, Renamed
+from cspace.planning.plan_files import write_path
 from cspace.tables import one_line, shown
 
 if TYPE_CHECKING:
@@ -25,7 +29,7 @@ CLEARANCE_STEP = 1.0 / 32.0
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class Plan(Renamed):
     """A way of an arm from a start to a goal; truthy if there is one.
 
     status: one of STATUSES. reason: the verdict in words. path (m, dof) [rad or m]: the corners, joined by
@@ -45,6 +49,12 @@ class Plan:
     stats: Mapping[str, Any]
     space: ArmSpace
     planner: Planner
+
+    _elsewhere: ClassVar = MappingProxyType(
+        dict.fromkeys(("waypoints", "q"), "path has the corners, sample(step) configurations between them")
+        | dict.fromkeys(("success", "solved", "found"), "a Plan is truthy if there is a path")
+        | {"length": "use cost", "trajectory": "a path has no times, only corners"}
+    )
 
     def __bool__(self) -> bool:
         return self.status == "found"
@@ -66,6 +76,16 @@ class Plan:
             n = max(1, int(np.ceil(np.linalg.norm(b - a) / step)))
             rows.append(a + np.linspace(0.0, 1.0, n + 1)[1:, None] * (b - a))
         return np.concatenate(rows)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the corners of the path, by the ending of the file as YAML, JSON or CSV.
+
+        Angles are in radians. The file is complete or untouched. Raises InputError for another ending, and
+        for a plan without a path.
+        """
+        if not len(self.path):
+            raise InputError(f"the plan has no path to save: {self.reason}")
+        write_path(path, self.space.geometry, self.path, certified=self.certified)
 
     @cached_property
     def clearance(self) -> float:

@@ -17,10 +17,12 @@ from cspace.spatial.checks import one_pose
 from cspace.spatial.poses import assemble, invert_pose, transform_points
 from cspace.spatial.vectors import AXES, Z, frame_along, length_and_direction
 from cspace.tables import one_line
-from cspace.tolerances import FARTHEST, IN_REGION, SMALL_TURN
+from cspace.tolerances import FARTHEST, IN_REGION, LARGEST_NUMBER, SMALL_TURN
 
 HALVINGS: Final = 53
 """Bisections after which an angle has all bits of a double."""
+
+WITHIN: Final = "it must be an angle [rad], 0 to π"
 
 DIMENSIONS: Final = 6
 """Of the samples of a region: three for the position and three for the orientation."""
@@ -31,11 +33,11 @@ class Region:
     """A set of poses of the tip: a goal of `cs.plan`.
 
     box: (size (3,) [m], T_world_box), the edges of a box and the pose (4, 4) or position (3,) of its middle,
-    in which the tip lies; None: anywhere. direction (3,): where an axis of the tip points in the world.
-    axis: that axis, "x", "-z" or (3,) in the tip. within [rad]: by how much it may deviate. rotation (3, 3):
-    instead of a direction, the whole orientation, which deviates by a turn of at most `within`. Without
-    direction and rotation the tip may be turned in any way. A size of zero fixes the position, within=0 the
-    direction or orientation.
+    in which the tip lies; None: anywhere. direction: where an axis of the tip points in the world, (3,) or a
+    name such as "-z". axis: that axis, "x", "-z" or (3,) in the tip. within [rad]: by how much it may
+    deviate. rotation (3, 3): instead of a direction, the whole orientation, which deviates by a turn of at
+    most `within`. Without direction and rotation the tip may be turned in any way. A size of zero fixes the
+    position, within=0 the direction or orientation.
 
     Raises InputError for a region without any part, sizes that are negative, a direction that is zero, and
     an angle outside 0 to π; InputTypeError for parts that do not go together.
@@ -48,7 +50,9 @@ class Region:
     within: float = 0.0
 
     def __post_init__(self) -> None:
-        angle = bounded_number(self.within, "within", 0.0, "it must be an angle [rad], 0 to π", np.pi)
+        angle = bounded_number(self.within, "within", 0.0, WITHIN, LARGEST_NUMBER)
+        if angle > np.pi:
+            raise InputError(f"within is {angle:g}; {WITHIN}")
         if self.direction is not None and self.rotation is not None:
             raise InputTypeError("a Region takes a direction or a rotation, not both")
         has_axis = not isinstance(self.axis, str) or self.axis != "z"

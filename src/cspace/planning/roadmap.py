@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -112,13 +113,13 @@ class Roadmap:
         space = ArmSpace(self.geometry, margin=self.margin)
         return self._restore(self.geometry, rule, make_core(space, rule, self.core, count))
 
-    def save(self, path: Any) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Write it to a file, which is complete or untouched; InputError where that is impossible."""
         header = self._rule | {"robot": self.robot, "fingerprint": fingerprint_geometry(self.geometry)}
         write_roadmap(path, header, self.nodes, self.edges)
 
     @classmethod
-    def load(cls, path: Any, robot: HasGeometry) -> Roadmap:
+    def load(cls, path: str | os.PathLike[str], robot: HasGeometry) -> Roadmap:
         """The roadmap of a file, for the robot that it was made for.
 
         Raises RoadmapError for a file that is damaged, incomplete or no roadmap, and for one of a robot with

@@ -9,6 +9,7 @@ larger node first, in ascending order.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -43,7 +44,9 @@ FIELDS: Final = {
 """What the second line holds."""
 
 
-def write_roadmap(path: Any, header: Mapping[str, Any], nodes: Array, edges: npt.NDArray[np.int32]) -> None:
+def write_roadmap(
+    path: str | os.PathLike[str], header: Mapping[str, Any], nodes: Array, edges: npt.NDArray[np.int32]
+) -> None:
     """Write nodes (n, dof) and edges (e, 2); the file is complete or untouched."""
     payload = nodes.astype("<f4").tobytes() + edges.astype("<i4").tobytes()
     sizes = {"dof": nodes.shape[1], "nodes": len(nodes), "edges": len(edges)}
@@ -62,7 +65,7 @@ def digest_of(header: Mapping[str, Any], payload: bytes) -> str:
 
 
 def read_roadmap(
-    path: Any, robot: str, fingerprint: str, dof: int
+    path: str | os.PathLike[str], robot: str, fingerprint: str, dof: int
 ) -> tuple[dict[str, Any], Array, npt.NDArray[np.int32]]:
     """Header, nodes (n, dof) and edges (e, 2) of a file; RoadmapError if it is not one of this robot."""
     name = path_of(path, "a roadmap is given by the path of its file")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cached_property
+from typing import TypeGuard
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +15,7 @@ from cspace.arrays import Array, as_floats
 from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
 from cspace.collision.checks import HasGeometry, read_geometry
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
@@ -80,9 +82,14 @@ class ArmSpace:
         return None if q is None else as_rows(q, self.dof, LARGEST_NUMBER)
 
     def as_rows(self, q: ArrayLike, subject: str) -> Array:
-        """One configuration (dof,) or several (n, dof) as rows; InputError for another shape or NaN."""
+        """One configuration (dof,) or several (n, dof), or names of poses of the robot, as rows.
+
+        Raises InputError for another shape or NaN, UnknownNameError for an unknown name.
+        """
         if (plain := self.plain_rows(q)) is not None:
             return plain
+        if are_names(q):
+            q = self._find_named(q)
         rows = np.ascontiguousarray(as_floats(q, subject, last=(self.dof,), largest=LARGEST_NUMBER))
         if rows.ndim > 2 or (not rows.size and self.dof):
             raise InputError(
@@ -90,31 +97,56 @@ class ArmSpace:
             )
         return rows.reshape(-1, self.dof) if rows.ndim < 2 else rows
 
+    def _find_named(self, names: str | Sequence[str]) -> Array:
+        """The configurations (n, dof) of named poses of the robot."""
+        poses: Mapping[str, Array] | None = getattr(self.robot, "named_poses", None)
+        if poses is None:
+            raise InputTypeError("a RobotGeometry has no named poses; give configurations")
+        return np.stack([poses[name] for name in ([names] if isinstance(names, str) else names)])
+
     def describe_violation(self, q: Array) -> str:
         """The first joint that is outside its limits, in words."""
         for k in np.flatnonzero((q < self.lower) | (q > self.upper)).tolist():
             if not self.wraps[k]:
                 low, high = self.lower[k], self.upper[k]
+                typed = " rad" if k not in self.geometry.prismatic and abs(q[k]) > TURN else ""
                 return (
-                    f"joint {self.geometry.joint_names[k]!r} is at {q[k]:.9g}, outside its limits"
+                    f"joint {self.geometry.joint_names[k]!r} is at {q[k]:.9g}{typed}, outside its limits"
                     f" {low:.9g} to {high:.9g}"
                 )
         return ""
 
     def describe_contact(self, q: Array, found: tuple[bool, int, int] | None) -> str:
-        """What touches at q, and how deep, in words."""
+        """What touches at q, how deep, and what to do, in words."""
         if found is None:
             return ""
         a, b = self.checker.name_pair(found)
+        if not found[0] and self._is_fixed(a):
+            return f"{a} touches {b}, and no joint moves either; permit it by scene.allow({a!r}, {b!r})"
         nearest = self.clearance(q)
         if nearest.pair is not None and nearest.distance < 0.0:
             a, b = nearest.pair
-            return f"{a} touches {b}, {1000 * -nearest.distance:.3g} mm deep"
-        return f"{a} is closer to {b} than {1000 * self.margin:.3g} mm"
+            text = f"{a} touches {b}, {1000 * -nearest.distance:.3g} mm deep"
+        else:
+            text = f"{a} is closer to {b} than the margin of {1000 * self.margin:.3g} mm"
+        return f"{text}; robot.escape leads out of it, or permit it by scene.allow({a!r}, {b!r})"
+
+    def _is_fixed(self, link: str) -> bool:
+        """Whether a link or an attached object is fixed to the base."""
+        geometry = self.geometry
+        if link in geometry.links:
+            return bool(geometry.link_bodies[geometry.links.index(link)] == 0)
+        return self.scene is not None and geometry.frames[self.scene.attached[link].frame][0] < 0
 
     def __repr__(self) -> str:
         objects = 0 if self.scene is None else len(self.scene)
         return one_line("ArmSpace", f"of {self.geometry.robot} with {objects} objects, {self.dof} dof")
+
+
+def are_names(q: object) -> TypeGuard[str | Sequence[str]]:
+    """Whether a value is a name, or a list of names."""
+    several = isinstance(q, (list, tuple)) and bool(q) and all(isinstance(name, str) for name in q)
+    return isinstance(q, str) or several
 
 
 def find_bounds(geometry: RobotGeometry) -> tuple[Array, npt.NDArray[np.uint8]]:

@@ -13,7 +13,7 @@ from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
 from cspace.plot.plans import plan
-from cspace.plot.scenes import scene, spheres
+from cspace.plot.scenes import collision, scene
 from cspace.plot.space_slices import space_projection, space_slice
 from cspace.plot.vehicles import coverage, drive
 from cspace.plot.worlds import animation, route, routes, world
@@ -30,5 +30,5 @@ __all__ = [
     "workspace",
 ]
 __all__ += ["coverage", "drive", "world"]
-__all__ += ["configuration_space", "plan", "scene", "spheres", "surface"]
+__all__ += ["collision", "configuration_space", "plan", "scene", "surface"]
 __all__ += ["space_projection", "space_slice"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from cspace.arrays import Array
@@ -42,3 +44,10 @@ def plain_bodies(drawn: Skeleton) -> list[Body]:
 def ghost_bodies(drawn: Skeleton, tint: Array) -> list[Body]:
     """The bodies of an arm in one colour, the links lighter than the joints."""
     return [*solids_of(drawn, colors.mix_colors(tint, (1.0, 1.0, 1.0), 0.25), tint)]
+
+
+def base_bodies(drawn: Skeleton) -> list[Body]:
+    """The base of an arm, up to its first joint."""
+    color, radius = np.array(colors.STAND), drawn.radii[0]
+    ends = [pair for pair in pairwise(drawn.paths[0]) if np.linalg.norm(pair[1] - pair[0]) > DRAWN_LENGTH]
+    return [Solid(a, b, radius, radius, color, round=k > 0) for k, (a, b) in enumerate(ends)]

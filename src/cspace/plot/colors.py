@@ -24,6 +24,8 @@ WALL: Final = (0.36, 0.39, 0.44)
 """Obstacles."""
 OBSTACLE: Final = (0.93, 0.84, 0.70)
 """Obstacles around an arm."""
+PUSHING: Final = (0.95, 0.62, 0.50)
+"""Obstacles that push an arm where its descent stopped."""
 CARRIED: Final = (0.55, 0.75, 0.45)
 """Objects that an arm carries."""
 PATH: Final = AXES[0]

@@ -7,10 +7,12 @@ from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.math.wrapping import TURN
+from cspace.planning import ConfigurationSpace, Projection, Slice
 from cspace.plot import colors
 from cspace.plot.axes import PLACE, draw_lines, draw_polygons, flat_axes, need_matplotlib, write_title
 from cspace.plot.planar import outline_bar, prepare_axes
@@ -34,11 +36,11 @@ QUIET: Final = (0.42, 0.46, 0.52)
 
 
 def configuration_space(
-    space: Any,
+    space: ConfigurationSpace,
     *,
-    start: Any | None = None,
-    goals: Any | None = None,
-    path: Any | None = None,
+    start: ArrayLike | None = None,
+    goals: ArrayLike | None = None,
+    path: ArrayLike | None = None,
     ax: Any | None = None,
 ) -> list[Any]:
     """Draw the plane of a planar arm, and beside it its configuration space, coloured by obstacle.
@@ -79,14 +81,16 @@ def two_axes(ax: Any | None) -> tuple[Any, Any]:
     return flat_axes(pair[0]), flat_axes(pair[1])
 
 
-def read_rows(value: Any | None, subject: str) -> Array:
+def read_rows(value: ArrayLike | None, subject: str) -> Array:
     """Configurations (k, 2) of one or several; none for None."""
     if value is None:
         return np.empty((0, 2))
     return as_floats(value, subject, last=(2,)).reshape(-1, 2)
 
 
-def draw_plane(axes: Any, space: Any, tints: Array, start: Array, goals: Array, way: Array) -> list[Any]:
+def draw_plane(
+    axes: Any, space: ConfigurationSpace, tints: Array, start: Array, goals: Array, way: Array
+) -> list[Any]:
     """The obstacles in the plane, the arm at the start, faintly at the goals and along the path."""
     prepare_axes(axes, space.arm.axes)
     artists = []
@@ -114,7 +118,9 @@ def draw_plane(axes: Any, space: Any, tints: Array, start: Array, goals: Array, 
     return artists + write_title(axes, f"{space.arm.name}: the plane")
 
 
-def draw_space(axes: Any, space: Any, tints: Array, start: Array, goals: Array, way: Array) -> list[Any]:
+def draw_space(
+    axes: Any, space: ConfigurationSpace, tints: Array, start: Array, goals: Array, way: Array
+) -> list[Any]:
     """Free configurations white, the others in the colours of what blocks them; boundary, path and ends."""
     (x0, y0), (x1, y1) = space.lower, space.upper
     shades = np.vstack([colors.mix_colors(tints, (1.0, 1.0, 1.0), PALE), np.ones((1, 3))])  # −1 is the last
@@ -143,7 +149,9 @@ def draw_space(axes: Any, space: Any, tints: Array, start: Array, goals: Array, 
     return artists + write_title(axes, f"configuration space: {count} free component{'s' * (count != 1)}")
 
 
-def draw_links(axes: Any, space: Any, q: Array, tint: Any, *, alpha: float, zorder: float) -> list[Any]:
+def draw_links(
+    axes: Any, space: ConfigurationSpace, q: Array, tint: Any, *, alpha: float, zorder: float
+) -> list[Any]:
     """The two links at a configuration, and their joints."""
     base, elbow, tip = space.arm.points(q)
     radius = max(space.link_radius, THIN_LINK * space.arm.reach)
@@ -195,7 +203,7 @@ def round_outline(corners: Array, radius: float) -> Array:
     )
 
 
-def copies_of(space: Any, curves: list[Array]) -> list[Array]:
+def copies_of(space: ConfigurationSpace | Slice | Projection, curves: list[Array]) -> list[Array]:
     """Curves in the picture, with the copies by multiples of 2π that reach into it where joints wrap."""
     found = []
     for curve in curves:
@@ -208,7 +216,7 @@ def copies_of(space: Any, curves: list[Array]) -> list[Array]:
     return found
 
 
-def wrap_into(space: Any, q: Array) -> Array:
+def wrap_into(space: ConfigurationSpace | Slice | Projection, q: Array) -> Array:
     """The copy of a configuration that lies in the picture."""
     return np.where(space.wraps, space.lower + np.mod(q - space.lower, TURN), q)
 

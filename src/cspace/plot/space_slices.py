@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
+from cspace.planning import Projection, Slice
 from cspace.plot import colors
 from cspace.plot.axes import PLACE, draw_lines, flat_axes, need_matplotlib, write_title
 from cspace.plot.configuration_space import DARK, PALE, QUIET, copies_of, mark_angles, wrap_into
@@ -27,10 +29,10 @@ MOST_NAMES: Final = 12
 
 
 def space_slice(
-    part: Any,
+    part: Slice,
     *,
-    q: Any | None = None,
-    path: Any | None = None,
+    q: ArrayLike | None = None,
+    path: ArrayLike | None = None,
     ax: Any | None = None,
     title: str | None = None,
 ) -> list[Any]:
@@ -58,17 +60,18 @@ def space_slice(
 
 
 def space_projection(
-    part: Any,
+    part: Projection,
     *,
-    q: Any | None = None,
-    path: Any | None = None,
+    q: ArrayLike | None = None,
+    path: ArrayLike | None = None,
     ax: Any | None = None,
     title: str | None = None,
 ) -> list[Any]:
     """Draw a projection of a configuration space: the share of free samples, grey where none is free.
 
-    part: a Projection. q, path, ax, title: as of space_slice. Returns the artists, the last of them a bar of
-    colours. Raises InputTypeError for what is not a Projection, MissingExtraError without matplotlib.
+    part: a Projection. q (dof,) or (k, dof), path (m, dof), ax, title: as of space_slice. Returns the
+    artists, the last of them a bar of colours. Raises InputTypeError for what is not a Projection,
+    MissingExtraError without matplotlib.
     """
     if not hasattr(part, "is_free"):
         raise InputTypeError(
@@ -89,7 +92,7 @@ def space_projection(
     return [*artists, bar]
 
 
-def part_axes(ax: Any | None, part: Any) -> Any:
+def part_axes(ax: Any | None, part: Slice | Projection) -> Any:
     """The given axes, or new ones in a figure of the shape of a slice or a projection."""
     if ax is not None:
         return flat_axes(ax)
@@ -112,7 +115,7 @@ def paint_cells(found: Any, is_proved: Any, tints: Array) -> Array:
     return painted
 
 
-def draw_cells(axes: Any, part: Any, picture: Any) -> list[Any]:
+def draw_cells(axes: Any, part: Slice | Projection, picture: Any) -> list[Any]:
     """The picture (n1, n2, …) of the cells of two joints, the first along x; names, units and ticks."""
     (x0, y0), (x1, y1) = part.lower, part.upper
     across = np.ma.swapaxes(picture, 0, 1) if np.ma.isMaskedArray(picture) else np.swapaxes(picture, 0, 1)
@@ -147,7 +150,14 @@ def draw_names(axes: Any, entries: list[tuple[str, Array]]) -> list[Any]:
     return [axes.legend(marks, names, labelcolor=QUIET, **place)]
 
 
-def draw_ways(axes: Any, part: Any, at: Array, q: Any, path: Any, dof: int | None) -> list[Any]:
+def draw_ways(
+    axes: Any,
+    part: Slice | Projection,
+    at: Array,
+    q: ArrayLike | None,
+    path: ArrayLike | None,
+    dof: int | None,
+) -> list[Any]:
     """Marks at configurations and a path, by the two joints of a picture."""
     artists: list[Any] = []
     way = read_rows(getattr(path, "path", path), "path", dof, part.joints)
@@ -161,7 +171,7 @@ def draw_ways(axes: Any, part: Any, at: Array, q: Any, path: Any, dof: int | Non
     return artists
 
 
-def read_rows(value: Any | None, subject: str, dof: int | None, joints: tuple[int, int]) -> Array:
+def read_rows(value: ArrayLike | None, subject: str, dof: int | None, joints: tuple[int, int]) -> Array:
     """The two joints (k, 2) of one configuration or several; none for None."""
     if value is None:
         return np.empty((0, 2))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from cspace.cli.arguments import add_option, named_value, read_number
+from cspace.cli.arguments import add_option, named_value, read_length, read_number
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Cell, Output, Table, check_format, check_writable
 from cspace.cli.verbs.planners import options_given, typed_value
@@ -53,9 +53,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     text = "an option of the planners (cspace planners NAME); may be repeated"
     add_option(parser, "--option [PLANNER.]NAME=VALUE", text, named_value, action="append", default=[])
     add_option(parser, "--seed N", "the seed of sampling-based planners", int)
-    add_option(parser, "--radius RADIUS", "radius of the robot [m] (default: 0)", read_number, default=0.0)
+    add_option(parser, "--radius RADIUS", "radius of the robot [m] (default: 0)", read_length, default=0.0)
     text = "side of a cell [m], for images and for polygons converted to cells"
-    add_option(parser, "--resolution RESOLUTION", text, read_number)
+    add_option(parser, "--resolution RESOLUTION", text, read_length)
     add_option(parser, "--details", "all points of a long path")
     add_option(parser, "--plot FILE", "draw the routes side by side (.png, .svg, .pdf)", Path)
     add_option(parser, "--animate FILE.gif", "animate the search of the first planner", Path)

@@ -17,8 +17,8 @@ from cspace.cli.arguments import (
     add_option,
     add_robot,
     named_value,
+    read_angle,
     read_length,
-    read_number,
     read_radians,
     read_seed,
     split_numbers,
@@ -26,7 +26,6 @@ from cspace.cli.arguments import (
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.goals import GOAL_WORDS, Goal, add_goal, goal_of, name_options
 from cspace.cli.output import Output, Table, check_format, check_writable
-from cspace.cli.path_files import check_path_file, write_path
 from cspace.cli.progress import show_progress
 from cspace.cli.robot import (
     FEWER_DECIMALS,
@@ -48,11 +47,11 @@ if TYPE_CHECKING:
 
 
 EXAMPLES: Final = """
-cspace plan ur5e --geometry skeleton --to up --scene cell.toml --plot way.png
-cspace plan ur5e --geometry skeleton --from up --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
+cspace plan ur5e --to up --scene cell.toml --plot way.png
+cspace plan ur5e --from up --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
 cspace plan panda --spheres spheres.json --from ready --to 0 0 0 -pi/2 0 pi/2 0 --scene cell.toml -o way.yaml
-cspace plan ur5e --geometry skeleton --xyz 0.4 0.2 0.4 --direction 0 0 -1 --margin 5mm --json
-cspace plan ur5e --geometry skeleton --xyz 0.4 0.2 0.4 --box 0.1 0.1 0 --direction 0 0 -1 --within 0.2
+cspace plan ur5e --xyz 0.4 0.2 0.4 --direction 0 0 -1 --margin 5mm --json
+cspace plan ur5e --xyz 0.4 0.2 0.4 --box 0.1 0.1 0 --direction 0 0 -1 --within 20deg
 cspace plan arm.urdf --from 0 0 0 0 0 0 --to 1 0 0 0 0 0 --to -1 0 0 0 0 0 --scene cell.toml --seed 7
 """
 HOME: Final = "home"
@@ -96,8 +95,8 @@ def add_region(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("region")
     text = "with --xyz: the tip may be anywhere in a box with these edges around it: 0.1, or 10cm"
     add_option(group, "--box SX SY SZ", text, read_length)
-    text = "with --direction or an orientation: by what angle it may deviate [rad, or degrees with --deg]"
-    add_option(group, "--within ANGLE", text, read_number)
+    text = "with --direction or an orientation: by what angle it may deviate: 0.35, or 20deg"
+    add_option(group, "--within ANGLE", text, read_angle)
 
 
 def add_planner(parser: argparse.ArgumentParser) -> None:
@@ -120,7 +119,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         plan, seconds = find_plan(args, robot, start, goal, scene, options)
     except (InputError, InputTypeError) as error:
         raise UsageError(name_options(str(error))) from error
-    written = write_files(args, robot, plan, scene) if plan else []
+    written = write_files(args, robot, plan)
     if out.as_json:
         out.document(plan_document(args, robot, start, goal, plan, seconds, written))
     else:
@@ -139,7 +138,10 @@ def check_targets(args: argparse.Namespace) -> None:
         check_format(args.plot)
         check_writable(args.plot)
     if args.output is not None:
-        check_path_file(args.output)
+        from cspace.planning.plan_files import check_ending
+
+        check_ending(args.output)
+        check_writable(args.output)
 
 
 def options_of_planner(args: argparse.Namespace) -> dict[str, Any]:
@@ -251,16 +253,19 @@ def goal_wanted(args: argparse.Namespace, goal: Array | Goal) -> Any:
     )
 
 
-def write_files(args: argparse.Namespace, robot: Robot, plan: Plan, scene: Scene | None) -> list[str]:
-    """Write the path and the picture that were requested; returns the files."""
-    if args.output is not None:
-        write_path(args.output, robot, plan)
-    if args.plot is not None:
+def write_files(args: argparse.Namespace, robot: Robot, plan: Plan) -> list[Path]:
+    """Write the path and the picture that were requested, of a failed descent the picture; the files."""
+    written = []
+    if args.output is not None and plan:
+        plan.save(args.output)
+        written.append(args.output)
+    if args.plot is not None and (plan or "rest" in plan.stats):
         from cspace import plot
 
         with show_progress("drawing the motion"):
-            plot.save(plot.plan(plan, title=f"{robot.name}: {plan.reason}"), args.plot)
-    return [str(path) for path in (args.output, args.plot) if path is not None]
+            plot.save(plot.plan(plan, title=f"{robot.name}: {plan.reason.partition(':')[0]}"), args.plot)
+        written.append(args.plot)
+    return written
 
 
 def plan_document(
@@ -270,7 +275,7 @@ def plan_document(
     goal: Array | Goal,
     plan: Plan,
     seconds: float,
-    written: list[str],
+    written: list[Path],
 ) -> dict[str, Any]:
     """The plan as JSON data [rad, m]; numbers that do not exist are null."""
     tip_goal = goal if isinstance(goal, Goal) else Goal()
@@ -302,7 +307,7 @@ def plan_document(
         "clearance": finite_number(plan.clearance),
         "seconds": seconds,
         "stats": {name: name_fields(value) for name, value in plan.stats.items()},
-        "written": written,
+        "written": [str(path) for path in written],
     }
 
 

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
+from cspace.cli.arguments import UNITS, read_number, read_unit, unit_of
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Cell, Output, Table
 from cspace.errors import suggest
@@ -26,11 +27,33 @@ ARM_WORLD: Final = "arm"
 """What stands for the world of the planners of arms."""
 
 TRUTHS: Final = {"true": True, "false": False}
+
+
+def read_whole(text: str) -> int:
+    """A whole number: 1000, 1e6."""
+    value = float(text)
+    if value != math.floor(value):
+        raise ValueError
+    return int(text) if text.lstrip("+-").isdigit() else int(value)
+
+
+def read_real(text: str) -> float:
+    """A number; inf, and nan for the planner to refuse."""
+    return float(text) if text.lower().lstrip("+-") in ("inf", "nan") else read_number(text)
+
+
+def read_list(text: str) -> float | list[float]:
+    """One number, or several with commas between them."""
+    values = [read_number(word) for word in text.split(",")]
+    return values if len(values) > 1 else values[0]
+
+
 NUMBERS: Final[Mapping[str, tuple[Callable[[str], Any], str]]] = {
-    "int": (int, "a whole number"),
-    "float": (float, "a number"),
+    "int": (read_whole, "a whole number"),
+    "float": (read_real, "a number"),
     "bool": (lambda text: TRUTHS[text.lower()], "true or false"),
     "str": (str, "a word"),
+    "ArrayLike": (read_list, "numbers with commas between them"),
 }
 """How the value of an option is read by a type that it takes, the strictest first; and what it must be."""
 
@@ -145,13 +168,10 @@ def value_of(option: Option, text: str) -> Any:
     """The value of an option, as typed; UsageError where it is of another kind."""
     if option.default is None and text.lower() == "none":
         return None
-    for kind, (read, rule) in NUMBERS.items():
-        if kind in option.type.split(" | "):
-            try:
-                return read(text)
-            except (ValueError, KeyError):
-                raise UsageError(f"option {option.name!r} is {text!r}; it must be {rule}") from None
-    raise UsageError(
-        f"option {option.name!r} is an array, which the command line cannot take; use cs.navigate"
-        " or cs.plan in Python"
-    )
+    kinds = option.type.split(" | ")
+    read, rule = next(each for kind, each in NUMBERS.items() if kind in kinds)
+    units = dict(pair for unit in option.unit.split(" or ") for pair in UNITS.get(unit, {}).items())
+    try:
+        return read_unit(text, units) if "float" in kinds and unit_of(text, units) else read(text)
+    except (ValueError, KeyError, OverflowError, argparse.ArgumentTypeError):
+        raise UsageError(f"option {option.name!r} is {text!r}; it must be {rule}") from None

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot, read_number
+from cspace.cli.arguments import (
+    add_chain,
+    add_degrees,
+    add_option,
+    add_robot,
+    read_angle,
+    read_length,
+    read_number,
+)
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.joint_space import add_joint_space, refuse_joint_space_options, run_joint_space
 from cspace.cli.output import Output, Table, check_format, check_writable
@@ -46,15 +54,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     text = "a scene (.toml, .json, .scene), cut with the plane of the arm, or polygons (.txt, .geojson)"
     add_option(parser, "--scene FILE", text, Path)
     text = "everything within this distance of its axis belongs to a link [m] (default: 0)"
-    add_option(parser, "--link-radius RADIUS", text, read_number)
+    add_option(parser, "--link-radius RADIUS", text, read_length)
     text = "the height of the plane in a scene [m] (default: that of the tip)"
-    add_option(parser, "--height HEIGHT", text, read_number)
+    add_option(parser, "--height HEIGHT", text, read_length)
     add_option(parser, "--no-limits", "the joints rotate without limits")
-    add_option(parser, "--from Q1 Q2", "a configuration where a path begins [rad]", read_number, dest="start")
+    add_option(parser, "--from Q1 Q2", "a configuration where a path begins [rad]", read_angle, dest="start")
     goal = parser.add_mutually_exclusive_group()
     text = "a position in the plane [m]; each of its IK solutions is a goal"
     add_option(goal, "--to X Y", text, read_number)
-    add_option(goal, "--to-q Q1 Q2", "a configuration as the goal [rad]", read_number)
+    add_option(goal, "--to-q Q1 Q2", "a configuration as the goal [rad]", read_angle)
     add_option(parser, "--plot FILE", "draw the space (.png, .svg, .pdf)", Path)
     add_joint_space(parser)
     add_degrees(parser)

@@ -83,7 +83,7 @@ def read_values(given: dict[str, Any], tool_axis: Any) -> dict[str, Any]:
             values[name] = np.asarray(as_rotation(value, name), dtype=np.float64)
         else:
             values[name] = value
-    named = [name for name in ("tool_axis", "angle_to[0]") if isinstance(values.get(name), str)]
+    named = [name for name in ("tool_axis", "angle_to[0]", "direction") if isinstance(values.get(name), str)]
     for name in named:
         values[name] = axis_named(values[name])
     for name in (name for name in values if name not in MAY_BE_OPEN):

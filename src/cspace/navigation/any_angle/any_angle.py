@@ -16,7 +16,8 @@ from cspace import _core
 from cspace.maps import OccupancyGrid
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things, explain_division
+from cspace.navigation.text import explain_division
+from cspace.tables import count_things
 from cspace.tolerances import CELLS_PER_CORNER, MESHED_CORNERS, RUN_CELLS
 
 

@@ -31,9 +31,9 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things, explain_entry
+from cspace.navigation.text import explain_entry
 from cspace.search import draw_seed, option
-from cspace.tables import show_fields
+from cspace.tables import count_things, show_fields
 from cspace.tolerances import SCAN_NOISE
 
 

@@ -18,9 +18,9 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things, explain_entry
+from cspace.navigation.text import explain_entry
 from cspace.search import option
-from cspace.tables import show_fields
+from cspace.tables import count_things, show_fields
 
 HANDS: Final = {"left": 0, "right": 1, None: 2}
 """The numbers of hands in the compiled core; None: either."""

@@ -11,8 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.navigation.curves.curve import Curve
 from cspace.navigation.route import Stats
-from cspace.navigation.text import count_things
-from cspace.tables import one_line
+from cspace.tables import count_things, one_line
 from cspace.tolerances import CAR_POSES
 
 REASONS: Final = (

@@ -25,9 +25,8 @@ from cspace.maps.outlines import longer_side
 from cspace.navigation.checks import need_polygons
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things
 from cspace.search import option
-from cspace.tables import show_fields
+from cspace.tables import count_things, show_fields
 from cspace.tolerances import FINEST_LEVEL, QUADTREE_CELLS, QUADTREE_DEPTH, UNIFORM_DEPTH
 
 METRICS: Final = ("euclidean", "manhattan")

@@ -20,7 +20,7 @@ from cspace.arrays import Array
 from cspace.maps import PolygonWorld
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things
+from cspace.tables import count_things
 
 
 class ExactCells(PlanePlanner):

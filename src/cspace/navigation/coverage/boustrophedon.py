@@ -13,8 +13,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.checks import need_grid
-from cspace.navigation.text import count_things
-from cspace.tables import one_line
+from cspace.tables import count_things, one_line
 from cspace.tolerances import CELL_ROUNDING
 
 ALONG: Final = ("x", "y")

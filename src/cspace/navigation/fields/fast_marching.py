@@ -20,8 +20,8 @@ from cspace.navigation.cache import clearance_field
 from cspace.navigation.checks import need_grid
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things
 from cspace.search import option
+from cspace.tables import count_things
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,8 +21,7 @@ from cspace.navigation.cache import clearance_field, keep_with
 from cspace.navigation.checks import check_ends, need_grid
 from cspace.navigation.planner import NO_EVENTS, PlanePlanner
 from cspace.navigation.route import Route, Stats, new_route
-from cspace.navigation.text import count_things
-from cspace.tables import show_fields
+from cspace.tables import count_things, show_fields
 from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_FIELDS, HARMONIC_RESIDUAL
 
 

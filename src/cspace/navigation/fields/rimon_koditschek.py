@@ -29,9 +29,8 @@ from cspace.navigation.cache import keep_with
 from cspace.navigation.checks import check_ends
 from cspace.navigation.planner import NO_EVENTS, PlanePlanner
 from cspace.navigation.route import Route, Stats, new_route
-from cspace.navigation.text import count_things
 from cspace.search import option
-from cspace.tables import show_fields
+from cspace.tables import count_things, show_fields
 from cspace.tolerances import (
     FARTHEST_POINT,
     NAVIGATION_FUNCTIONS,

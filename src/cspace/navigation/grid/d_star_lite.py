@@ -21,8 +21,8 @@ from cspace.maps.points import as_point
 from cspace.navigation.checks import check_ends, need_grid
 from cspace.navigation.grid.search import METRICS, GridPlanner
 from cspace.navigation.route import STATUSES, Route, Stats, new_route
-from cspace.navigation.text import count_things
 from cspace.search import option
+from cspace.tables import count_things
 
 
 class DStarLite:

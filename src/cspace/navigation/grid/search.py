@@ -18,8 +18,8 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things
 from cspace.search import option
+from cspace.tables import count_things
 
 CORNERS: Final = {"never": 0, "one": 1, "always": 2}
 """When a diagonal step is allowed: both cells beside it are free, one is, always."""

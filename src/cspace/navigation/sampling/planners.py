@@ -11,8 +11,9 @@ from cspace import _core
 from cspace.maps.outlines import longer_side
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things, explain_division
+from cspace.navigation.text import explain_division
 from cspace.search import draw_seed, option
+from cspace.tables import count_things
 from cspace.tolerances import MOST_SAMPLES, SAMPLE_STEP
 
 

@@ -20,7 +20,8 @@ from cspace.maps import PolygonWorld
 from cspace.navigation.checks import need_polygons
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things, explain_division
+from cspace.navigation.text import explain_division
+from cspace.tables import count_things
 
 
 class VisibilityGraph(NamedTuple):

@@ -7,6 +7,7 @@ all of it is blocked. Other squares are cut into four, down to single cells.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Final
@@ -15,7 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace._core import CollisionChecker
-from cspace.arrays import Array
+from cspace.arrays import Array, whole_number
+from cspace.errors import InputError
 
 Mask = npt.NDArray[np.bool_]
 Integers = npt.NDArray[np.int64]
@@ -68,6 +70,31 @@ class Grid:
         half = np.zeros(len(self.q))
         half[list(self.joints)] = 0.5 * size * (self.upper - self.lower) / self.shape
         return half
+
+
+@dataclass(frozen=True, eq=False)
+class JointPair:
+    """Two joints of a space, over equal cells: what Slice and Projection have in common; see there."""
+
+    joints: tuple[int, int]
+    joint_names: tuple[str, str]
+    units: tuple[str, str]
+    lower: Array
+    upper: Array
+    wraps: Mask
+
+    def _grid_of(self, q: Array, shape: tuple[int, ...]) -> Grid:
+        """The cells (n1, n2), the other joints held at q (dof,)."""
+        return Grid(q, self.joints, self.lower, self.upper, (shape[0], shape[1]))
+
+
+def count_cells(n: int | Sequence[int], subject: str, most: int) -> tuple[int, int]:
+    """The numbers of cells along two joints, from one or two numbers as callers give them."""
+    counts: Sequence[int] = (n, n) if np.ndim(n) == 0 else tuple(n)  # type: ignore[arg-type, assignment]
+    if len(counts) != 2:
+        raise InputError(f"{subject} has {len(counts)} entries; give one number of cells, or two")
+    first, second = (whole_number(count, subject, 1, most) for count in counts)
+    return first, second
 
 
 def settle_grid(checker: CollisionChecker, grid: Grid, deadline: float, threads: int) -> tuple[Mask, Mask]:

@@ -8,13 +8,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
-from cspace.planning.joint_space.cells import Grid
+from cspace.planning.joint_space.cells import JointPair
 from cspace.planning.joint_space.shares import find_standard_error, find_wilson_interval
 from cspace.tables import one_line
 
 
 @dataclass(frozen=True, eq=False)
-class Projection:
+class Projection(JointPair):
     """For each cell of two joints, whether the others can be set so that the robot is free.
 
     joints: the two, by number; joint_names, units: their names, "rad" or "m". lower, upper (2,): their range;
@@ -24,12 +24,6 @@ class Projection:
     samples: how many there were. complete: whether it was as many as asked for, before the time was up.
     """
 
-    joints: tuple[int, int]
-    joint_names: tuple[str, str]
-    units: tuple[str, str]
-    lower: Array
-    upper: Array
-    wraps: npt.NDArray[np.bool_]
     is_free: npt.NDArray[np.bool_]
     share: Array
     samples: int
@@ -38,8 +32,7 @@ class Projection:
     @property
     def cells(self) -> tuple[Array, Array]:
         """The coordinates (n1,) and (n2,) [rad or m] of the centres of the cells."""
-        n1, n2 = self.share.shape
-        return Grid(self.lower, self.joints, self.lower, self.upper, (n1, n2)).centers()
+        return self._grid_of(self.lower, self.share.shape).centers()
 
     @property
     def standard_error(self) -> Array:

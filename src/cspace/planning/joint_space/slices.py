@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, guard_memory
-from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid
+from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid, JointPair
 from cspace.tables import one_line
 
 SELF = "self"
@@ -19,7 +19,7 @@ SELF = "self"
 
 
 @dataclass(frozen=True, eq=False)
-class Slice:
+class Slice(JointPair):
     """Where a robot is free while two joints move and the others are held.
 
     at (dof,) [rad or m]: where they are held; joints: the two, by number; joint_names, units: their names,
@@ -31,12 +31,6 @@ class Slice:
     """
 
     at: Array
-    joints: tuple[int, int]
-    joint_names: tuple[str, str]
-    units: tuple[str, str]
-    lower: Array
-    upper: Array
-    wraps: npt.NDArray[np.bool_]
     bitmap: npt.NDArray[np.bool_]
     is_proved: npt.NDArray[np.bool_]
     obstacles: tuple[str, ...]
@@ -87,8 +81,7 @@ class Slice:
 
     @property
     def _grid(self) -> Grid:
-        n1, n2 = self.bitmap.shape
-        return Grid(self.at, self.joints, self.lower, self.upper, (n1, n2))
+        return self._grid_of(self.at, self.bitmap.shape)
 
     def __getstate__(self) -> dict[str, Any]:
         """What pickle stores: the obstacles in place of the robot that finds them."""

@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 from math import inf, prod
 from time import perf_counter
+from types import MappingProxyType
 from typing import Any, Final
 
 import numpy as np
@@ -21,7 +22,7 @@ from cspace.collision.checks import HasGeometry, read_geometry
 from cspace.errors import InputError, InputTypeError, Renamed, suggest
 from cspace.kinematics.batch import thread_count
 from cspace.math.wrapping import TURN
-from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid, settle_grid
+from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid, count_cells, settle_grid
 from cspace.planning.joint_space.projections import Projection
 from cspace.planning.joint_space.slices import Slice, name_obstacles
 from cspace.planning.joint_space.volumes import Volume
@@ -41,6 +42,9 @@ MOST_SAMPLES: Final = 10**10
 """Samples of a volume: an hour's work, and an error of five millionths."""
 
 
+EXACT_ONLY: Final = "only planar arms with two joints have an exact space, cs.configuration_space(arm, scene)"
+
+
 class JointSpace(Renamed):
     """The configurations of a robot with collision geometry, free or blocked, for any number of joints.
 
@@ -55,6 +59,12 @@ class JointSpace(Renamed):
     Raises InputError for a robot without collision geometry, a prismatic joint without limits, a negative
     margin, and names of the scene that do not fit the robot.
     """
+
+    _elsewhere = MappingProxyType(
+        dict.fromkeys(("path", "connected"), "cs.plan(robot, start, goal, scene) finds paths")
+        | dict.fromkeys(("bitmap", "cells", "obstacle_map"), "slice((i, j)) has the cells of two joints")
+        | dict.fromkeys(("components", "component", "boundaries", "sections", "link_radius"), EXACT_ONLY)
+    )
 
     def __init__(
         self,
@@ -123,13 +133,12 @@ class JointSpace(Renamed):
         count = thread_count(threads, grid.shape)
         blocked, proved = settle_grid(self._core, grid, deadline, count)
         return Slice(
-            grid.q,
-            grid.joints,
-            *self._describe_pair(grid),
-            blocked,
-            proved,
-            self.obstacles,
-            self._find_obstacles,
+            **self._describe_pair(grid),
+            at=grid.q,
+            bitmap=blocked,
+            is_proved=proved,
+            obstacles=self.obstacles,
+            _find_obstacles=self._find_obstacles,
         )
 
     def project(
@@ -165,14 +174,8 @@ class JointSpace(Renamed):
             free += here
             done += 1
         is_free |= free > 0
-        return Projection(
-            grid.joints,
-            *self._describe_pair(grid),
-            is_free,
-            free / done,
-            done,
-            complete=done == count,
-        )
+        pair = self._describe_pair(grid)
+        return Projection(**pair, is_free=is_free, share=free / done, samples=done, complete=done == count)
 
     def volume(
         self,
@@ -212,7 +215,9 @@ class JointSpace(Renamed):
             limit_share=prod(np.where(is_prismatic, 1.0, np.minimum(ranges / TURN, 1.0)).tolist()),
         )
 
-    def _make_grid(self, joints: Sequence[int | str], at: ArrayLike | None, size: Any) -> Grid:
+    def _make_grid(
+        self, joints: Sequence[int | str], at: ArrayLike | None, size: int | Sequence[int]
+    ) -> Grid:
         """The grid of two joints, the others held at a configuration."""
         first, second = pair = self._find_joints(joints)
         q = 0.5 * (self.lower + self.upper)
@@ -220,9 +225,9 @@ class JointSpace(Renamed):
             q = one_array(at, "at", (self.dof,), "one value per joint", largest=LARGEST_NUMBER)
             self._check_rows_within(q, "at")
         ends = [first, second]
-        return Grid(q, pair, self.lower[ends], self.upper[ends], check_size(size))
+        return Grid(q, pair, self.lower[ends], self.upper[ends], count_cells(size, "size", MOST_CELLS))
 
-    def _find_joints(self, joints: Any) -> tuple[int, int]:
+    def _find_joints(self, joints: Sequence[int | str]) -> tuple[int, int]:
         """The numbers of two joints that are given by name or number."""
         if isinstance(joints, str) or not isinstance(joints, (Sequence, np.ndarray)) or len(joints) != 2:
             raise InputError(f"joints is {joints!r}; give two joints, such as (0, 1) or two names")
@@ -233,12 +238,17 @@ class JointSpace(Renamed):
             )
         return first, second
 
-    def _describe_pair(self, grid: Grid) -> tuple[tuple[str, str], tuple[str, str], Array, Array, Any]:
-        """The names of the joints of a grid, their units, their range, and whether they wrap."""
-        first, second = grid.joints
-        unit = ["m" if k in self._arm.geometry.prismatic else "rad" for k in grid.joints]
-        names = self.joint_names[first], self.joint_names[second]
-        return names, (unit[0], unit[1]), grid.lower, grid.upper, self.wraps[[first, second]]
+    def _describe_pair(self, grid: Grid) -> dict[str, Any]:
+        """The fields of JointPair for the joints of a grid."""
+        pair = list(grid.joints)
+        return {
+            "joints": grid.joints,
+            "joint_names": tuple(self.joint_names[k] for k in pair),
+            "units": tuple("m" if k in self._arm.geometry.prismatic else "rad" for k in pair),
+            "lower": grid.lower,
+            "upper": grid.upper,
+            "wraps": self.wraps[pair],
+        }
 
     def _check_rows_within(self, q: ArrayLike | None, subject: str) -> Array:
         """One configuration (dof,) or several as rows (k, dof), none for None; InputError outside limits."""
@@ -292,7 +302,7 @@ def make_again(robot: HasGeometry, scene: Scene | None, margin: float, limits: b
     return JointSpace(robot, scene, margin=margin, limits=limits)
 
 
-def find_joint(key: Any, names: tuple[str, ...], robot: str) -> int:
+def find_joint(key: object, names: tuple[str, ...], robot: str) -> int:
     """The number of a joint by its name or its number, from the end where it is negative."""
     if isinstance(key, str):
         if key not in names:
@@ -303,15 +313,6 @@ def find_joint(key: Any, names: tuple[str, ...], robot: str) -> int:
     if not -len(names) <= key < len(names):
         raise InputError(f"joints has joint {key}, but {robot} has joints 0 to {len(names) - 1}")
     return int(key) % len(names)
-
-
-def check_size(size: Any) -> tuple[int, int]:
-    """The numbers of cells along both joints."""
-    counts = (size, size) if np.ndim(size) == 0 else tuple(size)
-    if len(counts) != 2:
-        raise InputError(f"size has {len(counts)} entries; give one number of cells, or two")
-    n1, n2 = (whole_number(count, "size", 1, MOST_CELLS) for count in counts)
-    return n1, n2
 
 
 def find_deadline(time_limit: float | None) -> float:

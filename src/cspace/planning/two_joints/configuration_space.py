@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, Final
+from types import MappingProxyType
+from typing import Any, Final, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, bounded_number, guard_memory, one_array, whole_number
+from cspace.arrays import Array, as_floats, bounded_number, guard_memory, one_array
 from cspace.collision import Scene
 from cspace.errors import InputError, InputTypeError, Renamed
 from cspace.maps import PolygonWorld
+from cspace.planning.joint_space.cells import count_cells
 from cspace.planning.two_joints.answers import KINDS, BoundaryCurve, Connection, FreeComponent
 from cspace.planning.two_joints.planar_arm import PlanarArm, read_planar_arm
 from cspace.planning.two_joints.polygons import Piece, cut_polygons
@@ -26,6 +29,12 @@ RANKS: Final = ("connected", "undetermined", "separate", "blocked")
 
 MOST_CELLS: Final = 30_000
 """Cells of a bitmap along one joint: more than a gigabyte is no picture."""
+
+
+Obstacles: TypeAlias = Scene | PolygonWorld | Sequence[ArrayLike] | None
+"""What a configuration space takes as obstacles."""
+
+AS_JOINT_SPACE: Final = "cs.configuration_space(arm, scene, exact=False) has it"
 
 
 class ConfigurationSpace(Renamed):
@@ -42,6 +51,15 @@ class ConfigurationSpace(Renamed):
     Lozano-Pérez 1983.
     """
 
+    _elsewhere = MappingProxyType(
+        {
+            "slice": "bitmap(n) is the whole space; " + AS_JOINT_SPACE,
+            "project": AS_JOINT_SPACE,
+            "volume": "components[k].area is exact; " + AS_JOINT_SPACE,
+        }
+        | dict.fromkeys(("robot", "scene", "margin"), AS_JOINT_SPACE)
+    )
+
     def __init__(self, arm: PlanarArm, sections: dict[str, list[Piece]], link_radius: float) -> None:
         self.arm, self.sections, self.link_radius = arm, sections, link_radius
         self.obstacles = tuple(sections)
@@ -53,25 +71,25 @@ class ConfigurationSpace(Renamed):
         """The coordinates q1 (n1,) and q2 (n2,) [rad] of the centres of the cells of `bitmap(n)`."""
         return tuple(
             low + (high - low) * (np.arange(count) + 0.5) / count
-            for low, high, count in zip(self.lower, self.upper, check_cells(n), strict=True)
+            for low, high, count in zip(self.lower, self.upper, count_cells(n, "n", MOST_CELLS), strict=True)
         )
 
-    def bitmap(self, n: int | Sequence[int] = 1000) -> Any:
+    def bitmap(self, n: int | Sequence[int] = 1000) -> npt.NDArray[np.bool_]:
         """Where the arm collides: bool (n1, n2), of the configurations at the centres of equal cells.
 
         n: the number of cells along each joint, or (n1, n2). Row i belongs to q1, column j to q2, in
         ascending order: `cells(n)` are the coordinates. Raises InputError for an n that exceeds the memory.
         """
-        rows, columns = check_cells(n)
+        rows, columns = count_cells(n, "n", MOST_CELLS)
         with guard_memory("n", n, rows * columns / 8.0, "take fewer cells"):
             return self._core.bitmap(rows, columns).view(np.bool_)
 
-    def obstacle_map(self, n: int | Sequence[int] = 1000) -> Any:
+    def obstacle_map(self, n: int | Sequence[int] = 1000) -> npt.NDArray[np.int32]:
         """The obstacle in each cell of `bitmap(n)`: int32 (n1, n2), its place in `obstacles`, −1 if free.
 
         Where the arm touches several obstacles it is one of them.
         """
-        rows, columns = check_cells(n)
+        rows, columns = count_cells(n, "n", MOST_CELLS)
         with guard_memory("n", n, rows * columns / 2.0, "take fewer cells"):
             return self._core.obstacle_map(rows, columns)
 
@@ -186,9 +204,9 @@ class ConfigurationSpace(Renamed):
         what = "lies beyond a joint limit" if blocked == "limit" else f"touches {blocked!r}"
         raise InputError(f"{subject} {write_q(row)} {what}; give a configuration that is free")
 
-    def _is_within(self, rows: Array) -> Any:
+    def _is_within(self, rows: Array) -> npt.NDArray[np.bool_]:
         """Whether configurations (n, 2) lie within the limits: (n,) of bool."""
-        return ((rows >= self.lower) & (rows <= self.upper) | self.wraps).all(axis=1)
+        return np.asarray(((rows >= self.lower) & (rows <= self.upper) | self.wraps).all(axis=1))
 
     def __repr__(self) -> str:
         count = len(self.obstacles)
@@ -206,7 +224,7 @@ class ConfigurationSpace(Renamed):
 
 
 def exact_space(
-    robot: Any, obstacles: Any, *, link_radius: float, limits: bool, height: float | None
+    robot: object, obstacles: Obstacles, *, link_radius: float, limits: bool, height: float | None
 ) -> ConfigurationSpace:
     """The exact configuration space of a planar arm with two revolute joints; see configuration_space."""
     arm = read_planar_arm(robot, limits)
@@ -242,15 +260,6 @@ def make_core(arm: PlanarArm, sections: dict[str, list[Piece]], link_radius: flo
         np.array([piece.radius for piece, _ in pieces], dtype=np.float64),
         np.array([k for _, k in pieces], dtype=np.int32),
     )
-
-
-def check_cells(n: Any) -> tuple[int, int]:
-    """The numbers of cells along both joints."""
-    counts = (n, n) if np.ndim(n) == 0 else tuple(n)
-    if len(counts) != 2:
-        raise InputError(f"n has {len(counts)} entries; give one number of cells, or two")
-    rows, columns = (whole_number(count, "n", 1, MOST_CELLS) for count in counts)
-    return rows, columns
 
 
 def write_q(q: Array) -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
@@ -42,7 +43,7 @@ class PlanarArm:
     offsets: Array
     lower: Array
     upper: Array
-    wraps: Any
+    wraps: npt.NDArray[np.bool_]
     axes: Array
     height: float
     step: float
@@ -65,7 +66,7 @@ class PlanarArm:
         return np.cumsum(np.concatenate([start, links], axis=-2), axis=-2)
 
 
-def is_planar_arm(robot: Any) -> bool:
+def is_planar_arm(robot: object) -> bool:
     """Whether a robot has two revolute joints about parallel axes; True for a value that is not a robot."""
     if not isinstance(robot, KinematicModel):
         return not hasattr(robot, "collision")
@@ -74,7 +75,7 @@ def is_planar_arm(robot: Any) -> bool:
     return bool(np.abs(np.cross(*robot.chain.axes)).max() <= PLANAR_AXES)
 
 
-def read_planar_arm(robot: Any, use_limits: bool) -> PlanarArm:
+def read_planar_arm(robot: object, use_limits: bool) -> PlanarArm:
     """The planar arm that a robot is; InputError for other joints and for axes that are not parallel."""
     if not isinstance(robot, KinematicModel):
         raise InputTypeError(
@@ -117,7 +118,7 @@ def read_planar_arm(robot: Any, use_limits: bool) -> PlanarArm:
     )
 
 
-def read_limits(robot: KinematicModel, use_limits: bool) -> tuple[Array, Array, Any]:
+def read_limits(robot: KinematicModel, use_limits: bool) -> tuple[Array, Array, npt.NDArray[np.bool_]]:
     """Lower and upper limits (2,), and which joints wrap because they have none."""
     lower, upper = np.array(robot.limits.lower), np.array(robot.limits.upper)
     if not use_limits:

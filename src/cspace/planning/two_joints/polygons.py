@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.maps import PolygonWorld
@@ -22,7 +22,7 @@ class Piece:
     radius: float
 
 
-def cut_polygons(obstacles: Any) -> dict[str, list[Piece]]:
+def cut_polygons(obstacles: PolygonWorld | Sequence[ArrayLike]) -> dict[str, list[Piece]]:
     """The convex pieces of polygons, by "obstacle 0", "obstacle 1", …
 
     obstacles: a PolygonWorld, whose bounds do not count, or what it takes as obstacles. GeometryError for a

@@ -1,50 +1,48 @@
-"""Paths of arms as files: YAML, JSON or CSV by the ending."""
+"""Plans as files: the corners of a path as YAML, JSON or CSV, by the ending."""
 
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
-from cspace.cli.exits import UsageError
-from cspace.cli.output import check_writable
-from cspace.files import write_text
-
-if TYPE_CHECKING:
-    from cspace.planning import Plan
-    from cspace.robot import Robot
-
+from cspace.arrays import Array
+from cspace.collision import RobotGeometry
+from cspace.errors import InputError
+from cspace.files import path_of, write_text
 
 SCHEMA: Final = "cspace.path/1"
 """The keys of a path in YAML and JSON."""
-UNITS: Final = {"R": "rad", "P": "m"}
-"""The unit of a joint, by its type."""
 ENDINGS: Final = (".yaml", ".yml", ".json", ".csv")
 """The endings of files of paths."""
 
 
-def check_path_file(path: Path) -> None:
-    """Refuse a file that cannot be written, or whose ending names no format, before any computation."""
-    if path.suffix.lower() not in ENDINGS:
-        raise UsageError(
-            f"unknown format of a path {str(path)!r}; its name must end with one of {', '.join(ENDINGS)}"
+def check_ending(path: str | os.PathLike[str]) -> str:
+    """The ending of a file of a path; InputError for one that names no format."""
+    name = path_of(path, "a path is written to the path of a file")
+    ending = Path(name).suffix.lower()
+    if ending not in ENDINGS:
+        raise InputError(
+            f"unknown format of a path {name!r}; its name must end with one of {', '.join(ENDINGS)}"
         )
-    check_writable(path)
+    return ending
 
 
-def write_path(path: Path, robot: Robot, plan: Plan) -> None:
-    """Write the corners of a plan, with all digits; the file is complete or untouched."""
+def write_path(
+    path: str | os.PathLike[str], geometry: RobotGeometry, corners: Array, *, certified: bool
+) -> None:
+    """Write the corners (m, dof) of a path, with all digits; the file is complete or untouched."""
+    ending = check_ending(path)
     values = {
         "schema": SCHEMA,
-        "robot": robot.name,
-        "joints": list(robot.joint_names),
-        "units": [UNITS[kind] for kind in robot.joint_types],
-        "certified": plan.certified,
-        "path": plan.path.tolist(),
+        "robot": geometry.robot,
+        "joints": list(geometry.joint_names),
+        "units": ["m" if k in geometry.prismatic else "rad" for k in range(geometry.dof)],
+        "certified": certified,
+        "path": corners.tolist(),
     }
-    ending = path.suffix.lower()
-    text = {".json": path_json, ".csv": path_csv}.get(ending, path_yaml)(values)
-    write_text(path, text)
+    write_text(path, {".json": path_json, ".csv": path_csv}.get(ending, path_yaml)(values))
 
 
 def path_json(values: dict[str, Any]) -> str:
