@@ -5,7 +5,8 @@ folder ($CSPACE_DATA, default ../shared/data) and the meshes of `pip install exa
 benchmarks/results/planning_covers.json.
 
 The robot with meshes has the joints, limits and allowed pairs of the published one, whose fingers stand 65 mm
-from the middle. Times are those of the thread's processor clock, the median of the rounds per
+from the middle. The description has boxes for its fingers, which checks take exactly; the covers take the mesh
+of a finger instead, and one line has the boxes. Times are those of the thread's processor clock, the median of the rounds per
 problem; both robots plan in turn. Ratios are over the problems that are valid for both.
 """
 
@@ -27,11 +28,16 @@ sys.path.append(str(HERE.parent / "tests"))
 
 import cspace as cs  # noqa: E402
 from collision.motion_bench import problems, published_robot  # noqa: E402
+from cspace.model import Geometry, Mesh  # noqa: E402
 from cspace.planning import ArmSpace, RRTConnect  # noqa: E402
 from planning import summarize  # noqa: E402
 
 MESHES: Final = "cmeel.prefix/share/example-robot-data/robots/panda_description/urdf/panda.urdf"
 """Where the wheel of example-robot-data puts the description."""
+
+
+TURNS: Final = {"panda_leftfinger": 0.0, "panda_rightfinger": np.pi}
+"""The fingers, and how the mesh of a finger is turned about z there."""
 
 
 def find_description() -> Path:
@@ -42,11 +48,19 @@ def find_description() -> Path:
     raise SystemExit("the Panda's meshes are missing: pip install example-robot-data")
 
 
-def meshed_robot(published: cs.Robot, cover: float) -> cs.Robot:
-    """The published robot with the collision meshes of the public description, covered within `cover` [m]."""
-    meshed = {link.name: link for link in cs.load_robot(find_description(), tip="panda_hand").description.links}
+def meshed_robot(published: cs.Robot, cover: float, boxes: bool = False) -> cs.Robot:
+    """The published robot with the collision meshes of the public description, covered within `cover` [m].
+
+    boxes: whether the fingers are the exact boxes of that description, not the mesh of a finger.
+    """
+    file = find_description()
+    given = cs.load_robot(file, tip="panda_hand").description.links
+    shapes = {link.name: link.collision for link in given}
+    for name, turn in {} if boxes else TURNS.items():
+        mesh = Mesh(str(file.parents[1] / "meshes/collision/finger.stl"))
+        shapes[name] = (Geometry("mesh", origin=cs.pose([0.0, 0.0, 0.0], rpy=[0.0, 0.0, turn]), mesh=mesh),)
     tree = published.description
-    links = tuple(meshed.get(link.name, link) for link in tree.links)
+    links = tuple(dataclasses.replace(link, collision=shapes.get(link.name, ())) for link in tree.links)
     return cs.Robot(dataclasses.replace(tree, links=links), tip=published.tip, cover=cover)
 
 
@@ -73,6 +87,7 @@ def measure(robots: dict[str, cs.Robot], repeat: int) -> dict[str, Any]:
         motions = {name: np.array([plans[name][k].stats["edges"] for k in shared]) for name in (key, first)}
         results[key] = {
             "spheres": len(robot.collision.spheres),
+            "solids": len(robot.collision.solids),
             "pairs": len(robot.collision.pairs),
             "valid": sum(bool(row) for row in times[key]),
             "solved": sum(bool(plan) for plan in plans[key]),
@@ -102,6 +117,7 @@ def main() -> None:
     robots = {"published": published}
     for cover in given.covers:
         robots[f"{1e3 * cover:g} mm"] = meshed_robot(published, cover)
+    robots["10 mm, fingers of exact boxes"] = meshed_robot(published, 0.01, boxes=True)
     results = {"version": cs.__version__, "isa": cs._core.isa, "panda": measure(robots, given.repeat)}
     print(json.dumps(results, indent=1))
     (HERE / "results/planning_covers.json").write_text(json.dumps(results, indent=1) + "\n")

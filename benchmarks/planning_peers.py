@@ -6,8 +6,9 @@ libompl-dev and libeigen3-dev (or both below --prefix), and `pip install coal ex
 hold coal's headers and the Panda's meshes.
 
 benchmarks/peers/ompl_plans.cpp is compiled with -O3, so OMPL and its checks run without Python; ours is called
-from Python. Cases of CASES differ in their checks and in the resolution of motions. Slow cases plan every
---step-th problem alone. Ours is measured on the same problems between the cases. All times are those of the
+from Python. "callback" is what a check costs that OMPL's wheel 2.0.1 (`pip install ompl`) calls in Python and that
+reads the configuration only. Cases of CASES differ in their checks and in the resolution of motions. Slow cases plan every
+--step-th problem alone. Ours plans the same problems in turn with them. All times are those of the
 thread's processor clock, the median of the rounds per problem, then over the problems that both solved.
 """
 
@@ -57,6 +58,9 @@ SIDES: Final = (
     *((2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)),
 )
 """Triangles of a box whose corners count in binary."""
+
+TURNS: Final = 10
+"""Parts of the problems that the peer and ours plan in turn."""
 
 COLUMNS: Final = ("valid", "solved", "search_us", "total_us", "raw_cost", "cost", "checks")
 
@@ -130,16 +134,28 @@ def read_mesh(shapes: Any) -> tuple[Rows, np.ndarray[Any, Any]]:
     return np.concatenate(vertices), np.concatenate(faces)
 
 
-def run_case(program: Path, file: Path, case: str, given: argparse.Namespace) -> tuple[list[int], dict[str, Rows]]:
-    """The problems that were planned, and the columns of the peer."""
+def run_case(program: Path, file: Path, case: str, chosen: list[int], given: argparse.Namespace) -> dict[str, Rows]:
+    """The columns of the peer on some problems, which are equally far apart."""
     checker, resolution, slow = CASES[case]
-    step = given.step if slow else 1
-    rounds = given.repeat if not slow else 1
-    command = [program, file, checker, rounds, resolution, given.seconds, 0, step]
+    rounds = 1 if slow else given.repeat
+    step = chosen[1] - chosen[0]
+    command = [program, file, checker, rounds, resolution, given.seconds, chosen[0], step]
     out = subprocess.run(list(map(str, command)), check=True, capture_output=True, text=True).stdout
     rows = np.array([line.split() for line in out.splitlines()], float)
-    chosen = list(range(0, 350, step))
-    return chosen, dict(zip(COLUMNS, rows.T, strict=True))
+    return dict(zip(COLUMNS, rows.T, strict=True))
+
+
+def run_in_turn(
+    program: Path, file: Path, case: str, spaces: list[Any], given: argparse.Namespace
+) -> tuple[dict[str, Rows], dict[str, Rows]]:
+    """Columns of the peer and of ours, a part of the problems each in turn."""
+    step = given.step if CASES[case][2] else 1
+    theirs, ours = [], []
+    for turn in range(TURNS):
+        chosen = list(range(turn * step, len(spaces), step * TURNS))
+        theirs.append(run_case(program, file, case, chosen, given))
+        ours.append(plan_ours(spaces, chosen, given.repeat))
+    return tuple({key: np.concatenate([one[key] for one in part]) for key in part[0]} for part in (theirs, ours))
 
 
 def plan_ours(spaces: list[Any], chosen: list[int], repeat: int) -> dict[str, Rows]:
@@ -157,6 +173,35 @@ def plan_ours(spaces: list[Any], chosen: list[int], repeat: int) -> dict[str, Ro
             found["raw_cost" if key == "search" else "cost"].append(plan.cost)
         found["solved"].append(float(bool(plan)))
     return {key: np.array(values) for key, values in found.items()}
+
+
+def measure_callback() -> float | None:
+    """Microseconds of a check in Python that reads the configuration, called by OMPL."""
+    try:
+        from ompl import base
+    except ImportError:
+        return None
+    space, bounds, count = base.RealVectorStateSpace(7), base.RealVectorBounds(7), 0
+    bounds.setLow(-3.0)
+    bounds.setHigh(3.0)
+    space.setBounds(bounds)
+    information = base.SpaceInformation(space)
+
+    def check(state: Any) -> bool:
+        nonlocal count
+        count += len([state[i] for i in range(7)])
+        return True
+
+    information.setStateValidityChecker(check)
+    information.setStateValidityCheckingResolution(SAME / space.getMaximumExtent())
+    information.setup()
+    a, b = space.allocState(), space.allocState()
+    for i in range(7):
+        a[i], b[i] = -1.0, 1.0
+    begin = time.thread_time_ns()
+    for _ in range(1000):
+        information.checkMotion(a, b)
+    return (time.thread_time_ns() - begin) / 1000.0 / (count / 7)
 
 
 def compare(theirs: dict[str, Rows], ours: dict[str, Rows]) -> dict[str, Any]:
@@ -188,6 +233,7 @@ def main() -> None:
     file = HERE / "results/planning_peers.json"
     results: dict[str, Any] = json.loads(file.read_text()) if file.is_file() else {}
     results |= {"version": cs.__version__, "isa": cs._core.isa, "seconds": given.seconds}
+    results["callback_us"] = measure_callback()
     judge = Judge("panda", data / "planning")
     robot, _ = published_robot("panda")
     spaces = [(ArmSpace(robot, scene), start, goals) for _, _, scene, start, goals in problems("panda")]
@@ -196,8 +242,7 @@ def main() -> None:
         program = build_program(given.prefix, folder)
         write_problems(judge, meshed_robot(robot, 0.02), folder / "panda.txt")
         for case in given.cases:
-            chosen, theirs = run_case(program, folder / "panda.txt", case, given)
-            found = compare(theirs, plan_ours(spaces, chosen, given.repeat))
+            found = compare(*run_in_turn(program, folder / "panda.txt", case, spaces, given))
             print(case, json.dumps(found), flush=True)
             results.setdefault("cases", {})[case] = found
             file.write_text(json.dumps(results, indent=1) + "\n")
