@@ -50,6 +50,9 @@ STEP: Final = 0.7
 KEPT: Final = 1e-3
 """Clearance of the motions of a walk [m]."""
 
+COARSE: Final = 1.0 / 32.0
+"""Resolution at which the ends of a walk are seen to be blocked from its start [rad]."""
+
 Given = dict[str, Any]
 
 
@@ -115,7 +118,7 @@ def walk(judge: MotionJudge, robot: cs.Robot, start: Any, rng: np.random.Generat
         else:
             way *= 0.0
     rows = np.array(places)
-    blocked = np.flatnonzero(judge.look(np.broadcast_to(start, rows.shape), rows)[0] < 0.0)
+    blocked = np.flatnonzero(judge.look(np.broadcast_to(start, rows.shape), rows, COARSE)[0] < 0.0)
     return rows[blocked[-1] if len(blocked) else -1]
 
 
