@@ -1,7 +1,7 @@
 """A judge of motions that shares no code with the package: benchmarks/cpp/judge_motions.cpp through ctypes.
 
-The first use compiles it with $CXX (default c++) into a temporary folder. Joints and shapes are dictionaries as
-in the shared data and in the catalogue's files: "xyz" and "rpy" or "quat_xyzw", radians and metres.
+The first use compiles it with $CXX (default c++) into a temporary folder. Joints and shapes are dictionaries
+as in the shared data and in the catalogue's files: "xyz" and "rpy" or "quat_xyzw", radians and metres.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def load_library() -> ctypes.CDLL:
 class MotionJudge:
     """Capsules on links, pairs of links, and the obstacles of one scene at a time.
 
-    joints: of the description, in any order; planned: names of those that q holds, in its order; bodies: link,
-    ends a and b, radius; pairs: of links that are checked against each other.
+    joints: of the description, in any order; planned: names of those that q holds, in its order; bodies:
+    link, ends a and b, radius; pairs: of links that are checked against each other.
     """
 
     def __init__(
@@ -110,7 +110,9 @@ class MotionJudge:
         least, at = np.empty(len(a)), np.empty(len(a))
         arrays = [pointer(x) for x in (a, b)]
         places = self._library.judge_motions(
-            *(self._handle, ctypes.c_long(len(a)), *arrays, ctypes.c_double(fine)), pointer(least), pointer(at)
+            *(self._handle, ctypes.c_long(len(a)), *arrays, ctypes.c_double(fine)),
+            pointer(least),
+            pointer(at),
         )
         return least, at, int(places)
 

@@ -5,9 +5,10 @@ folder ($CSPACE_DATA, default ../shared/data) and the meshes of `pip install exa
 benchmarks/results/planning_covers.json.
 
 The robot with meshes has the joints, limits and allowed pairs of the published one, whose fingers stand 65 mm
-from the middle. The description has boxes for its fingers, which checks take exactly; the covers take the mesh
-of a finger instead, and one line has the boxes. Times are those of the thread's processor clock, the median of the rounds per
-problem; both robots plan in turn. Ratios are over the problems that are valid for both.
+from the middle. The description has boxes for its fingers, which checks take exactly; the covers take the
+mesh of a finger instead, and one line has the boxes. Times are those of the thread's processor clock, the
+median of the rounds per problem; both robots plan in turn. Ratios are over the problems that are valid for
+both.
 """
 
 from __future__ import annotations
@@ -70,7 +71,10 @@ def measure(robots: dict[str, cs.Robot], repeat: int) -> dict[str, Any]:
     given = [(scene, start, goals) for _, _, scene, start, goals in problems("panda")]
     spaces = {key: [ArmSpace(robot, scene) for scene, _, _ in given] for key, robot in robots.items()}
     times: dict[str, list[list[float]]] = {key: [[] for _ in given] for key in robots}
-    plans = {key: [planner.plan(space, *each[1:]) for space, each in zip(spaces[key], given, strict=True)] for key in robots}
+    plans = {
+        key: [planner.plan(space, *each[1:]) for space, each in zip(spaces[key], given, strict=True)]
+        for key in robots
+    }
     for _ in range(repeat):
         for k, (_, start, goals) in enumerate(given):
             for key in robots:
@@ -97,12 +101,15 @@ def measure(robots: dict[str, cs.Robot], repeat: int) -> dict[str, Any]:
             "mean_ratio": float(mine.mean() / theirs.mean()),
             "median_of_ratios": float(np.median(mine / theirs)),
             "median_cost_ratio": float(
-                np.median([plans[key][k].cost for k in shared]) / np.median([plans[first][k].cost for k in shared])
+                np.median([plans[key][k].cost for k in shared])
+                / np.median([plans[first][k].cost for k in shared])
             ),
             "motions_ratio": float(np.median(motions[key]) / np.median(motions[first])),
             "mean_motions_ratio": float(np.mean(motions[key]) / np.mean(motions[first])),
             "us_of_a_motion": float(np.median(mine / motions[key])),
-            "us_of_a_motion_ratio": float(np.median(mine / motions[key]) / np.median(theirs / motions[first])),
+            "us_of_a_motion_ratio": float(
+                np.median(mine / motions[key]) / np.median(theirs / motions[first])
+            ),
         }
     return results
 

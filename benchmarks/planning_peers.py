@@ -1,15 +1,16 @@
-"""Plans of the Panda beside OMPL's RRT-Connect with three kinds of checks: benchmarks/results/planning_peers.json.
+"""Plans of the Panda beside OMPL's RRT-Connect with checks of three kinds: results/planning_peers.json.
 
-Usage: python benchmarks/planning_peers.py [--prefix /usr] [--repeat 3] [--step 2] [--seconds 5]
-[--cases NAME ...]. Needs the shared data folder ($CSPACE_DATA, default ../shared/data), a C++ compiler, Debian's
-libompl-dev and libeigen3-dev (or both below --prefix), and `pip install coal example-robot-data`, whose wheels
-hold coal's headers and the Panda's meshes.
+Usage: python benchmarks/planning_peers.py [--prefix /usr] [--repeat 3] [--step 2] [--seconds 5] [--cases NAME
+...]. Needs the shared data folder ($CSPACE_DATA, default ../shared/data), a C++ compiler, Debian's
+libompl-dev and libeigen3-dev (or both below --prefix), and `pip install coal example-robot-data`, whose
+wheels hold coal's headers and the Panda's meshes.
 
-benchmarks/peers/ompl_plans.cpp is compiled with -O3, so OMPL and its checks run without Python; ours is called
-from Python. "callback" is what a check costs that OMPL's wheel 2.0.1 (`pip install ompl`) calls in Python and that
-reads the configuration only. Cases of CASES differ in their checks and in the resolution of motions. Slow cases plan every
---step-th problem alone. Ours plans the same problems in turn with them. All times are those of the
-thread's processor clock, the median of the rounds per problem, then over the problems that both solved.
+benchmarks/peers/ompl_plans.cpp is compiled with -O3, so OMPL and its checks run without Python; ours is
+called from Python. "callback" is what a check costs that OMPL's wheel 2.0.1 (`pip install ompl`) calls in
+Python and that reads the configuration only. Cases of CASES differ in their checks and in the resolution of
+motions. Slow cases plan every --step-th problem alone. Ours plans the same problems in turn with them. All
+times are those of the thread's processor clock, the median of the rounds per problem, then over the problems
+that both solved.
 """
 
 from __future__ import annotations
@@ -72,7 +73,14 @@ def build_program(prefix: Path, folder: Path) -> Path:
     found = sorted(prefix.glob("include/ompl-*")) + sorted(prefix.glob("include/ompl"))
     libraries = [wheel / "lib", *(path.parent for path in prefix.glob("lib/**/libompl.so"))]
     headers = [found[0], wheel / "include", Path("/usr/include/eigen3")]
-    command = [os.environ.get("CXX", "c++"), "-std=c++17", "-O3", "-DNDEBUG", "-w", HERE / "peers/ompl_plans.cpp"]
+    command = [
+        os.environ.get("CXX", "c++"),
+        "-std=c++17",
+        "-O3",
+        "-DNDEBUG",
+        "-w",
+        HERE / "peers/ompl_plans.cpp",
+    ]
     command += [part for path in headers for part in ("-isystem", path)]
     command += [part for path in libraries for part in (f"-L{path}", f"-Wl,-rpath,{path}")]
     command += ["-Wl,--disable-new-dtags", "-lompl", "-lcoal", "-o", program]  # libraries of libraries too
@@ -104,7 +112,11 @@ def write_problems(judge: Judge, robot: cs.Robot, file: Path) -> None:
         vertices, faces = read_mesh(meshes[link])
         lines += [f"{frames[link]} {len(spheres)}", *(join([*s["center"], s["radius"]]) for s in spheres)]
         lines += [f"{len(vertices)} {join(vertices)}", f"{len(faces)} " + " ".join(map(str, faces.ravel()))]
-    pairs = [(links.index(a), links.index(b)) for a, b in data["self_pairs_checked_by_vamp"] if a in links and b in links]
+    pairs = [
+        (links.index(a), links.index(b))
+        for a, b in data["self_pairs_checked_by_vamp"]
+        if a in links and b in links
+    ]
     lines += [str(len(pairs)), *(f"{a} {b}" for a, b in pairs), str(len(judge.problems))]
     for group, row in judge.problems:
         goal = np.atleast_2d(row["goals"])[0]
@@ -134,7 +146,9 @@ def read_mesh(shapes: Any) -> tuple[Rows, np.ndarray[Any, Any]]:
     return np.concatenate(vertices), np.concatenate(faces)
 
 
-def run_case(program: Path, file: Path, case: str, chosen: list[int], given: argparse.Namespace) -> dict[str, Rows]:
+def run_case(
+    program: Path, file: Path, case: str, chosen: list[int], given: argparse.Namespace
+) -> dict[str, Rows]:
     """The columns of the peer on some problems, which are equally far apart."""
     checker, resolution, slow = CASES[case]
     rounds = 1 if slow else given.repeat
@@ -155,13 +169,17 @@ def run_in_turn(
         chosen = list(range(turn * step, len(spaces), step * TURNS))
         theirs.append(run_case(program, file, case, chosen, given))
         ours.append(plan_ours(spaces, chosen, given.repeat))
-    return tuple({key: np.concatenate([one[key] for one in part]) for key in part[0]} for part in (theirs, ours))
+    return tuple(
+        {key: np.concatenate([one[key] for one in part]) for key in part[0]} for part in (theirs, ours)
+    )
 
 
 def plan_ours(spaces: list[Any], chosen: list[int], repeat: int) -> dict[str, Rows]:
     """Times [µs] of the search at samples and of whole plans, lengths, and whether there is a path."""
     planners = {"search": RRTConnect(simplify=False, certify=False, search="sampled"), "total": RRTConnect()}
-    found: dict[str, list[float]] = {key: [] for key in ("search_us", "total_us", "raw_cost", "cost", "solved")}
+    found: dict[str, list[float]] = {
+        key: [] for key in ("search_us", "total_us", "raw_cost", "cost", "solved")
+    }
     for k in chosen:
         for key, planner in planners.items():
             spent = []
@@ -217,7 +235,10 @@ def compare(theirs: dict[str, Rows], ours: dict[str, Rows]) -> dict[str, Any]:
     for key in ("search_us", "total_us", "raw_cost", "cost"):
         a, b = float(np.median(theirs[key][both])), float(np.median(ours[key][both]))
         result[key] = {"peer": a, "ours": b, "ratio": a / b}
-        result[key] |= {"peer_mean": float(theirs[key][both].mean()), "ours_mean": float(ours[key][both].mean())}
+        result[key] |= {
+            "peer_mean": float(theirs[key][both].mean()),
+            "ours_mean": float(ours[key][both].mean()),
+        }
     return result
 
 

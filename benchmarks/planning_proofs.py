@@ -2,14 +2,14 @@
 
 Usage: python benchmarks/planning_proofs.py [--edges 100000] [--vamp FOLDER] [--robots panda ur5 fetch]
 [--stages edges judged verdicts paths] [--planners plan aorrtc pose sampled]. Results are added to those of
-earlier runs. Needs the shared data folder ($CSPACE_DATA, default ../shared/data) and a C++ compiler; FOLDER as
-of planning.py, with rows/NAME_rows.bin: float32 configurations, as many for each problem.
+earlier runs. Needs the shared data folder ($CSPACE_DATA, default ../shared/data) and a C++ compiler; FOLDER
+as of planning.py, with rows/NAME_rows.bin: float32 configurations, as many for each problem.
 
-Paths: every path of the planners on the valid problems, judged at a hundred times the resolution; "pose" plans
-to the pose of the goal. Edges: random ones of one radian, proved free, blocked or undecided. Judged: as many
-edges that are proved free, judged in the same way: a third of one radian, a third of four, and a third that
-was moved towards a blocked edge until the proof just holds. Verdicts: of configurations, beside those of VAMP
-on the same spheres.
+Paths: every path of the planners on the valid problems, judged at a hundred times the resolution; "pose"
+plans to the pose of the goal. Edges: random ones of one radian, proved free, blocked or undecided. Judged: as
+many edges that are proved free, judged in the same way: a third of one radian, a third of four, and a third
+that was moved towards a blocked edge until the proof just holds. Verdicts: of configurations, beside those of
+VAMP on the same spheres.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """The configuration space of two joints beside a brute force over cells: results/planning_two_joints.json.
 
-Usage: python benchmarks/planning_two_joints.py. Times are the least and the median processor time of a call from
-Python, everything included. The scene has five pentagons, 25 edges, around an arm with links of 1 m and 0.8 m
-that are 5 cm thick; the brute force tests every cell of the bitmap by the distance between segments in numpy.
+Usage: python benchmarks/planning_two_joints.py. Times are the least and the median processor time of a call
+from Python, everything included. The scene has five pentagons, 25 edges, around an arm with links of 1 m and
+0.8 m that are 5 cm thick; the brute force tests every cell of the bitmap by the distance between segments in
+numpy.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """Problems that no part of the package was tuned on: benchmarks/results/planning_unseen.json.
 
-Usage: python benchmarks/planning_unseen.py [--scenes 200] [--rows 200] [--seeds 4] [--stages arms seeds]. Needs
-a C++ compiler, and for the seeds the shared data folder ($CSPACE_DATA, default ../shared/data).
+Usage: python benchmarks/planning_unseen.py [--scenes 200] [--rows 200] [--seeds 4] [--stages arms seeds].
+Needs a C++ compiler, and for the seeds the shared data folder ($CSPACE_DATA, default ../shared/data).
 
-Arms: random scenes of boxes, cylinders and capsules around five arms of the catalogue. In each, a plan between
-two random free configurations, which may have no way, a plan along a random walk of free motions, which has
-one, and verdicts of random configurations. The judge, which also finds the walks, reads links,
+Arms: random scenes of boxes, cylinders and capsules around five arms of the catalogue. In each, a plan
+between two random free configurations, which may have no way, a plan along a random walk of free motions,
+which has one, and verdicts of random configurations. The judge, which also finds the walks, reads links,
 joints and capsules from the files of the catalogue itself (motion_judge.py); of the package it takes the list
 of pairs that are allowed to touch. Seeds: every MotionBenchMaker problem with other seeds of the search.
 Times are those of the thread's processor clock.
@@ -19,13 +19,13 @@ import json
 import os
 import sys
 import time
-import tomllib
 from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+import tomllib
 
 HERE = Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent / "tests"))
@@ -93,7 +93,9 @@ def shape_of(given: Given) -> Any:
     return kind(given["radius"], given["length"], T)
 
 
-def random_problems(robot: cs.Robot, reach: float, count: int) -> Iterator[tuple[list[Given], cs.Scene, Any, Any]]:
+def random_problems(
+    robot: cs.Robot, reach: float, count: int
+) -> Iterator[tuple[list[Given], cs.Scene, Any, Any]]:
     """Random scenes with two free configurations."""
     rng = np.random.default_rng(sum(map(ord, robot.name)))
     while count:
@@ -194,7 +196,11 @@ def measure_seeds(name: str, data: Path, seeds: int) -> dict[str, Any]:
                 touch += gap < 0.0
                 least = min(least, gap)
     for seed, spent in times.items():
-        found[str(seed)] = {"solved": len(costs[seed]), "us": summarize(spent), "cost": summarize(costs[seed])}
+        found[str(seed)] = {
+            "solved": len(costs[seed]),
+            "us": summarize(spent),
+            "cost": summarize(costs[seed]),
+        }
     return {"valid": valid, "touch": touch, "least": least, "seeds": found}
 
 
