@@ -1,14 +1,16 @@
 """Problems that no part of the package was tuned on: benchmarks/results/planning_unseen.json.
 
-Usage: python benchmarks/planning_unseen.py [--scenes 200] [--rows 200] [--seeds 4] [--stages arms seeds].
-Needs a C++ compiler, and for the seeds the shared data folder ($CSPACE_DATA, default ../shared/data).
+Usage: python benchmarks/planning_unseen.py [--scenes 200] [--rows 200] [--seeds 4] [--edges 100] [--stages
+arms edges seeds]. Needs a C++ compiler, and for the seeds the shared data folder ($CSPACE_DATA, default
+../shared/data).
 
 Arms: random scenes of boxes, cylinders and capsules around five arms of the catalogue. In each, a plan
 between two random free configurations, which may have no way, a plan along a random walk of free motions,
-which has one, and verdicts of random configurations. The judge, which also finds the walks, reads links,
-joints and capsules from the files of the catalogue itself (motion_judge.py); of the package it takes the list
-of pairs that are allowed to touch. Seeds: every MotionBenchMaker problem with other seeds of the search.
-Times are those of the thread's processor clock.
+which has one, and verdicts of random configurations; then edges that are proved free, as in
+planning_proofs.py. The judge, which also finds the walks, reads links, joints and capsules from the files of
+the catalogue itself (motion_judge.py); of the package it takes the list of pairs that are allowed to touch.
+Seeds: every MotionBenchMaker problem with other seeds of the search. Times are those of the thread's
+processor clock.
 """
 
 from __future__ import annotations
@@ -36,6 +38,7 @@ from cspace.planning import ArmSpace, RRTConnect  # noqa: E402
 from motion_judge import MotionJudge, rotation_of  # noqa: E402
 from planning import summarize  # noqa: E402
 from planning_judge import BAND, Judge  # noqa: E402
+from planning_proofs import PRESSED, press_edges, prove_edges  # noqa: E402
 
 ARMS: Final = {"ur5e": 0.85, "iiwa14": 0.8, "fr3": 0.8, "gen3": 0.9, "xarm7": 0.7}
 """The arms, and how far from the base obstacles stand at most [m]."""
@@ -52,6 +55,9 @@ KEPT: Final = 1e-3
 
 COARSE: Final = 1.0 / 32.0
 """Resolution at which the ends of a walk are seen to be blocked from its start [rad]."""
+
+THIN: Final = 1e-4
+"""Thickness of every other obstacle where edges are judged [m]."""
 
 Given = dict[str, Any]
 
@@ -73,15 +79,19 @@ def read_arm(robot: cs.Robot, name: str) -> MotionJudge:
     return MotionJudge(given["joints"], robot.joint_names, bodies, pairs)
 
 
-def random_obstacle(rng: np.random.Generator, reach: float) -> Given:
-    """A box, a cylinder or a capsule somewhere around the arm."""
+def random_obstacle(rng: np.random.Generator, reach: float, thin: bool) -> Given:
+    """A box, a cylinder or a capsule somewhere around the arm; if thin, a plate, a disc or a wire."""
     at = rng.normal(size=3)
     at *= reach * rng.uniform(0.4, 1.1) / np.linalg.norm(at)
     given: Given = {"position": at, "rpy": rng.uniform(-np.pi, np.pi, 3)}
     kind = ("box", "cylinder", "capsule")[rng.integers(3)]
+    size, radius, length = rng.uniform(0.02, 0.5, 3), rng.uniform(0.01, 0.12), rng.uniform(0.05, 0.6)
+    if thin:
+        size[rng.integers(3)] = THIN
+        radius, length = (THIN / 2, length) if kind == "capsule" else (2.0 * radius, THIN)
     if kind == "box":
-        return {**given, "type": kind, "size": rng.uniform(0.02, 0.5, 3)}
-    return {**given, "type": kind, "radius": rng.uniform(0.01, 0.12), "length": rng.uniform(0.05, 0.6)}
+        return {**given, "type": kind, "size": size}
+    return {**given, "type": kind, "radius": radius, "length": length}
 
 
 def shape_of(given: Given) -> Any:
@@ -94,12 +104,12 @@ def shape_of(given: Given) -> Any:
 
 
 def random_problems(
-    robot: cs.Robot, reach: float, count: int
+    robot: cs.Robot, reach: float, count: int, thin: bool = False
 ) -> Iterator[tuple[list[Given], cs.Scene, Any, Any]]:
     """Random scenes with two free configurations."""
     rng = np.random.default_rng(sum(map(ord, robot.name)))
     while count:
-        objects = [random_obstacle(rng, reach) for _ in range(rng.integers(3, 13))]
+        objects = [random_obstacle(rng, reach, thin and k % 2 == 0) for k in range(rng.integers(3, 13))]
         scene = cs.Scene([shape_of(given) for given in objects])
         q = robot.random_configuration(64, rng=rng)
         free = q[~robot.collides(q, scene)]
@@ -172,6 +182,24 @@ def measure_arm(name: str, count: int, rows: int) -> dict[str, Any]:
     return {"scenes": count, "verdicts": verdicts} | {kind: each.summary() for kind, each in tallies.items()}
 
 
+def judge_edges(name: str, count: int, each: int) -> dict[str, Any]:
+    """Random edges that are proved free, and such that were pressed against a contact, in random scenes."""
+    robot = cs.load_robot(name)
+    judge = read_arm(robot, name)
+    low, high = (np.clip(side, -np.pi, np.pi) for side in (robot.limits.lower, robot.limits.upper))
+    rng = np.random.default_rng(23)
+    found = {kind: {"judged": 0, "touch": 0, "least": np.inf} for kind in ("one radian", PRESSED)}
+    for objects, scene, _, _ in random_problems(robot, ARMS[name], count, thin=True):
+        judge.set_scene(objects)
+        free, blocked = prove_edges(robot, scene, rng, (low, high), 1.0, each)
+        for kind, edges in zip(found, (free, press_edges(robot, scene, free, blocked)), strict=True):
+            least = judge.look(*edges)[0]
+            found[kind]["judged"] += len(least)
+            found[kind]["touch"] += int((least < 0.0).sum())
+            found[kind]["least"] = min(found[kind]["least"], float(least.min(initial=np.inf)))
+    return found
+
+
 def measure_seeds(name: str, data: Path, seeds: int) -> dict[str, Any]:
     """All valid problems with seeds 1, 2, …: solved, times [µs], paths that touch something."""
     robot, _ = published_robot(name)
@@ -208,8 +236,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--scenes", type=int, default=200)
     parser.add_argument("--rows", type=int, default=200)
+    parser.add_argument("--edges", type=int, default=100)
     parser.add_argument("--seeds", type=int, default=4)
-    parser.add_argument("--stages", nargs="+", default=["arms", "seeds"])
+    parser.add_argument("--stages", nargs="+", default=["arms", "edges", "seeds"])
     parser.add_argument("--arms", nargs="+", default=list(ARMS))
     parser.add_argument("--robots", nargs="+", default=list(ROBOTS))
     given = parser.parse_args()
@@ -217,11 +246,13 @@ def main() -> None:
     file = HERE / "results/planning_unseen.json"
     results: dict[str, Any] = json.loads(file.read_text()) if file.is_file() else {}
     results |= {"version": cs.__version__, "isa": cs._core.isa, "band": BAND}
-    names = {"arms": given.arms, "seeds": given.robots}
+    names = {"arms": given.arms, "edges": given.arms, "seeds": given.robots}
     for stage in given.stages:
         for name in names[stage]:
             if stage == "arms":
                 found = measure_arm(name, given.scenes, given.rows)
+            elif stage == "edges":
+                found = judge_edges(name, given.scenes, given.edges)
             else:
                 found = measure_seeds(name, data / "planning", given.seeds)
             print(name, json.dumps(found), flush=True)
