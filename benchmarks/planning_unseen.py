@@ -9,8 +9,9 @@ between two random free configurations, which may have no way, a plan along a ra
 which has one, and verdicts of random configurations; then edges that are proved free, as in
 planning_proofs.py. The judge, which also finds the walks, reads links, joints and capsules from the files of
 the catalogue itself (motion_judge.py); of the package it takes the list of pairs that are allowed to touch.
-Seeds: every MotionBenchMaker problem with other seeds of the search. Times are those of the thread's
-processor clock.
+Seeds: every MotionBenchMaker problem with other seeds of the search. Other half: the problems of VAMP's
+repository that the shared data lacks, with the same seeds; --archives is its folder resources, with
+NAME/problems.tar.bz2, and `pip install pyyaml` is needed. Times are those of the thread's processor clock.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import itertools
 import json
 import os
 import sys
+import tarfile
 import time
 from collections.abc import Iterator
 from importlib import resources
@@ -33,7 +35,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent / "tests"))
 
 import cspace as cs  # noqa: E402
-from collision.motion_bench import ROBOTS, problems, published_robot  # noqa: E402
+from collision.motion_bench import ROBOTS, obstacle, published_robot  # noqa: E402
 from cspace.planning import ArmSpace, RRTConnect  # noqa: E402
 from motion_judge import MotionJudge, rotation_of  # noqa: E402
 from planning import summarize  # noqa: E402
@@ -200,21 +202,20 @@ def judge_edges(name: str, count: int, each: int) -> dict[str, Any]:
     return found
 
 
-def measure_seeds(name: str, data: Path, seeds: int) -> dict[str, Any]:
-    """All valid problems with seeds 1, 2, …: solved, times [µs], paths that touch something."""
+def measure_problems(name: str, judge: Judge, seeds: list[int]) -> dict[str, Any]:
+    """All valid problems of the judge with each seed: solved, times [µs], paths that touch something."""
     robot, _ = published_robot(name)
-    judge = Judge(name, data)
-    found: dict[str, Any] = {}
-    times: dict[int, list[float]] = {seed: [] for seed in range(1, seeds + 1)}
-    costs: dict[int, list[float]] = {seed: [] for seed in times}
+    times: dict[int, list[float]] = {seed: [] for seed in seeds}
+    costs: dict[int, list[float]] = {seed: [] for seed in seeds}
     planner, valid, touch, least = RRTConnect(), 0, 0, np.inf
-    for problem, (_, _, scene, start, goals) in enumerate(problems(name)):
-        space = ArmSpace(robot, scene)
+    for problem, (group, given) in enumerate(judge.problems):
+        scene = cs.Scene([obstacle(one, group == "box") for one in given["objects"]])
+        space, start, goals = ArmSpace(robot, scene), given["start"], given["goals"]
         judge.set_problem(problem)
         if planner.plan(space, start, goals).status.startswith("invalid"):
             continue
         valid += 1
-        for seed in times:
+        for seed in seeds:
             begin = time.thread_time_ns()
             plan = planner.plan(space, start, goals, rng=seed)
             times[seed].append((time.thread_time_ns() - begin) / 1000.0)
@@ -223,17 +224,76 @@ def measure_seeds(name: str, data: Path, seeds: int) -> dict[str, Any]:
                 gap = judge.judge_path(plan.path)
                 touch += gap < 0.0
                 least = min(least, gap)
-    for seed, spent in times.items():
-        found[str(seed)] = {
-            "solved": len(costs[seed]),
-            "us": summarize(spent),
-            "cost": summarize(costs[seed]),
-        }
-    return {"valid": valid, "touch": touch, "least": least, "seeds": found}
+    found = {
+        str(seed): {"solved": len(costs[seed]), "us": summarize(times[seed]), "cost": summarize(costs[seed])}
+        for seed in seeds
+    }
+    return {"problems": len(judge.problems), "valid": valid, "touch": touch, "least": least, "seeds": found}
+
+
+def read_archive(file: Path, planned: list[str]) -> dict[tuple[str, int], Given]:
+    """The problems of an archive of MotionBenchMaker by set and number, as in the shared data."""
+    import yaml
+
+    found: dict[tuple[str, int], Given] = {}
+    with tarfile.open(file) as archive:
+        for member in archive.getmembers():
+            if not member.isfile():
+                continue
+            group, name = Path(member.name).parent.name.rpartition("_")[0], Path(member.name).stem
+            read = yaml.load(
+                archive.extractfile(member), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+            )
+            problem = found.setdefault((group, int(name[-4:])), {})
+            problem |= read_scene(read) if name.startswith("scene") else read_request(read, planned)
+    return found
+
+
+def read_request(given: Given, planned: list[str]) -> Given:
+    """Start and goal."""
+    state = given["start_state"]["joint_state"]
+    start = dict(zip(state["name"], state["position"], strict=True))
+    goal = {one["joint_name"]: one["position"] for one in given["goal_constraints"][0]["joint_constraints"]}
+    return {"start": [start[name] for name in planned], "goals": [[goal[name] for name in planned]]}
+
+
+def read_scene(given: Given) -> Given:
+    """The first shape of each object."""
+    objects = []
+    for one in given["world"]["collision_objects"]:
+        shape, place = one["primitives"][0], one["primitive_poses"][0]
+        at, turn = compose(one["pose"], place) if "pose" in one else (place["position"], place["orientation"])
+        sizes = {"type": shape["type"], "size": shape["dimensions"]}
+        if shape["type"] == "cylinder":
+            sizes = {"type": "cylinder", "length": shape["dimensions"][0], "radius": shape["dimensions"][1]}
+        if shape["type"] == "sphere":
+            sizes = {"type": "sphere", "radius": shape["dimensions"][0]}
+        objects.append({"name": one["id"], "position": list(at), "quat_xyzw": list(turn), **sizes})
+    return {"objects": objects}
+
+
+def compose(first: Given, second: Given) -> tuple[Any, Any]:
+    """Position and quaternion (x, y, z, w) of a pose given in the frame of another."""
+    at = first["position"] + rotation_of({"quat_xyzw": first["orientation"]}) @ second["position"]
+    (*u, a), (*v, b) = first["orientation"], second["orientation"]
+    u, v = np.array(u), np.array(v)
+    return at, [*(a * v + b * u + np.cross(u, v)), a * b - u @ v]
+
+
+def other_half(judge: Judge, file: Path) -> None:
+    """Gives the judge the problems that the shared data lacks; the others must be those of the data."""
+    read = read_archive(file, judge.robot["planned_joints"])
+    known = {(group, given["index"]): given for group, given in judge.problems}
+    for key, given in known.items():
+        ours, theirs = ([one["position"] for one in each["objects"]] for each in (given, read[key]))
+        if given["start"] != read[key]["start"] or not np.allclose(sorted(ours), sorted(theirs), atol=1e-9):
+            raise SystemExit(f"problem {key} of {file} is not that of the shared data")
+    judge.problems = [(group, read[group, k]) for group, k in sorted(read) if (group, k) not in known]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--archives", type=Path)
     parser.add_argument("--scenes", type=int, default=200)
     parser.add_argument("--rows", type=int, default=200)
     parser.add_argument("--edges", type=int, default=100)
@@ -246,7 +306,7 @@ def main() -> None:
     file = HERE / "results/planning_unseen.json"
     results: dict[str, Any] = json.loads(file.read_text()) if file.is_file() else {}
     results |= {"version": cs.__version__, "isa": cs._core.isa, "band": BAND}
-    names = {"arms": given.arms, "edges": given.arms, "seeds": given.robots}
+    names = {"arms": given.arms, "edges": given.arms, "seeds": given.robots, "other half": given.robots}
     for stage in given.stages:
         for name in names[stage]:
             if stage == "arms":
@@ -254,7 +314,10 @@ def main() -> None:
             elif stage == "edges":
                 found = judge_edges(name, given.scenes, given.edges)
             else:
-                found = measure_seeds(name, data / "planning", given.seeds)
+                judge, seeds = Judge(name, data / "planning"), [0, *range(1, given.seeds + 1)]
+                if stage == "other half":
+                    other_half(judge, given.archives / name / "problems.tar.bz2")
+                found = measure_problems(name, judge, seeds)
             print(name, json.dumps(found), flush=True)
             results.setdefault(stage, {})[name] = found
             file.write_text(json.dumps(results, indent=1) + "\n")
