@@ -1,7 +1,8 @@
-"""Proved edges and paths of arms among thin obstacles, judged by a program that shares no code with the package.
+"""Proved edges and paths of arms among thin obstacles, judged by a program of its own.
 
-The judge is benchmarks/motion_judge.py: its own kinematics from the files of the catalogue, exact distances of
-capsules from boxes, cylinders and capsules, and samples at a hundred times the resolution of planners.
+The judge is benchmarks/motion_judge.py, which shares no code with the package: its own kinematics from the
+files of the catalogue, exact distances of capsules from boxes, cylinders and capsules, and samples at a
+hundred times the resolution of planners.
 """
 
 import shutil
@@ -32,7 +33,8 @@ def unseen(monkeypatch):
 def test_proved_edges_touch_nothing(unseen, name):
     found = unseen.judge_edges(name, 3, 8)
     assert all(each["touch"] == 0 for each in found.values())
-    assert found["pressed"]["judged"] >= 8 and found["pressed"]["least"] < 1e-3
+    assert found["pressed"]["judged"] >= 8
+    assert found["pressed"]["least"] < 1e-3
 
 
 @pytest.mark.parametrize("name", ARMS)
@@ -63,7 +65,8 @@ def test_the_judge_sees_a_contact_between_coarse_samples(unseen):
     judge.set_scene([wall])
     a, b = np.array([[-0.5, 0.0]]), np.array([[0.5, 0.0]])
     least, at, _ = judge.look(a, b)
-    assert least[0] == pytest.approx(-0.01, abs=1e-4) and at[0] == pytest.approx(0.5, abs=1e-3)
+    assert least[0] == pytest.approx(-0.01, abs=1e-4)
+    assert at[0] == pytest.approx(0.5, abs=1e-3)
     far = judge.look(a, np.array([[-0.1, 0.3]]))[0][0]
     samples = np.linspace(0.0, 1.0, 2001)[:, None] * np.array([0.4, 0.3]) + a
     assert 0.0 < judge.clearance(samples).min() <= far
