@@ -119,7 +119,7 @@ def test_an_object_that_holds_a_pose_is_a_goal_like_the_pose(name, seed):
 
 
 CORNER = np.array([0.0003, -1.4065, 1.0655, 1.5639, -1.3644, -3.0855, 2.157, -1.4692])
-"""A configuration of Fetch near three limits; 4096 values of two redundant joints have no other of its pose."""
+"""A configuration of Fetch near three limits; 4096 values of two redundant joints have none of its pose."""
 
 
 @pytest.mark.parametrize("seed", SEEDS)

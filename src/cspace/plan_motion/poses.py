@@ -35,7 +35,7 @@ one where 4096 values have none, and they take a millisecond."""
 
 
 def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: Any) -> Goals:
-    """All IK solutions of a pose; of a redundant arm samples, mostly at some values of its redundant joints."""
+    """All IK solutions of a pose; of a redundant arm samples, most at some values of its redundant joints."""
     if not robot.solver.is_redundant:
         return keep_solutions(robot, space, start, robot.ik(goal))
     is_plain = type(goal) is np.ndarray and goal.dtype == np.float64 and goal.flags.carray
