@@ -36,7 +36,7 @@ NAMES = {
 }
 NAVIGATION = ["grid", "any_angle", "polygons", "fields", "sampling", "bugs", "large", "curves", "exact"]
 NAVIGATION += ["degenerate"]
-PLANNING = [name for _, name, *_ in planning_tables.PARTS] + ["planning_goals", "planning_proofs"]
+PLANNING = [name for _, name, *_ in planning_tables.PARTS] + ["planning_goals", "planning_two_joints"]
 
 
 def measured_names() -> list[str]:

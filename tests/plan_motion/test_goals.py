@@ -144,3 +144,19 @@ def test_a_direction_has_a_name_in_every_goal():
     assert cs.plan(robot, "up", {"position": [0.4, 0.2, 0.3], "direction": "-z"})
     with pytest.raises(InputError, match="'down' is unknown, expected x, y, z"):
         robot.ik(position=[0.4, 0.2, 0.3], direction="down")
+
+
+CORNER = np.array([0.0003, -1.4065, 1.0655, 1.5639, -1.3644, -3.0855, 2.157, -1.4692])
+"""A configuration of Fetch near three limits; 4096 values of two redundant joints have none of its pose."""
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_pose_whose_solutions_fill_a_corner_of_the_limits_is_reached(seed):
+    robot = arm("fetch_torso")
+    rng = np.random.default_rng(seed)
+    low, high = (np.clip(side, -np.pi, np.pi) for side in (robot.limits.lower, robot.limits.upper))
+    parts = np.abs((rng.random((5, robot.dof)) < 0.5) - 0.02 * rng.random((5, robot.dof)))
+    for q in [CORNER, *(low + (high - low) * parts)]:
+        goals = find_goals(robot, ArmSpace(robot), q[None], robot.fk(q))
+        assert len(goals.rows)
+        assert np.abs(robot.fk(goals.rows) - robot.fk(q)).max() < 1e-8
