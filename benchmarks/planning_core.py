@@ -2,8 +2,8 @@
 
 Usage: python benchmarks/planning_core.py PROGRAM [--vamp FOLDER] [--repeat 5] [--robots panda ur5 fetch].
 PROGRAM: bench_plans, built with -DCSPACE_BENCHMARKS=ON (benchmarks/cpp). Needs the shared data folder
-($CSPACE_DATA, default ../shared/data). FOLDER: see planning.py; vamp_NAME also times edges. Both read the same
-files, are pinned to one core, and run in turn; times are those of the thread's processor clock, the median of
+($CSPACE_DATA, default ../shared/data). FOLDER: see planning.py; vamp_NAME also times edges. Both read the
+same files, are pinned to one core, and run in turn; times are those of the processor clock, the median of
 the rounds per problem.
 """
 
