@@ -48,7 +48,8 @@ struct Box {
     void move_within(const float* at, float half_side, const float* unit, float* q) const {
         constexpr float half_turn = float(pi), turn = float(2 * pi);
         for (int k = 0; k < width; ++k) {
-            const float x = at[k] + half_side * (2 * unit[k] - 1);
+            const float half = is_wrapping(k) ? std::min(half_side, half_turn) : half_side;
+            const float x = at[k] + half * (2 * unit[k] - 1);
             if (is_wrapping(k))
                 q[k] = x > half_turn ? x - turn : x < -half_turn ? x + turn : x;
             else

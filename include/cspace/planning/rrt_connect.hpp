@@ -1,7 +1,8 @@
 // RRT-Connect: two trees grow towards samples and towards each other (Kuffner & LaValle 2000, "RRT-Connect:
 // an efficient approach to single-query path planning"). Starts and goals are the roots of the trees. The
-// smaller tree grows. Nodes near obstacles take only samples near to them (dynamic_domain.hpp). Where nothing
-// grows any more, that is given up; edges get shorter then, and some samples are drawn near to nodes.
+// smaller tree grows. Nodes near obstacles take only samples near to them (dynamic_domain.hpp). A tree in a
+// narrow place would reject nearly all samples then: where it does not grow, most of them are drawn near to
+// its nodes.
 //
 // A space offers, besides what tree_pair.hpp needs, has_time(): false ends the search.
 #pragma once
@@ -58,10 +59,8 @@ class RrtConnect {
 
   private:
     static constexpr float unbounded = DynamicDomain::unbounded;
-    // So many samples in a row outside all domains: the trees starve. From then on edges are so much shorter,
-    // and after so many samples without a new node every second one is drawn near to a node.
-    static constexpr int most_rejections = 20000, most_failures = 1000;
-    static constexpr float starving_range = 0.25f;
+    // After so many samples without a new node a tree starves: all but every fourth are drawn near to nodes.
+    static constexpr std::int64_t most_in_vain = 10, uniform_period = 4;
 
     Space& space_;
     const Box box_;
@@ -70,16 +69,14 @@ class RrtConnect {
     Trees trees_;
     std::vector<std::pair<int, int>> straight_;
     std::size_t next_straight_ = 0;
-    bool has_domains_ = true;
-    int rejections_ = 0;
-    int failures_ = 0;         // samples without domains since the last new node
-    std::int64_t locals_ = 0;  // samples drawn near to nodes
+    std::array<std::int64_t, 2> in_vain_ = {};  // samples of each tree since its last new node
+    std::int64_t locals_ = 0;                   // samples drawn near to nodes
     float least_distance_ = unbounded;
     std::array<Row, 2> nearest_rows_ = {};
 
     search::ConfigurationTree& nodes(int t) { return trees_.nodes(t); }
     int add_node(int t, const float* q, int parent, float cost) {
-        rejections_ = failures_ = 0;
+        in_vain_[std::size_t(t)] = 0;
         return trees_.add(t, q, parent, cost);
     }
 
@@ -112,37 +109,32 @@ class RrtConnect {
         const int t = nodes(0).size() < nodes(1).size() ? 0 : 1;
         Row sample, from, to;
         ++trees_.counts().samples;
-        if (has_domains_ || ++failures_ < most_failures || failures_ % 2)
-            box_.scale(points_.next(), sample.data());
-        else
+        const std::int64_t in_vain = ++in_vain_[std::size_t(t)];
+        const bool is_local = in_vain > most_in_vain && in_vain % uniform_period;
+        if (is_local)
             draw_locally(nodes(t), sample);
+        else
+            box_.scale(points_.next(), sample.data());
         const search::NearRow near = trees_.find_nearest(t, sample.data());
         const float far = std::sqrt(near.square), domain = trees_.radius(t, near.row);
-        if (has_domains_ && domain < far) return reject();
+        if (!is_local && domain < far) return ++trees_.counts().rejected, false;
         nodes(t).copy_row(near.row, from.data());
         trees_.steer(from.data(), sample.data(), far, range_, to.data());
         if (!trees_.check_edge(from.data(), to.data())) {
-            trees_.radius(t, near.row) = DynamicDomain::after_blocked(domain, range_);
+            if (!is_local) trees_.radius(t, near.row) = DynamicDomain::after_blocked(domain, range_);
             return false;
         }
         trees_.radius(t, near.row) = DynamicDomain::after_free(domain);
         const float cost = nodes(t).cost(near.row) + std::min(far, range_);
         return connect(t, add_node(t, to.data(), near.row, cost), to.data());
     }
-    // A sample near to a node: trees that starve in a narrow place grow by short edges. Each node has its
-    // turn, and sizes from the range down to a hundredth of it.
+    // A sample in a cube around a node, its side four times and twice the range in turn.
+    // Each node has its turn.
     void draw_locally(const search::ConfigurationTree& tree, Row& sample) {
-        constexpr std::int64_t sizes = 8;
         const std::int64_t turn = locals_++;
-        const float half_side = std::ldexp(range_, -int(turn % sizes));
         Row at;
-        tree.copy_row(int(turn / sizes % tree.size()), at.data());
-        box_.move_within(at.data(), half_side, points_.next(), sample.data());
-    }
-    bool reject() {
-        ++trees_.counts().rejected;
-        if (++rejections_ == most_rejections) has_domains_ = false, range_ *= starving_range;
-        return false;
+        tree.copy_row(int(turn / 2 % tree.size()), at.data());
+        box_.move_within(at.data(), turn % 2 ? range_ : 2 * range_, points_.next(), sample.data());
     }
 
     // Extends tree t from one of its nodes to the nearest node of the other tree; true if it arrives.
