@@ -47,7 +47,11 @@ class Case:
         self.path = urdf_files()[options.pop("file", name)]
         self.robot = cs.Robot.from_urdf(self.path, **options)
         self.oracle = PinocchioRobot(self.path, self.robot)
-        locked = [j for j in self.oracle.model.names if j not in self.oracle.law and j not in ("universe", "root_joint")]
+        locked = [
+            j
+            for j in self.oracle.model.names
+            if j not in self.oracle.law and j not in ("universe", "root_joint")
+        ]
         model = self.oracle.model
         if locked:
             ids = [model.getJointId(joint) for joint in locked]
@@ -114,7 +118,7 @@ class Case:
         tau = robot.inverse_dynamics(q, qd, qdd, **T)
         S = self.oracle.velocity_map(self.T)
         pin_q = np.asfortranarray(np.array([self.oracle.configuration(row, self.T) for row in q]).T)
-        v, a, force = (np.asfortranarray((S @ row.T)) for row in (qd, qdd, tau))
+        v, a, force = (np.asfortranarray(S @ row.T) for row in (qd, qdd, tau))
         result = np.empty_like(v, order="F")
         pool = pin.ModelPool(self.model, 1)
         most = 1000
@@ -173,7 +177,9 @@ def measure(calls: Calls, rounds: int, repeat: int) -> dict[str, dict[str, dict[
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--rounds", type=int, default=60)
     parser.add_argument("--batch", type=int, default=100_000)
     parser.add_argument("--robots", nargs="+", choices=ROBOTS, default=list(ROBOTS))

@@ -124,8 +124,8 @@ inline constexpr double collision_slack = 2e-6;
 // forward kinematics in double leaves 1e-15.
 inline constexpr double same_distance = 1e-12, same_gradient = 1e-9;
 
-// Inertia left to a joint, relative to that of the body which it turns or slides, that is none: what the joints
-// beyond take away leaves rounding of 1e-16.
+// Inertia left to a joint, relative to that of the body which it turns or slides, that is none: what the
+// joints beyond take away leaves rounding of 1e-16.
 inline constexpr double singular_inertia = 1e-13;
 
 }  // namespace cspace::tolerance

@@ -21,10 +21,10 @@ struct Multibody;
 
 struct KinematicsObject {
     PyObject_HEAD std::unique_ptr<const cspace::model::RobotModel>
-        model;                                              // null until __init__; never replaced
+        model;                                             // null until __init__; never replaced
     std::unique_ptr<const cspace::dynamics::Links> links;  // the same for dynamics, made when first asked for
-    PyObject* frame_index;  // dict: name of a frame → its number
-    int tip;                // the frame meant where none is named, or -1
+    PyObject* frame_index;                                 // dict: name of a frame → its number
+    int tip;                                               // the frame meant where none is named, or -1
     bool floating;
 };
 inline KinematicsObject* kinematics_of(PyObject* self) { return reinterpret_cast<KinematicsObject*>(self); }

@@ -26,7 +26,8 @@ inline const double* shared_values(const In& array, npy_intp rows, npy_intp per_
     return values_of(array, stride ? rows : 1, per_row);
 }
 inline npy_intp row_count(const ConstDoubles& q, int n) {
-    if (q.ndim() != 2 || q.shape(1) != n) throw nanobind::value_error("q must have two axes, (rows, coordinates)");
+    if (q.ndim() != 2 || q.shape(1) != n)
+        throw nanobind::value_error("q must have two axes, (rows, coordinates)");
     return q.shape(0);
 }
 inline int velocities_of(const KinematicsObject& robot) {
@@ -46,12 +47,12 @@ bool run_kernel(const Rows& rows, npy_intp n, int threads, Kernel kernel) {
     std::atomic<bool> memory = true;
     const std::size_t bytes = scratch_bytes(rows);
     const bool finite = cspace::over_rows(std::size_t(n), threads, lanes, rows_worth_a_thread,
-                                  [&](std::size_t begin, std::size_t end) {
-                                      const std::unique_ptr<void, FreeAligned> scratch(
-                                          ::operator new(bytes, std::align_val_t(64), std::nothrow));
-                                      if (!scratch) memory = false;
-                                      return scratch && kernel(rows, begin, end, scratch.get());
-                                  });
+                                          [&](std::size_t begin, std::size_t end) {
+                                              const std::unique_ptr<void, FreeAligned> scratch(
+                                                  ::operator new(bytes, std::align_val_t(64), std::nothrow));
+                                              if (!scratch) memory = false;
+                                              return scratch && kernel(rows, begin, end, scratch.get());
+                                          });
     if (!memory) throw std::bad_alloc();
     return finite;
 }

@@ -43,7 +43,8 @@ CSPACE_INLINE bool read_arguments(const Rows& rows, Scratch& scratch, std::size_
         load_rows(rows.force + at, std::size_t(dof), count, dof, force);
         finite = kinematics::all_finite(force, dof) && finite;
     }
-    const auto T = kinematics::load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
+    const auto T =
+        kinematics::load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
     given = {q,
              rows.qd ? qd : nullptr,
              rows.force ? force : nullptr,
@@ -97,10 +98,10 @@ CSPACE_INLINE void compute_torques(const Rows& rows, const Arguments<V>& given, 
     auto* links = take_array<LinkMotion<V>>(scratch, rows.bodies.n_links);
     const Motion<V> base = base_motion(rows, given, qdd);
     const Wrench<V> on_base =
-        given.qd || qdd ? inverse_dynamics(rows.bodies, base, given.q, joint_rates(given, scratch),
-                                           qdd ? qdd + given.first : nullptr, rows.rubs, links,
-                                           tau + given.first)
-                        : gravity_torques(rows.bodies, base.a, given.q, links, tau + given.first);
+        given.qd || qdd
+            ? inverse_dynamics(rows.bodies, base, given.q, joint_rates(given, scratch),
+                               qdd ? qdd + given.first : nullptr, rows.rubs, links, tau + given.first)
+            : gravity_torques(rows.bodies, base.a, given.q, links, tau + given.first);
     if (!given.first) return;
     set_vector(tau, given.R * on_base.f);
     set_vector(tau + 3, given.R * on_base.n);
@@ -158,8 +159,8 @@ CSPACE_INLINE bool give_way_to_torques(const Rows& rows, const Arguments<V>& giv
     Motion<V> base = base_motion(rows, given, static_cast<const V*>(nullptr));
     mask_of<V> regular;
     const V* tau = given.force + given.first;
-    const Articulated<V> felt = articulate(rows.bodies, base.w, given.q, joint_rates(given, scratch), tau,
-                                           rows.rubs, links, regular);
+    const Articulated<V> felt =
+        articulate(rows.bodies, base.w, given.q, joint_rates(given, scratch), tau, rows.rubs, links, regular);
     if (given.first) {
         const Mat3<V> A = to_matrix(felt.A), C = to_matrix(felt.C);
         V inertia[6][6], x[6];

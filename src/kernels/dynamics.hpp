@@ -18,8 +18,8 @@ enum class What {
     potential         // (1,)
 };
 
-// Rows of arguments and results; each row has n = n_coordinates joints and dof = n velocities, six more, [v; ω]
-// of the base at its origin in world axes, where it floats. rubs: joints have damping and dry friction.
+// Rows of arguments and results; each row has n = n_coordinates joints and dof = n velocities, six more, [v;
+// ω] of the base at its origin in world axes, where it floats. rubs: joints have damping and dry friction.
 struct Rows {
     Multibody bodies;
     Vec3d gravity;
@@ -37,8 +37,6 @@ inline std::size_t scratch_bytes(const Rows& rows, std::size_t lanes = 8) {
     const std::size_t n = std::size_t(rows.bodies.n_links), dof = std::size_t(rows.bodies.n_coordinates) + 6;
     return 8 * lanes * (80 * n + dof * (2 * dof + 5) + 8);
 }
-
-
 
 }  // namespace cspace::dynamics
 

@@ -11,6 +11,7 @@ from cspace.model import Description, Inertial, Joint, Link
 from kinematics.robots import arm, random_q, tree
 from model.random_robots import random_pose
 
+
 def massive_tree(seed):
     """A random tree whose every joint moves some inertia."""
     while True:

@@ -45,7 +45,8 @@ CSPACE_INLINE void coriolis_matrix(const Multibody& bodies, const Twist<V>& base
     if (!floating) return;
     // Columns of the base: (e; 0) with rate zero and (0; e) with rate (v × e; 0).
     const V zero = fill<V>(0.0), one = fill<V>(1.0);
-    const Vec3<V> none = {zero, zero, zero}, unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+    const Vec3<V> none = {zero, zero, zero},
+                  unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
     const V mass = fill<V>(bodies.mass);
     for (int j = 0; j < 3; ++j) {
         const Twist<V> axis = {none, unit[j]}, rate = {cross(base.v, unit[j]), none};

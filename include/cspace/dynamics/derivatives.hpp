@@ -9,8 +9,8 @@
 
 namespace cspace::dynamics::inline CSPACE_ISA {
 
-// What an entry needs of the joint that moves: the motion by which the velocities (rate) and the accelerations
-// (bend) behind it grow.
+// What an entry needs of the joint that moves: the motion by which the velocities (rate) and the
+// accelerations (bend) behind it grow.
 template <class V>
 struct Growth {
     Twist<V> axis, rate, bend;
@@ -48,8 +48,7 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
         // The wrench on all that the joint moves, where the joint and its velocity grow.
         const Wrench<V> by_position = scale(2.0, velocity_product(state.all, own.rate)) + inertial(own.bend) +
                                       cross_wrench(own.axis, state.all.wrench);
-        const Wrench<V> by_velocity =
-            scale(2.0, velocity_product(state.all, own.axis) + inertial(own.rate));
+        const Wrench<V> by_velocity = scale(2.0, velocity_product(state.all, own.axis) + inertial(own.rate));
         // The force of the joint, where those before it and their velocities grow.
         const Wrench<V> unit = inertial(own.axis);
         const Vec3<V> turning = 2.0 * transposed_velocity_product(state.all, own.axis);
@@ -79,8 +78,10 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
     // Turning the base by e and all motion and gravity with it changes no joint force and turns the wrench on
     // the base. Turning motion and gravity back again is a change of velocity and acceleration.
     const V zero = fill<V>(0.0), one = fill<V>(1.0), mass = fill<V>(bodies.mass);
-    const Vec3<V> none = {zero, zero, zero}, unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
-    const Vec3<V> point_change = change.v + cross(base.w, base.v);  // of the origin, not of the spatial motion
+    const Vec3<V> none = {zero, zero, zero},
+                  unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+    const Vec3<V> point_change =
+        change.v + cross(base.w, base.v);  // of the origin, not of the spatial motion
     const auto by_turning_faster = [&](const Vec3<V>& w) -> Growth<V> {
         return {{none, w}, {cross(base.v, w), none}, {2.0 * cross(base.v, w), cross(base.w, w)}};
     };
@@ -91,10 +92,12 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
         const auto wrench_of = [&](const Growth<V>& growth) {
             return scale(2.0, velocity_product(whole, growth.axis)) + momentum_of(mass, whole, growth.bend);
         };
-        const Wrench<V> velocity = wrench_of(faster), undoing = wrench_of(undone) + momentum_of(mass, whole, lost);
+        const Wrench<V> velocity = wrench_of(faster),
+                        undoing = wrench_of(undone) + momentum_of(mass, whole, lost);
         const Vec3<V> f = cross(e, whole.wrench.f) - undoing.f, n = cross(e, whole.wrench.n) - undoing.n;
         const V positions[6] = {f.x, f.y, f.z, n.x, n.y, n.z};
-        const V velocities[6] = {velocity.f.x, velocity.f.y, velocity.f.z, velocity.n.x, velocity.n.y, velocity.n.z};
+        const V velocities[6] = {velocity.f.x, velocity.f.y, velocity.f.z,
+                                 velocity.n.x, velocity.n.y, velocity.n.z};
         for (int i = 0; i < 6; ++i) {
             add(dq, i, 3 + j, positions[i]);
             add(dqd, i, 3 + j, velocities[i]);

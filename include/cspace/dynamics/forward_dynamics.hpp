@@ -1,9 +1,9 @@
 // Forward dynamics: the accelerations under given torques, by articulated bodies.
 //
 // From the tips on, each link with all that it carries answers an acceleration of its frame by a wrench that
-// is linear in it, since the joints beyond give way. That inertia and the wrench at zero are handed down; then
-// the accelerations follow from the base on (Featherstone 2008, section 7.3). As in inverse_dynamics.hpp the
-// accelerations are those of points.
+// is linear in it, since the joints beyond give way. That inertia and the wrench at zero are handed down;
+// then the accelerations follow from the base on (Featherstone 2008, section 7.3). As in inverse_dynamics.hpp
+// the accelerations are those of points.
 #pragma once
 
 #include "cspace/dynamics/inverse_dynamics.hpp"
@@ -90,8 +90,8 @@ CSPACE_INLINE void shift_response(Articulated<V>& body, const Vec3<V>& t) {
     body.bias.n = body.bias.n + cross(t, body.bias.f);
 }
 
-// What the parent of a link feels, in the frame of the link, since its joint gives way to the force tau. Fills U,
-// the inertia and u. regular: becomes false where the joint moves no inertia.
+// What the parent of a link feels, in the frame of the link, since its joint gives way to the force tau.
+// Fills U, the inertia and u. regular: becomes false where the joint moves no inertia.
 template <class V>
 CSPACE_INLINE Articulated<V> give_way(const Link& link, LinkResponse<V>& state, V tau, mask_of<V>& regular) {
     const Articulated<V>& body = state.body;

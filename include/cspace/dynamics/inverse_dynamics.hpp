@@ -1,9 +1,9 @@
 // Inverse dynamics: the forces and torques behind a motion, by the recursion of Newton and Euler.
 //
 // With angular velocity ω and acceleration α, points fixed to a body accelerate by a + K p, K = [α]× + ω ωᵀ −
-// |ω|² 1, so that the force on it is m a + K m c and the torque about its origin m c × a + ∫ p × K p dm. These
-// are accelerations of points, not of spatial vectors: linear velocities never appear (Luh, Walker and Paul
-// 1980).
+// |ω|² 1, so that the force on it is m a + K m c and the torque about its origin m c × a + ∫ p × K p dm.
+// These are accelerations of points, not of spatial vectors: linear velocities never appear (Luh, Walker and
+// Paul 1980).
 #pragma once
 
 #include "cspace/dynamics/link_axes.hpp"
@@ -46,10 +46,10 @@ CSPACE_INLINE Mat3<V> acceleration_gradient(const Vec3<V>& w, const Vec3<V>& wd)
 template <class V, class S>
 CSPACE_INLINE Vec3<V> torque_of_gradient(const Mat3<V>& K, const Symmetric3<S>& s) {
     const auto& m = K.m;
-    return {m[2][0] * s.xy + m[2][1] * s.yy + m[2][2] * s.yz - m[1][0] * s.xz - m[1][1] * s.yz - m[1][2] * s.zz,
-            m[0][0] * s.xz + m[0][1] * s.yz + m[0][2] * s.zz - m[2][0] * s.xx - m[2][1] * s.xy - m[2][2] * s.xz,
-            m[1][0] * s.xx + m[1][1] * s.xy + m[1][2] * s.xz - m[0][0] * s.xy - m[0][1] * s.yy -
-                m[0][2] * s.yz};
+    return {
+        m[2][0] * s.xy + m[2][1] * s.yy + m[2][2] * s.yz - m[1][0] * s.xz - m[1][1] * s.yz - m[1][2] * s.zz,
+        m[0][0] * s.xz + m[0][1] * s.yz + m[0][2] * s.zz - m[2][0] * s.xx - m[2][1] * s.xy - m[2][2] * s.xz,
+        m[1][0] * s.xx + m[1][1] * s.xy + m[1][2] * s.xz - m[0][0] * s.xy - m[0][1] * s.yy - m[0][2] * s.yz};
 }
 
 // The wrench that moves a body.
@@ -86,12 +86,11 @@ CSPACE_INLINE V joint_resistance(const Link& link, V qd, V qdd, bool rubs) {
 }
 
 // The torques (n_coordinates,) that accelerate the joints by qdd (null: zero) and carry the weight of the
-// robot. base: how the base moves, in its axes, with a less gravity. Returns the wrench on the base, at its origin, in its
-// axes.
+// robot. base: how the base moves, in its axes, with a less gravity. Returns the wrench on the base, at its
+// origin, in its axes.
 template <class V>
 CSPACE_INLINE Wrench<V> inverse_dynamics(const Multibody& bodies, const Motion<V>& base, const V* q,
-                                         const V* qd, const V* qdd, bool rubs, LinkMotion<V>* links,
-                                         V* tau) {
+                                         const V* qd, const V* qdd, bool rubs, LinkMotion<V>* links, V* tau) {
     const V zero = fill<V>(0.0);
     turn_links(bodies, q, links);
     const Mat3<V> base_K = acceleration_gradient(base.w, base.wd);

@@ -1,8 +1,8 @@
 // From the axes of a link to those of its parent and back, without forming a rotation matrix.
 //
-// A turn about z of a matrix leaves the mean and the difference of its entries (½(xx + yy), ½(xy − yx)), turns
-// (½(xx − yy), ½(xy + yx)) by twice the angle, and the third column and row by the angle. A quarter turn
-// exchanges entries. Everything here is done in place.
+// A turn about z of a matrix leaves the mean and the difference of its entries (½(xx + yy), ½(xy − yx)),
+// turns (½(xx − yy), ½(xy + yx)) by twice the angle, and the third column and row by the angle. A quarter
+// turn exchanges entries. Everything here is done in place.
 #pragma once
 
 #include "cspace/dynamics/multibody.hpp"

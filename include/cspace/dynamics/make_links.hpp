@@ -81,8 +81,9 @@ class Links {
             links_.push_back(make_link(joint, tree.bodies[k + 1],
                                        joint.parent < 0 ? 0.0 : turns[std::size_t(joint.parent)], turns[k]));
         }
-        view_ = {links_.data(), tree.n_joints, tree.n_coordinates, view_.shares,
-                 moments_of(tree.bodies[0], 0.0), tree.mass};
+        view_ = {
+            links_.data(), tree.n_joints, tree.n_coordinates, view_.shares, moments_of(tree.bodies[0], 0.0),
+            tree.mass};
     }
     const Multibody& view() const { return view_; }
 

@@ -13,7 +13,8 @@ CSPACE_INLINE Wrench<V> momentum_about(const Wrench<V>& momentum, const Vec3<V>&
     return {momentum.f, momentum.n - cross(c, momentum.f)};
 }
 
-// The matrix A (6, columns), row by row, with [l; k] = A q̇ about the centre of mass, in the axes of the world.
+// The matrix A (6, columns), row by row, with [l; k] = A q̇ about the centre of mass, in the axes of the
+// world.
 template <class V>
 CSPACE_INLINE void momentum_matrix(const Multibody& bodies, bool floating, const SpatialLink<V>* links,
                                    const SpatialBody<V>& whole, V* A) {
@@ -32,7 +33,8 @@ CSPACE_INLINE void momentum_matrix(const Multibody& bodies, bool floating, const
     }
     if (!floating) return;
     const V zero = fill<V>(0.0), one = fill<V>(1.0), mass = fill<V>(bodies.mass);
-    const Vec3<V> none = {zero, zero, zero}, unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+    const Vec3<V> none = {zero, zero, zero},
+                  unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
     for (int j = 0; j < 3; ++j) {
         const Twist<V> along = {unit[j], none}, about = {none, unit[j]};
         add(j, momentum_about(momentum_of(mass, whole, along), c));

@@ -21,26 +21,26 @@ struct Moments {
 };
 
 struct Link {
-    int parent;      // the link that carries it, smaller than its own number; -1: the base
-    int coordinate;  // which entry of q moves it
+    int parent;              // the link that carries it, smaller than its own number; -1: the base
+    int coordinate;          // which entry of q moves it
     bool prismatic, turned;  // turned: φ is not zero
     model::Tilt tilt;
-    double ratio;                    // velocity of the joint per velocity of its coordinate
-    double turn, angle;              // turn is 0 for a prismatic joint
-    double slide, z;                 // both are 0 for a revolute joint
-    double cos_phi, sin_phi;         // φ
-    double cos_alpha, sin_alpha;     // α, whose sine is not negative
-    Vec3d t, d;                      // in the axes of the parent
-    Moments<double> body;            // in its own axes
-    double carried_mass;             // of all that the joint moves [kg]
+    double ratio;                        // velocity of the joint per velocity of its coordinate
+    double turn, angle;                  // turn is 0 for a prismatic joint
+    double slide, z;                     // both are 0 for a revolute joint
+    double cos_phi, sin_phi;             // φ
+    double cos_alpha, sin_alpha;         // α, whose sine is not negative
+    Vec3d t, d;                          // in the axes of the parent
+    Moments<double> body;                // in its own axes
+    double carried_mass;                 // of all that the joint moves [kg]
     double armature, damping, friction;  // of the joint
 };
 
 struct Multibody {
     const Link* links;
     int n_links, n_coordinates;
-    bool shares;               // a coordinate moves several joints
-    Moments<double> base;      // what is fixed to the base, in its axes
+    bool shares;           // a coordinate moves several joints
+    Moments<double> base;  // what is fixed to the base, in its axes
     double mass;
 };
 
