@@ -7,7 +7,7 @@
 #include "cspace/dynamics/mass_matrix.hpp"
 #include "cspace/dynamics/momentum.hpp"
 #include "cspace/math/linear.hpp"
-#include "row_memory.hpp"
+#include "kinematics_memory.hpp"
 
 namespace cspace::dynamics::inline CSPACE_ISA {
 namespace {
