@@ -20,15 +20,16 @@ template <class V>
 struct Arguments {
     const V *q, *qd, *force;  // qd and force: null where not given
     V* result;
-    Pose<V> T;                   // of the base
-    Mat3<V> R;                   // its axes in those of the world
+    Pose<V> T;  // of the base
+    Mat3<V> R;  // its axes in those of the world
     int n, first, dof;
 };
 
-// Rows i to i + count of an array with `width` values each, in lanes; one row alone is read in place. Null for
-// null.
+// Rows i to i + count of an array with `width` values each, in lanes; one row alone is read in place. Null
+// for null.
 template <class V>
-CSPACE_INLINE const V* read_rows(const double* values, std::size_t i, int count, int width, Scratch& scratch) {
+CSPACE_INLINE const V* read_rows(const double* values, std::size_t i, int count, int width,
+                                 Scratch& scratch) {
     if (!values) return nullptr;
     values += i * std::size_t(width);
     if constexpr (Lanes<V>::count == 1) {
@@ -57,14 +58,16 @@ CSPACE_INLINE bool read_arguments(const Rows& rows, Scratch& scratch, std::size_
         result = rows.result + i * std::size_t(width);
     else
         result = take_array<V>(scratch, width);
-    const auto T = kinematics::load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
+    const auto T =
+        kinematics::load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
     given = {q, qd, force, result, T, T.R, n, first, dof};
     const bool finite = finite_rows(q, n), moves = finite_rows(qd, dof), pushes = finite_rows(force, dof);
     return finite && moves && pushes;
 }
 // The result of a pack as rows.
 template <class V>
-CSPACE_INLINE void write_result(const Rows& rows, const Arguments<V>& given, std::size_t i, int count, int width) {
+CSPACE_INLINE void write_result(const Rows& rows, const Arguments<V>& given, std::size_t i, int count,
+                                int width) {
     if constexpr (Lanes<V>::count > 1)
         store_rows(given.result, width, rows.result + i * std::size_t(width), std::size_t(width), count);
 }
