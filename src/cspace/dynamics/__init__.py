@@ -13,6 +13,7 @@ from cspace.dynamics.momentum import (
     kinetic_energy,
     potential_energy,
 )
+from cspace.dynamics.regressor import parameter_names, parameters, regressor
 
 __all__ = [
     "InertiaFault",
@@ -28,5 +29,8 @@ __all__ = [
     "inverse_dynamics_derivatives",
     "kinetic_energy",
     "mass_matrix",
+    "parameter_names",
+    "parameters",
     "potential_energy",
+    "regressor",
 ]
