@@ -1,5 +1,6 @@
 """Dynamics: the masses of a robot, which torques make a motion, and how it moves under given torques."""
 
+from cspace.dynamics.base_parameters import BaseParameters, base_parameters
 from cspace.dynamics.coriolis import coriolis_matrix
 from cspace.dynamics.derivatives import forward_dynamics_derivatives, inverse_dynamics_derivatives
 from cspace.dynamics.forward import forward_dynamics
@@ -16,8 +17,10 @@ from cspace.dynamics.momentum import (
 from cspace.dynamics.regressor import parameter_names, parameters, regressor
 
 __all__ = [
+    "BaseParameters",
     "InertiaFault",
     "InertiaReport",
+    "base_parameters",
     "centroidal_momentum",
     "centroidal_momentum_matrix",
     "coriolis_matrix",

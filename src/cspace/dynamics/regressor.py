@@ -87,7 +87,8 @@ def regressor(
     batch = rows_of(robot, q, qd=qd, qdd=qdd, T_world_base=T_world_base)
     refuse_infinite(batch)
     shape = (robot.dof, count_parameters(robot._assembly, friction))
-    with guard_memory("q", f"an array of {len(batch.q)} rows", len(batch.q) * shape[0] * shape[1], "pass fewer"):
+    entries = len(batch.q) * shape[0] * shape[1]
+    with guard_memory("q", f"an array of {len(batch.q)} rows", entries, "pass fewer"):
         Y = fill_regressor(robot, batch, check_gravity(gravity), friction)
     return Y.reshape((*batch.shape, *shape))
 
@@ -159,8 +160,7 @@ def fill_regressor(robot: KinematicModel, batch: Batch, gravity: Array, friction
     assembly, first = robot._assembly, 6 if robot.floating else 0
     bodies = moving_bodies(assembly)
     n, width = assembly.n_joints, len(BODY)
-    qd, qdd = batch.qd, batch.qdd
-    assert qd is not None and qdd is not None
+    qd, qdd = rates_of(batch)
     Y = np.zeros((len(batch.q), robot.dof, count_parameters(assembly, friction)))
     motions = move_joints(assembly, batch, gravity)
     for i, body in enumerate(bodies):
@@ -183,6 +183,13 @@ def fill_regressor(robot: KinematicModel, batch: Batch, gravity: Array, friction
     return Y
 
 
+def rates_of(batch: Batch) -> tuple[Array, Array]:
+    """The velocities and accelerations (rows, dof) of a batch that has both."""
+    assert batch.qd is not None
+    assert batch.qdd is not None
+    return batch.qd, batch.qdd
+
+
 def joints_to(assembly: Assembly, joint: int) -> list[int]:
     """The joints that move what a joint carries, that joint first."""
     found = []
@@ -194,8 +201,7 @@ def joints_to(assembly: Assembly, joint: int) -> list[int]:
 
 def move_joints(assembly: Assembly, batch: Batch, gravity: Array) -> list[Motion]:
     """The motion of the base and of every joint frame."""
-    qd, qdd = batch.qd, batch.qdd
-    assert qd is not None and qdd is not None
+    qd, qdd = rates_of(batch)
     rows = len(batch.q)
     T = np.broadcast_to(np.eye(4) if batch.T_world_base is None else batch.T_world_base, (rows, 4, 4))
     none, first = np.zeros((rows, 3)), 0
@@ -206,21 +212,18 @@ def move_joints(assembly: Assembly, batch: Batch, gravity: Array) -> list[Motion
     motions = [base]
     for k, (parent, c) in enumerate(zip(assembly.parent.tolist(), assembly.coordinate.tolist(), strict=True)):
         ratio, placement = assembly.ratio[k], assembly.T_parent_joint[k]
-        value, rate, push = (
-            ratio * x[:, None] for x in (batch.q[:, c], qd[:, first + c], qdd[:, first + c])
-        )
+        value, rate, push = (ratio * x[:, None] for x in (batch.q[:, c], qd[:, first + c], qdd[:, first + c]))
         value = value + assembly.offset[k]
         R = motions[parent + 1].R @ placement[:3, :3]
         z = R[:, :, 2]
+        moved = move_along(motions[parent + 1], placement[:3, 3])
         if assembly.prismatic[k]:
-            moved = move_along(motions[parent + 1], placement[:3, 3])
             far = move_by(moved, value * z)
             a = far.a + push * z + 2.0 * rate * cross(far.w, z)
             motions.append(replace(far, R=R, a=a))
         else:
-            moved = move_along(motions[parent + 1], placement[:3, 3])
-            alpha = moved.alpha + push * z + rate * cross(moved.w, z)
-            motions.append(replace(moved, R=R @ turns_about_z(value[:, 0]), w=moved.w + rate * z, alpha=alpha))
+            w, alpha = moved.w + rate * z, moved.alpha + push * z + rate * cross(moved.w, z)
+            motions.append(replace(moved, R=R @ turns_about_z(value[:, 0]), w=w, alpha=alpha))
     return motions
 
 
@@ -263,10 +266,8 @@ def tensor_times(x: Array) -> Array:
     return L
 
 
-def joint_twists(
-    assembly: Assembly, joints: list[int], motions: list[Motion], R: Array, p: Array
-) -> Array:
-    """(rows, joints, 6): velocity [v; ω] of the frame at p with the axes R per unit velocity of each joint."""
+def joint_twists(assembly: Assembly, joints: list[int], motions: list[Motion], R: Array, p: Array) -> Array:
+    """(rows, joints, 6): velocity [v; ω] of the frame at p, in its axes R, per unit velocity of each joint."""
     S = np.zeros((len(p), len(joints), 6))
     for row, j in enumerate(joints):
         frame, ratio = motions[j + 1], assembly.ratio[j]
