@@ -516,8 +516,8 @@ LEAST_GAIN: Final = 1e-12
 """The least gain, distance of influence, step and side of a cell of planners: products of a few stay far from
 the smallest double."""
 
-DEPENDENT_COLUMN: Final = 1e-9
-"""Length of what others leave of a column of a regressor of length one up to which it depends on them: that
-is rounding, while a link of a millimetre leaves a millionth."""
+DEPENDENT_COLUMN: Final = 1e-5
+"""Length of what others leave of a column of a regressor of length one up to which it depends on them: angles
+of files with six digits leave 5e-6, a column of its own a tenth and more."""
 
 __all__ = [name for name in globals() if name.isupper()]

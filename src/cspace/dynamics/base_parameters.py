@@ -35,6 +35,9 @@ NEARLY_LARGEST: Final = 0.1
 """A column that is at least this share of the largest one left may be chosen before it: the choice is as
 stable, and the parameters of the first links keep their names."""
 
+ROUNDING: Final = 4096.0 * np.finfo(float).eps
+"""Of the weights of a combination, for columns of length one."""
+
 
 class RobotModel(DescribedModel, Protocol):
     """A Robot, or what has its masses."""
@@ -164,14 +167,14 @@ def split_columns(A: Array) -> tuple[Array, Array]:
     first = np.sort(np.array(chosen, dtype=np.intp))
     others = np.setdiff1d(np.arange(A.shape[1]), first)
     K = np.linalg.lstsq(scaled[:, first], scaled[:, others], rcond=None)[0]
-    K = np.where(np.abs(K) > DEPENDENT_COLUMN, K, 0.0)
+    K = np.where(np.abs(K) > ROUNDING, K, 0.0)
     return first, K * sizes[others] / sizes[first, None]
 
 
 def describe_sum(weights: Array, first: int, names: tuple[str, ...]) -> str:
     """A combination as text, the parameter `first` before the others: "Izz_a + 0.3 hx_b − m_c"."""
     text = names[first]
-    for k in np.flatnonzero(weights):
+    for k in np.flatnonzero(np.abs(weights) > DEPENDENT_COLUMN):
         if k != first:
             size = f"{abs(weights[k]):.4g}"
             text += f" {'+' if weights[k] > 0.0 else '−'} {'' if size == '1' else size + ' '}{names[k]}"
