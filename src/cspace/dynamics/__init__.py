@@ -4,6 +4,7 @@ from cspace.dynamics.base_parameters import BaseParameters, base_parameters
 from cspace.dynamics.coriolis import coriolis_matrix
 from cspace.dynamics.derivatives import forward_dynamics_derivatives, inverse_dynamics_derivatives
 from cspace.dynamics.forward import forward_dynamics
+from cspace.dynamics.identify import Identification, identify
 from cspace.dynamics.inertia_checks import InertiaFault
 from cspace.dynamics.inertia_report import InertiaReport, inertia_report
 from cspace.dynamics.inverse import gravity_torques, inverse_dynamics
@@ -18,6 +19,7 @@ from cspace.dynamics.regressor import parameter_names, parameters, regressor
 
 __all__ = [
     "BaseParameters",
+    "Identification",
     "InertiaFault",
     "InertiaReport",
     "base_parameters",
@@ -27,6 +29,7 @@ __all__ = [
     "forward_dynamics",
     "forward_dynamics_derivatives",
     "gravity_torques",
+    "identify",
     "inertia_report",
     "inverse_dynamics",
     "inverse_dynamics_derivatives",
