@@ -30,8 +30,9 @@ WEIGHINGS: Final = 3
 """How often the weights of the joints are computed from the residuals and the residuals again from them; a
 third changes the weights by less than their own error."""
 
-ROUNDING: Final = 64.0 * np.finfo(float).eps
-"""Of a torque, relative to its root mean square: no joint is weighted as if it were measured better."""
+RESOLUTION: Final = float(np.sqrt(np.finfo(float).eps))
+"""Of a torque, relative to its root mean square: no joint is weighted as if it were measured better, since
+the rounding of exact data is no measure of their worth."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +70,7 @@ class Identification:
         """The answer in one line."""
         count = f"{len(self.base)} base parameters from {self.samples} samples"
         if self.unexcited:
-            return f"{count}: the motion does not excite {join_words(self.unexcited)}; see exciting_trajectory"
+            return f"{count}: the motion leaves those of {join_words(self.unexcited)} undetermined"
         largest = float(self.residuals.max(initial=0.0))
         return f"{count}, condition {self.condition:.3g}, residuals up to {largest:.3g} N·m or N"
 
@@ -165,7 +166,7 @@ def weigh_joints(factors: Array, samples: int) -> tuple[Array, Array, Array]:
     square of the residuals of each joint (dof,)."""
     dof, b = len(factors), factors.shape[1] - 1
     size = np.linalg.norm(factors[:, :, b], axis=1) / np.sqrt(max(1, samples))
-    least = np.where(size > 0.0, ROUNDING * size, 1.0)
+    least = np.where(size > 0.0, RESOLUTION * size, 1.0)
     freedom = max(1.0, samples - b / dof)
     spread = np.maximum(size, least)
     for _ in range(WEIGHINGS):

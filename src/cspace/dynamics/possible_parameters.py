@@ -31,7 +31,7 @@ UNKNOWN_RESISTANCE: Final = 0.01
 """Prior armature, damping and dry friction where there are none, in their SI units: their logarithm is
 finite."""
 
-LARGEST_WEIGHT: Final = 1e7
+LARGEST_WEIGHT: Final = 1e10
 """Largest entry of the equations: those of exact data would hide the prior in their rounding."""
 
 MOST_STEPS: Final = 200
@@ -68,8 +68,8 @@ def fit_possible(robot: DescribedModel, base: BaseParameters, R: Array, friction
     theta, left, damping = start, residual(start), 1.0
     for _ in range(MOST_STEPS):
         J = np.concatenate([A @ parameter_slopes(theta, bodies), np.diag(1.0 / spread)])
-        equations = np.concatenate([J, np.diag(np.sqrt(damping) / spread)])
-        step = np.linalg.lstsq(equations, np.concatenate([-left, np.zeros(len(theta))]), rcond=None)[0]
+        Q, triangle = np.linalg.qr(np.concatenate([J, np.diag(np.sqrt(damping) / spread)]))
+        step = np.linalg.solve(triangle, -left @ Q[: len(left)])
         step /= max(1.0, float(np.abs(step / spread).max(initial=0.0)))  # no factor beyond e at once
         ahead = residual(theta + step)
         gain = left @ left - ahead @ ahead
