@@ -3,6 +3,7 @@
 from cspace.dynamics.base_parameters import BaseParameters, base_parameters
 from cspace.dynamics.coriolis import coriolis_matrix
 from cspace.dynamics.derivatives import forward_dynamics_derivatives, inverse_dynamics_derivatives
+from cspace.dynamics.exciting_trajectory import ExcitingTrajectory, exciting_trajectory
 from cspace.dynamics.forward import forward_dynamics
 from cspace.dynamics.identify import Identification, identify
 from cspace.dynamics.inertia_checks import InertiaFault
@@ -19,6 +20,7 @@ from cspace.dynamics.regressor import parameter_names, parameters, regressor
 
 __all__ = [
     "BaseParameters",
+    "ExcitingTrajectory",
     "Identification",
     "InertiaFault",
     "InertiaReport",
@@ -26,6 +28,7 @@ __all__ = [
     "centroidal_momentum",
     "centroidal_momentum_matrix",
     "coriolis_matrix",
+    "exciting_trajectory",
     "forward_dynamics",
     "forward_dynamics_derivatives",
     "gravity_torques",

@@ -21,6 +21,7 @@ from cspace.dynamics.regressor import (
 from cspace.dynamics.rows import EARTH, check_gravity
 from cspace.kinematics.batch import Batch, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.model import Limits
 from cspace.spatial import exp_so3
 from cspace.tables import align_cells, html_table, one_line, shown
 from cspace.tolerances import DEPENDENT_COLUMN
@@ -46,6 +47,7 @@ class RobotModel(DescribedModel, Protocol):
     joint_types: str
     dof: int
     floating: bool
+    limits: Limits
 
 
 @dataclass(frozen=True, eq=False)

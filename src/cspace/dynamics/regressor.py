@@ -267,7 +267,7 @@ def tensor_times(x: Array) -> Array:
 
 
 def joint_twists(assembly: Assembly, joints: list[int], motions: list[Motion], R: Array, p: Array) -> Array:
-    """(rows, joints, 6): velocity [v; ω] of the frame at p, in its axes R, per unit velocity of each joint."""
+    """(rows, joints, 6): velocity [v; ω] of the frame at p, in its axes R, per unit rate of each joint."""
     S = np.zeros((len(p), len(joints), 6))
     for row, j in enumerate(joints):
         frame, ratio = motions[j + 1], assembly.ratio[j]
