@@ -42,7 +42,7 @@ DRAWN: Final = 0.25
 STRIDE: Final = 0.5
 """First size of a variation, relative to a drawn motion."""
 
-GROWTH, SHRINKAGE = 1.5, 0.9
+GROWTH, SHRINKAGE = 1.3, 0.93
 """What the size of variations is multiplied by after a better and a worse trial: in balance, one in five is
 better (Rechenberg 1973)."""
 
