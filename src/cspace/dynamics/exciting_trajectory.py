@@ -190,9 +190,8 @@ class Search:
         self.dense = series_at(dense, duration, harmonics)
         self.tested = series_at(tested, duration, harmonics)
         effort = robot.limits.effort
-        self.weight = (
-            1.0 / effort if np.isfinite(effort).all() and (effort > 0.0).all() else effort * 0.0 + 1.0
-        )
+        known = np.isfinite(effort).all() and (effort > 0.0).all()
+        self.weight = 1.0 / effort if known else np.ones(robot.dof)
 
     def draw(self, rng: np.random.Generator) -> Array:
         """Random coefficients."""

@@ -26,9 +26,9 @@ from cspace.spatial.checks import PoseLike
 from cspace.tables import align_cells, html_table, join_words, one_line, shown
 from cspace.tolerances import LEAST_EXCITATION, UNDETERMINED
 
-WEIGHINGS: Final = 3
-"""How often the weights of the joints are computed from the residuals and the residuals again from them; a
-third changes the weights by less than their own error."""
+WEIGHINGS: Final = 8
+"""How often the weights of the joints are computed from the residuals and the residuals again from them: each
+time changes them by a tenth of the last change or less."""
 
 RESOLUTION: Final = float(np.sqrt(np.finfo(float).eps))
 """Of a torque, relative to its root mean square: no joint is weighted as if it were measured better, since
