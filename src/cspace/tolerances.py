@@ -529,7 +529,7 @@ UNDETERMINED: Final = 1e-6
 above the rounding of singular vectors, below every real share."""
 
 CONVERGED_FIT: Final = 1e-12
-"""Relative decrease of a sum of squares, and step relative to its scale, after which a fit of parameters ends:
-a few hundred roundings."""
+"""Relative decrease of a sum of squares, and step relative to its scale, after which a fit of parameters
+ends: some thousand roundings."""
 
 __all__ = [name for name in globals() if name.isupper()]

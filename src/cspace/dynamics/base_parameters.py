@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.dynamics.regressor import (
-    DescribedModel,
     count_parameters,
     cut_rows,
+    factor_columns,
     fill_regressor,
     parameter_names,
     parameters,
@@ -21,7 +22,6 @@ from cspace.dynamics.regressor import (
 from cspace.dynamics.rows import EARTH, check_gravity
 from cspace.kinematics.batch import Batch, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.model import Limits
 from cspace.spatial import exp_so3
 from cspace.tables import align_cells, html_table, one_line, shown
 from cspace.tolerances import DEPENDENT_COLUMN
@@ -40,16 +40,6 @@ ROUNDING: Final = 4096.0 * np.finfo(float).eps
 """Of the weights of a combination, for columns of length one."""
 
 
-class RobotModel(DescribedModel, Protocol):
-    """A Robot, or what has its masses."""
-
-    joint_names: tuple[str, ...]
-    joint_types: str
-    dof: int
-    floating: bool
-    limits: Limits
-
-
 @dataclass(frozen=True, eq=False)
 class BaseParameters:
     """The combinations of dynamic parameters that torques depend on.
@@ -62,7 +52,7 @@ class BaseParameters:
 
     robot: str
     names: tuple[str, ...]
-    columns: Array
+    columns: npt.NDArray[np.intp]
     matrix: Array
     values: Array
 
@@ -88,7 +78,7 @@ class BaseParameters:
 
 
 def base_parameters(
-    robot: RobotModel, *, gravity: ArrayLike = EARTH, friction: bool = True
+    robot: KinematicModel, *, gravity: ArrayLike = EARTH, friction: bool = True
 ) -> BaseParameters:
     """The base parameters of a robot: all that torques can tell about its masses.
 
@@ -114,7 +104,7 @@ def base_parameters(
     return BaseParameters(robot.name, sums, chosen, matrix, matrix @ parameters(robot, friction=friction))
 
 
-def random_rows(robot: RobotModel) -> Batch:
+def random_rows(robot: KinematicModel) -> Batch:
     """Random motions that excite every parameter which can be excited."""
     rng = np.random.default_rng(0)
     n, dof = len(robot.joint_names), robot.dof
@@ -136,7 +126,7 @@ def triangular_factor(batch: Batch, robot: KinematicModel, gravity: Array, frict
     p = count_parameters(robot._assembly, friction)
     R = np.zeros((0, p))
     for Y in regressors_of(batch, robot, gravity, friction):
-        R = np.linalg.qr(np.concatenate([R, Y.reshape(-1, p)]), mode="r")
+        R = factor_columns(np.concatenate([R, Y.reshape(-1, p)]))
     return R
 
 
@@ -147,7 +137,7 @@ def regressors_of(batch: Batch, robot: KinematicModel, gravity: Array, friction:
         yield fill_regressor(robot, part, gravity, friction)
 
 
-def split_columns(A: Array) -> tuple[Array, Array]:
+def split_columns(A: Array) -> tuple[npt.NDArray[np.intp], Array]:
     """Which columns of A (m, p) are independent, in rising order (b,), and K (b, p − b) with the others
     A₂ = A₁ K."""
     sizes = np.linalg.norm(A, axis=0)

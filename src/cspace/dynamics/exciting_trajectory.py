@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, as_generator, positive_number, whole_number
-from cspace.dynamics.base_parameters import BaseParameters, RobotModel, base_parameters
+from cspace.dynamics.base_parameters import BaseParameters, base_parameters
 from cspace.dynamics.identify import column_lengths
-from cspace.dynamics.regressor import fill_regressor
+from cspace.dynamics.regressor import factor_columns, fill_regressor
 from cspace.dynamics.rows import EARTH, check_gravity
 from cspace.errors import InputError
 from cspace.kinematics import require_limits
 from cspace.kinematics.batch import rows_of
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.tables import one_line
 from cspace.tolerances import LEAST_EXCITATION
 
@@ -90,7 +91,7 @@ class ExcitingTrajectory:
 
 
 def exciting_trajectory(
-    robot: RobotModel,
+    robot: KinematicModel,
     *,
     duration: float = 10.0,
     harmonics: int = 5,
@@ -137,7 +138,7 @@ def exciting_trajectory(
     return ExcitingTrajectory(robot.name, length, offset, a, b, condition, times, q + offset, qd, qdd)
 
 
-def position_ranges(robot: RobotModel) -> tuple[Array, Array]:
+def position_ranges(robot: KinematicModel) -> tuple[Array, Array]:
     """Half of the range of each joint and its middle, (n,) each."""
     if robot.floating:
         raise InputError(
@@ -172,7 +173,7 @@ class Search:
 
     def __init__(
         self,
-        robot: RobotModel,
+        robot: KinematicModel,
         duration: float,
         harmonics: int,
         half: Array,
@@ -225,7 +226,7 @@ class Search:
         batch = rows_of(self.robot, q + offset, qd=qd, qdd=qdd)
         Y = fill_regressor(self.robot, batch, self.gravity, self.friction)[:, :, self.base.columns]
         weighted = (Y * self.weight[:, None]).reshape(-1, len(self.base))
-        R = np.linalg.qr(weighted, mode="r")
+        R = factor_columns(weighted)
         sigma = np.linalg.svd(R / column_lengths(R), compute_uv=False)
         if len(sigma) < len(self.base) or sigma[-1] <= LEAST_EXCITATION * sigma[0]:
             return math.inf

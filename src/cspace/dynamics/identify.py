@@ -9,19 +9,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
-from cspace.dynamics.base_parameters import BaseParameters, RobotModel, base_parameters
+from cspace.dynamics.base_parameters import BaseParameters, base_parameters
 from cspace.dynamics.massless_motions import BASE, TAKES_PART
 from cspace.dynamics.possible_parameters import fit_possible
 from cspace.dynamics.regressor import (
     BODY,
     count_parameters,
     cut_rows,
+    factor_columns,
     fill_regressor,
     moving_bodies,
     moving_joints,
 )
 from cspace.dynamics.rows import EARTH, check_gravity
 from cspace.kinematics.batch import Batch, refuse_infinite, rows_of
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 from cspace.tables import align_cells, html_table, join_words, one_line, shown
 from cspace.tolerances import LEAST_EXCITATION, UNDETERMINED
@@ -91,7 +93,7 @@ class Identification:
 
 
 def identify(
-    robot: RobotModel,
+    robot: KinematicModel,
     q: ArrayLike,
     qd: ArrayLike,
     qdd: ArrayLike,
@@ -143,7 +145,7 @@ def identify(
 
 
 def reduce_samples(
-    robot: RobotModel, base: BaseParameters, batch: Batch, gravity: Array, friction: bool
+    robot: KinematicModel, base: BaseParameters, batch: Batch, gravity: Array, friction: bool
 ) -> Array:
     """Per joint the triangular factor (dof, b + 1, b + 1) of its equations, the torques as last column.
 
@@ -157,7 +159,7 @@ def reduce_samples(
         Y = fill_regressor(robot, part, gravity, friction)[:, :, base.columns]
         for i in range(robot.dof):
             equations = np.concatenate([Y[:, i], part.tau[:, i, None]], axis=1)
-            factors[i] = np.linalg.qr(np.concatenate([factors[i], equations]), mode="r")
+            factors[i] = factor_columns(np.concatenate([factors[i], equations]))
     return factors
 
 
@@ -170,7 +172,7 @@ def weigh_joints(factors: Array, samples: int) -> tuple[Array, Array, Array]:
     freedom = max(1.0, samples - b / dof)
     spread = np.maximum(size, least)
     for _ in range(WEIGHINGS):
-        R = np.linalg.qr((factors / spread[:, None, None]).reshape(-1, b + 1), mode="r")
+        R = factor_columns((factors / spread[:, None, None]).reshape(-1, b + 1))
         scale = column_lengths(R[:, :b])
         x = np.linalg.lstsq(R[:b, :b] / scale, R[:b, b], rcond=LEAST_EXCITATION)[0] / scale
         left = np.linalg.norm(factors[:, :, :b] @ x - factors[:, :, b], axis=1)
@@ -202,7 +204,7 @@ def solve_excited(R: Array, x: Array) -> tuple[Array, Array, float, Array]:
     return np.where(undetermined, np.nan, x), covariance, condition, null
 
 
-def name_joints(robot: RobotModel, base: BaseParameters, null: Array) -> tuple[str, ...]:
+def name_joints(robot: KinematicModel, base: BaseParameters, null: Array) -> tuple[str, ...]:
     """The joints whose parameters take part in null directions (k, b)."""
     joints = moving_joints(robot)
     owners = [joints[body.joint] if body.joint >= 0 else BASE for body in moving_bodies(robot._assembly)]

@@ -8,7 +8,8 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.dynamics.base_parameters import BaseParameters
-from cspace.dynamics.regressor import BODY, TENSOR, DescribedModel, moving_bodies, parameters
+from cspace.dynamics.regressor import BODY, TENSOR, moving_bodies, parameters
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.tolerances import CONVERGED_FIT
 
 LOG_SPREAD: Final = 1.0
@@ -44,7 +45,7 @@ SLOWER, FASTER = 10.0, 0.3
 """What the damping of the Gauss–Newton method is multiplied by after a step that failed or succeeded."""
 
 
-def fit_possible(robot: DescribedModel, base: BaseParameters, R: Array, friction: bool) -> Array:
+def fit_possible(robot: KinematicModel, base: BaseParameters, R: Array, friction: bool) -> Array:
     """Parameters π (p,) of bodies that can exist, with the base parameters as the data have them.
 
     Minimises |R₁ B π(θ) − R₂|² + |(θ − θ₀) / spread|² over θ, where the pseudo-inertia of each body is

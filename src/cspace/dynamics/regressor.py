@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Final, Protocol
+from typing import Final, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,12 +29,10 @@ CHUNK: Final = 2_000_000
 """Entries of a regressor that long data are read in: 16 MB."""
 
 
-class DescribedModel(Protocol):
-    """A Robot."""
+class Described(Protocol):
+    """A robot that branches is a Robot."""
 
-    name: str
     description: Description
-    _assembly: Assembly
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +91,7 @@ def regressor(
     return Y.reshape((*batch.shape, *shape))
 
 
-def parameters(robot: DescribedModel, *, friction: bool = True) -> Array:
+def parameters(robot: KinematicModel, *, friction: bool = True) -> Array:
     """The dynamic parameters π of a robot, with inverse_dynamics = regressor · π.
 
     Per moving body ten: its mass, its first moments m c and its inertia, row by row, about the origin and in
@@ -114,7 +112,7 @@ def parameters(robot: DescribedModel, *, friction: bool = True) -> Array:
     return np.concatenate([*rows, *resistances])
 
 
-def parameter_names(robot: DescribedModel, *, friction: bool = True) -> tuple[str, ...]:
+def parameter_names(robot: KinematicModel, *, friction: bool = True) -> tuple[str, ...]:
     """The names of parameters(robot), such as m_forearm, Ixx_forearm and damping_elbow."""
     joints = moving_joints(robot)
     bodies = [body.name or joints[body.joint] for body in moving_bodies(robot._assembly)]
@@ -123,10 +121,12 @@ def parameter_names(robot: DescribedModel, *, friction: bool = True) -> tuple[st
     return (*names, *(f"{kind}_{joint}" for kind in kinds for joint in joints))
 
 
-def moving_joints(robot: DescribedModel) -> tuple[str, ...]:
+def moving_joints(robot: KinematicModel) -> tuple[str, ...]:
     """The names of all joints that move, mimicking ones included."""
     chain = robot._assembly.chain
-    return tree(robot.description).joint_names if chain is None else chain.joint_names
+    if chain is not None:
+        return chain.joint_names
+    return tree(cast("Described", robot).description).joint_names
 
 
 def count_parameters(assembly: Assembly, friction: bool) -> int:
@@ -144,6 +144,11 @@ def moving_bodies(assembly: Assembly) -> list[MovingBody]:
     bodies = range(-1 if assembly.floating else 0, assembly.n_joints)
     # A planar joint is three in a row, of which the first two carry no link.
     return [first.get(k) or MovingBody(k, "", np.eye(3), np.zeros(3)) for k in bodies]
+
+
+def factor_columns(A: Array) -> Array:
+    """R of the QR factorisation of A (m, n), (min(m, n), n)."""
+    return np.asarray(np.linalg.qr(A, mode="r"))
 
 
 def cut_rows(batch: Batch, width: int) -> Iterator[Batch]:
