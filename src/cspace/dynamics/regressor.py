@@ -99,7 +99,7 @@ def parameters(robot: KinematicModel, *, friction: bool = True) -> Array:
     floating robot the base comes first. Then follow the armatures of all joints, mimicking ones included,
     their damping and their dry friction, the latter two only with friction.
 
-    Returns π (p,).
+    Returns π (n_parameters,).
     """
     assembly = robot._assembly
     rows = []
