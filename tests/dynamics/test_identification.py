@@ -372,7 +372,7 @@ BAD = {
     "floating": (lambda: exciting_trajectory(FREE[0], velocity=1.0), "floating"),
     "endless slide": (lambda: exciting_trajectory(cs.Robot(ENDLESS), velocity=1.0), "prismatic joint slide"),
     "duration": (lambda: exciting_trajectory(ARM, velocity=1.0, duration=-1.0), "duration"),
-    "harmonics": (lambda: exciting_trajectory(ARM, velocity=1.0, harmonics=0), "harmonics"),
+    "harmonics": (lambda: exciting_trajectory(ARM, velocity=1.0, harmonics=1), "harmonics"),
     "trials": (lambda: exciting_trajectory(ARM, velocity=1.0, trials=0), "trials"),
     "NaN": (lambda: identify(ARM, np.full((2, 7), np.nan), *np.zeros((3, 2, 7))), "q "),
     "NaN torque": (lambda: identify(ARM, *np.zeros((3, 2, 7)), np.full((2, 7), np.nan)), "tau"),

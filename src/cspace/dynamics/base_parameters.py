@@ -20,7 +20,7 @@ from cspace.dynamics.regressor import (
     parameters,
 )
 from cspace.dynamics.rows import EARTH, check_gravity
-from cspace.kinematics.batch import Batch, rows_of
+from cspace.kinematics.batch import Batch, check_robot, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial import exp_so3
 from cspace.tables import align_cells, html_table, one_line, shown
@@ -88,10 +88,11 @@ def base_parameters(
 
     gravity (3,) [m/s²]: without it fewer parameters count. friction: with damping and dry friction.
 
-    Raises InputError for gravity of a wrong shape.
+    Raises InputError for gravity of a wrong shape, InputTypeError for what is not a robot.
 
     Gautier 1991; Khalil and Dombre 2002, section 9.4.
     """
+    check_robot(robot)
     down = check_gravity(gravity)
     R = triangular_factor(random_rows(robot), robot, down, friction)
     chosen, K = split_columns(R)

@@ -16,7 +16,7 @@ from cspace.dynamics.regressor import factor_columns, fill_regressor
 from cspace.dynamics.rows import EARTH, check_gravity
 from cspace.errors import InputError
 from cspace.kinematics import require_limits
-from cspace.kinematics.batch import rows_of
+from cspace.kinematics.batch import check_robot, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.tables import one_line
 from cspace.tolerances import LEAST_EXCITATION
@@ -109,19 +109,20 @@ def exciting_trajectory(
     one of its limits; of all the motion with the smallest condition number counts. Nothing is known of
     obstacles: check the motion before a robot follows it.
 
-    duration [s]: of one period. harmonics: of the series. velocity, acceleration: the largest ones, a number
+    duration [s]: of one period. harmonics: of the series, two or more. velocity, acceleration: the largest ones, a number
     or one per joint (n,), in place of those of the robot; accelerations may be unlimited. Joints without
     limits of position turn by up to π to both sides. gravity (3,), friction: as in identify. rate [Hz]: of
     the samples. trials: how many motions are compared. rng: seed or generator.
 
     Returns an ExcitingTrajectory.
     Raises InputError for a floating base, joints without a limit of velocity, a prismatic joint without
-    limits of position, and numbers out of range.
+    limits of position, and numbers out of range, InputTypeError for what is not a robot.
 
     Swevers et al. 1997.
     """
+    check_robot(robot)
     length, rate = positive_number(duration, "duration"), positive_number(rate, "rate")
-    count = whole_number(harmonics, "harmonics", 1, MOST_HARMONICS)
+    count = whole_number(harmonics, "harmonics", 2, MOST_HARMONICS)
     trials = whole_number(trials, "trials", 1, MOST_TRIALS)
     samples = whole_number(math.ceil(length * rate) + 1, "duration · rate", 2, MOST_SAMPLES)
     half, middle = position_ranges(robot)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, guard_memory
 from cspace.dynamics.rows import EARTH, check_gravity
 from cspace.kinematics import Assembly
-from cspace.kinematics.batch import Batch, refuse_infinite, rows_of
+from cspace.kinematics.batch import Batch, check_robot, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Description, tree
 from cspace.spatial.checks import PoseLike
@@ -100,9 +100,11 @@ def parameters(robot: KinematicModel, *, friction: bool = True) -> Array:
     their damping and their dry friction, the latter two only with friction.
 
     Returns π (n_parameters,).
+    Raises InputTypeError for what is not a robot.
     """
+    check_robot(robot)
     assembly = robot._assembly
-    rows = []
+    rows = [np.zeros(0)]
     for body in moving_bodies(assembly):
         k = body.joint + 1
         m, c = assembly.mass[k], body.R.T @ (assembly.center[k] - body.p)
@@ -114,6 +116,7 @@ def parameters(robot: KinematicModel, *, friction: bool = True) -> Array:
 
 def parameter_names(robot: KinematicModel, *, friction: bool = True) -> tuple[str, ...]:
     """The names of parameters(robot), such as m_forearm, Ixx_forearm and damping_elbow."""
+    check_robot(robot)
     joints = moving_joints(robot)
     bodies = [body.name or joints[body.joint] for body in moving_bodies(robot._assembly)]
     names = [f"{symbol}_{body}" for body in bodies for symbol in BODY]
@@ -153,7 +156,7 @@ def factor_columns(A: Array) -> Array:
 
 def cut_rows(batch: Batch, width: int) -> Iterator[Batch]:
     """The batch in parts whose regressors, of so many entries per row, have no more than CHUNK."""
-    step = max(1, CHUNK // width)
+    step = max(1, CHUNK // max(1, width))
     for begin in range(0, len(batch.q), step):
         part = slice(begin, begin + step)
         rows = {name: getattr(batch, name) for name in ("q", "qd", "qdd", "tau", "T_world_base")}
