@@ -13,7 +13,7 @@ import cspace as cs
 from cspace.dynamics import base_parameters, exciting_trajectory, identify, parameter_names, parameters
 from cspace.dynamics import possible_parameters as possible
 from cspace.dynamics.regressor import TENSOR
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.model import Description, Inertial, Joint, Link
 from cspace.tolerances import DEPENDENT_COLUMN
 from dynamics.bodies import hand_arm, random_body
@@ -379,6 +379,8 @@ BAD = {
     "shape": (lambda: identify(ARM, *np.zeros((3, 2, 7)), np.zeros((2, 6))), "tau has shape"),
     "lengths": (lambda: identify(ARM, *np.zeros((3, 2, 7)), np.zeros((3, 7))), "tau"),
     "gravity": (lambda: ARM.regressor(*np.zeros((3, 7)), gravity=[1, 2]), "gravity"),
+    "no joints": (lambda: base_parameters(cs.Robot(Description("stone", (Link("stone"),), ()))), "no joints"),
+    "a name": (lambda: base_parameters("ur5e"), "must be a Robot"),
     "NaN in q": (lambda: ARM.regressor(np.full(7, np.nan), *np.zeros((2, 7))), "q "),
 }
 ENDLESS = Description(
@@ -389,8 +391,24 @@ ENDLESS = Description(
 @pytest.mark.parametrize("name", BAD)
 def test_bad_arguments_are_named(name):
     call, message = BAD[name]
-    with pytest.raises(InputError, match=message):
+    with pytest.raises((InputError, InputTypeError), match=message):
         call()
+
+
+def test_a_free_body_shows_all_of_its_inertia(rng):
+    ball = cs.Robot(Description("ball", (Link("ball", random_body(rng)),), ()), floating=True)
+    motion, placed = random_motion(ball, rng, 30)
+    found = identify(ball, *motion, ball.inverse_dynamics(*motion, **placed), physical=True, **placed)
+    close(found.base, parameters(ball), 1e-12)
+    close(found.parameters, parameters(ball), 1e-9)
+
+
+def test_the_parts_of_a_planar_joint_are_joints(rng):
+    joints = (Joint("roll", "planar", "floor", "cart", random_pose(rng), (1, 2, 3)),)
+    cart = cs.Robot(Description("cart", (Link("floor"), Link("cart", random_body(rng))), joints))
+    motion, _ = random_motion(cart, rng, 5)
+    close(cart.regressor(*motion) @ parameters(cart), cart.inverse_dynamics(*motion), 1e-12)
+    assert {"m_roll/x", "m_cart", "damping_roll/turn"} <= set(parameter_names(cart))
 
 
 def test_no_samples_determine_nothing():

@@ -20,6 +20,7 @@ from cspace.dynamics.regressor import (
     parameters,
 )
 from cspace.dynamics.rows import EARTH, check_gravity
+from cspace.errors import InputError
 from cspace.kinematics.batch import Batch, check_robot, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial import exp_so3
@@ -88,11 +89,14 @@ def base_parameters(
 
     gravity (3,) [m/s²]: without it fewer parameters count. friction: with damping and dry friction.
 
-    Raises InputError for gravity of a wrong shape, InputTypeError for what is not a robot.
+    Raises InputError for gravity of a wrong shape and a robot without joints, InputTypeError for what is not a
+    robot.
 
     Gautier 1991; Khalil and Dombre 2002, section 9.4.
     """
     check_robot(robot)
+    if robot.dof == 0:
+        raise InputError(f"{robot.name} has no joints, so no torque depends on its masses")
     down = check_gravity(gravity)
     R = triangular_factor(random_rows(robot), robot, down, friction)
     chosen, K = split_columns(R)
@@ -109,7 +113,7 @@ def random_rows(robot: KinematicModel) -> Batch:
     """Random motions that excite every parameter which can be excited."""
     rng = np.random.default_rng(0)
     n, dof = len(robot.joint_names), robot.dof
-    rows = EQUATIONS * count_parameters(robot._assembly, True) // max(1, dof) + 1
+    rows = EQUATIONS * count_parameters(robot._assembly, True) // dof + 1
     reach = np.array([np.pi if kind == "R" else 1.0 for kind in robot.joint_types])
     T = np.tile(np.eye(4), (rows, 1, 1))
     T[:, :3, :3] = exp_so3(rng.normal(size=(rows, 3)) * FAST)

@@ -109,10 +109,10 @@ def exciting_trajectory(
     one of its limits; of all the motion with the smallest condition number counts. Nothing is known of
     obstacles: check the motion before a robot follows it.
 
-    duration [s]: of one period. harmonics: of the series, two or more. velocity, acceleration: the largest ones, a number
-    or one per joint (n,), in place of those of the robot; accelerations may be unlimited. Joints without
-    limits of position turn by up to π to both sides. gravity (3,), friction: as in identify. rate [Hz]: of
-    the samples. trials: how many motions are compared. rng: seed or generator.
+    duration [s]: of one period. harmonics: of the series, two or more. velocity, acceleration: the largest
+    ones, a number or one per joint (n,), in place of those of the robot; accelerations may be unlimited.
+    Joints without limits of position turn by up to π to both sides. gravity (3,), friction: as in identify.
+    rate [Hz]: of the samples. trials: how many motions are compared. rng: seed or generator.
 
     Returns an ExcitingTrajectory.
     Raises InputError for a floating base, joints without a limit of velocity, a prismatic joint without

@@ -116,7 +116,7 @@ def identify(
     the base is.
 
     Returns an Identification, falsy with the joints named where the motion leaves parameters undetermined.
-    Raises InputError for a wrong shape, NaN or no samples.
+    Raises InputError for a wrong shape or NaN and for a robot without joints.
 
     Gautier 1991; Swevers et al. 1997; for physical=True Rucker and Wensing 2022.
     """
