@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.dynamics import base_parameters, exciting_trajectory, identify, parameter_names, parameters
+from cspace.dynamics import (
+    base_parameters,
+    exciting_trajectory,
+    identify,
+    parameter_names,
+    parameters,
+    with_parameters,
+)
 from cspace.dynamics import possible_parameters as possible
 from cspace.dynamics.regressor import TENSOR
 from cspace.errors import InputError, InputTypeError
@@ -127,6 +134,20 @@ def test_parameters_are_in_the_frame_of_the_link():
         },
         abs=1e-14,
     )
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_robot_with_given_parameters_has_them(name, rng):
+    robot = CASES[name]
+    pi = parameters(robot)
+    motion, placed = random_motion(robot, rng, 3)
+    same = with_parameters(robot, pi)
+    close(same.inverse_dynamics(*motion, **placed), robot.inverse_dynamics(*motion, **placed), 1e-12)
+    close(parameters(with_parameters(robot, 2 * pi)), 2 * pi, 1e-12)
+    bare = parameters(robot, friction=False)
+    close(parameters(with_parameters(robot, 3 * bare)), np.concatenate([3 * bare, pi[len(bare) :]]), 1e-12)
+    assert same.name == robot.name
+    assert (same.base, same.tip, same.frames) == (robot.base, robot.tip, robot.frames)
 
 
 CHAINS = [name for name in CASES if "random" not in name]
@@ -292,7 +313,7 @@ def test_possible_parameters_belong_to_bodies_and_give_the_torques(start, rng):
     apart = base_parameters(ARM).matrix @ found.parameters - base_parameters(ARM).values
     assert (np.abs(apart) < 5 * found.errors).all()
     fresh, _ = random_motion(ARM, rng, 50)
-    left = ARM.regressor(*fresh) @ found.parameters - ARM.inverse_dynamics(*fresh)
+    left = with_parameters(robot, found.parameters).inverse_dynamics(*fresh) - ARM.inverse_dynamics(*fresh)
     assert (np.abs(left) < 5 * noise).all()
 
 
@@ -379,6 +400,8 @@ BAD = {
     "shape": (lambda: identify(ARM, *np.zeros((3, 2, 7)), np.zeros((2, 6))), "tau has shape"),
     "lengths": (lambda: identify(ARM, *np.zeros((3, 2, 7)), np.zeros((3, 7))), "tau"),
     "gravity": (lambda: ARM.regressor(*np.zeros((3, 7)), gravity=[1, 2]), "gravity"),
+    "number of parameters": (lambda: with_parameters(ARM, np.zeros(5)), "pi has 5 entries"),
+    "negative mass": (lambda: with_parameters(ARM, -parameters(ARM)), "m_link_1 is -"),
     "no joints": (lambda: base_parameters(cs.Robot(Description("stone", (Link("stone"),), ()))), "no joints"),
     "a name": (lambda: base_parameters("ur5e"), "must be a Robot"),
     "NaN in q": (lambda: ARM.regressor(np.full(7, np.nan), *np.zeros((2, 7))), "q "),

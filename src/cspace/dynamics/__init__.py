@@ -17,6 +17,7 @@ from cspace.dynamics.momentum import (
     potential_energy,
 )
 from cspace.dynamics.regressor import parameter_names, parameters, regressor
+from cspace.dynamics.with_parameters import with_parameters
 
 __all__ = [
     "BaseParameters",
@@ -42,4 +43,5 @@ __all__ = [
     "parameters",
     "potential_energy",
     "regressor",
+    "with_parameters",
 ]

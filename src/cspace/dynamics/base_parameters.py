@@ -89,8 +89,8 @@ def base_parameters(
 
     gravity (3,) [m/s²]: without it fewer parameters count. friction: with damping and dry friction.
 
-    Raises InputError for gravity of a wrong shape and a robot without joints, InputTypeError for what is not a
-    robot.
+    Raises InputError for gravity of a wrong shape and a robot without joints, InputTypeError for what is not
+    a robot.
 
     Gautier 1991; Khalil and Dombre 2002, section 9.4.
     """

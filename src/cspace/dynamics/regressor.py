@@ -22,6 +22,9 @@ from cspace.spatial.vectors import cross
 BODY: Final = ("m", "hx", "hy", "hz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz")
 """The parameters of a body: mass [kg], first moments m c [kg·m], inertia about the origin [kg·m²]."""
 
+RESISTANCES: Final = ("armature", "damping", "friction")
+"""The parameters of joints, in the order of their columns."""
+
 TENSOR: Final = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
 """Where the entries of a symmetric matrix stand among its six numbers, row by row."""
 
@@ -110,8 +113,8 @@ def parameters(robot: KinematicModel, *, friction: bool = True) -> Array:
         m, c = assembly.mass[k], body.R.T @ (assembly.center[k] - body.p)
         inertia = body.R.T @ assembly.inertia[k] @ body.R + m * (c @ c * np.eye(3) - np.outer(c, c))
         rows.append(np.concatenate([[m], m * c, inertia[np.triu_indices(3)]]))
-    resistances = (assembly.armature, *((assembly.damping, assembly.friction) if friction else ()))
-    return np.concatenate([*rows, *resistances])
+    kinds = RESISTANCES if friction else RESISTANCES[:1]
+    return np.concatenate([*rows, *(getattr(assembly, kind) for kind in kinds)])
 
 
 def parameter_names(robot: KinematicModel, *, friction: bool = True) -> tuple[str, ...]:
@@ -120,7 +123,7 @@ def parameter_names(robot: KinematicModel, *, friction: bool = True) -> tuple[st
     joints = moving_joints(robot)
     bodies = [body.name or joints[body.joint] for body in moving_bodies(robot._assembly)]
     names = [f"{symbol}_{body}" for body in bodies for symbol in BODY]
-    kinds = ("armature", *(("damping", "friction") if friction else ()))
+    kinds = RESISTANCES if friction else RESISTANCES[:1]
     return (*names, *(f"{kind}_{joint}" for kind in kinds for joint in joints))
 
 
