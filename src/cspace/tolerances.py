@@ -518,7 +518,7 @@ the smallest double."""
 
 DEPENDENT_COLUMN: Final = 1e-5
 """Length of what others leave of a column of a regressor of length one up to which it depends on them: angles
-of files with six digits leave 5e-6, a column of its own a tenth and more."""
+of files with six digits leave 5e-6, a column of its own a hundredth and more."""
 
 LEAST_EXCITATION: Final = 1e-6
 """Singular value of the equations of an identification, relative to the largest, up to which the data leave a
