@@ -33,6 +33,10 @@ EQUATIONS: Final = 4
 FAST: Final = 3.0
 """Spread of random velocities [rad/s or m/s]: the square is that of the accelerations and of gravity."""
 
+SHORT_COLUMN: Final = 0.1
+"""Share of the longest column that shorter ones are not scaled beyond: scaled to length one, the square of a
+small offset would weigh as much as gravity, and rounded angles of a file as much as links."""
+
 NEARLY_LARGEST: Final = 0.1
 """A column that is at least this share of the largest one left may be chosen before it: the choice is as
 stable, and the parameters of the first links keep their names."""
@@ -146,10 +150,9 @@ def split_columns(A: Array) -> tuple[npt.NDArray[np.intp], Array]:
     """Which columns of A (m, p) are independent, in rising order (b,), and K (b, p − b) with the others
     A₂ = A₁ K."""
     sizes = np.linalg.norm(A, axis=0)
-    present = sizes > DEPENDENT_COLUMN * sizes.max(initial=0.0)
-    sizes = np.where(present, sizes, 1.0)
-    rest = np.where(present, A / sizes, 0.0)
-    scaled, chosen = rest.copy(), []
+    sizes = np.maximum(sizes, SHORT_COLUMN * sizes.max(initial=0.0))
+    scaled = A / np.where(sizes > 0.0, sizes, 1.0)
+    rest, chosen = scaled.copy(), []
     while rest.size:
         lengths = np.linalg.norm(rest, axis=0)
         largest = lengths.max()
