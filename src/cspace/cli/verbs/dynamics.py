@@ -80,7 +80,8 @@ def run(args: argparse.Namespace, out: Output) -> int:
         "kinetic_energy": robot.kinetic_energy(q, qd),
         "potential_energy": robot.potential_energy(q, **gravity),
     }
-    warnings = [f"{fault.part}: {fault.fault}" for fault in robot.inertia_report().faults]
+    faults = [fault for fault in robot.inertia_report().faults if not fault.hint]
+    warnings = [f"{fault.part}: {fault.fault}" for fault in faults]
     if out.as_json:
         ends = {"robot": robot.name, "base": robot.base, "joints": list(robot.joint_names)}
         values = {name: np.asarray(value).tolist() for name, value in numbers.items()}
