@@ -1,0 +1,156 @@
+"""The variational midpoint step: symplectic, of order two, with the momenta that symmetries conserve.
+
+With the mean velocity w of a step from q_k to q_{k+1}, its middle q_m and L = T − V, the momenta at its ends are
+
+    p_k     = M(q_m) w − (h/2) ∂L/∂q(q_m, w) − (h/2) τ,
+    p_{k+1} = M(q_m) w + (h/2) ∂L/∂q(q_m, w) + (h/2) τ.
+
+The first equation is solved for w, the second continues. The orientation of a floating base moves by
+exp(h ω) R, its middle is exp(h ω/2) R, and its rows are carried to the ends by the Jacobians of the
+exponential. Source: Marsden and West 2001, sections 1.6 and 2.3; Bou-Rabee and Marsden 2009 for groups.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.dynamics.coriolis import coriolis_matrix
+from cspace.dynamics.inverse import gravity_torques
+from cspace.dynamics.mass_matrix import mass_matrix
+from cspace.dynamics.mechanics import Drive, Flags, Mechanics, State, advance
+from cspace.dynamics.rows import torques_of_wrenches
+from cspace.spatial import left_jacobian_inv_so3, left_jacobian_so3
+
+MOST_ITERATIONS: Final = 80
+"""Of Newton's method: each gains a digit or more at steps that resolve the motion; joints that change from
+sliding to sticking need some more."""
+
+CONVERGED: Final = 1e-14
+"""Last change of the mean velocity, relative to its size."""
+
+ROUNDED: Final = 1e-9
+"""Change, relative likewise, from which on one that no longer halves is rounding."""
+
+SMALL_DECAY: Final = 1e-2
+"""Decay h b / m below which the split of damping is that of its series, then exact to rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Middle:
+    """What acts in the middle of a step, (..., dof): momentum M w and impulse per time ∂L/∂q + τ; M."""
+
+    M: Array
+    momentum: Array
+    push: Array
+
+
+def step_variational(mechanics: Mechanics, state: State, drive: Drive, h: float) -> State:
+    """The state after one variational midpoint step; rows whose equation is not solved become NaN."""
+    M = mass_matrix(
+        mechanics.robot, state.q, T_world_base=state.T_world_base, threads=mechanics.threads
+    )
+    p = np.einsum("...ij,...j", M, state.qd)
+    late = split_resistance(mechanics, state.qd, M, h)
+    w, middle, failed = solve_step(mechanics, state, drive, h, p, late)
+    ahead = carry_momentum(mechanics, middle, w, h, 1.0) - late * h * mechanics.resistance(w)
+    zero = np.zeros_like(w)
+    end = advance(state, h * w, zero, mechanics.robot.floating)
+    if failed.any():
+        end = end.with_rows(failed, mechanics.rest(end))
+    M_end = mass_matrix(mechanics.robot, end.q, T_world_base=end.T_world_base, threads=mechanics.threads)
+    qd = np.linalg.solve(M_end, ahead[..., None])[..., 0]
+    return State(end.q, np.where(failed[..., None], np.nan, qd), end.T_world_base)
+
+
+def split_resistance(mechanics: Mechanics, qd: Array, M: Array, h: float) -> Array:
+    """Which part of the friction of a step acts at its end, (..., dof), the rest acting at its beginning.
+
+    One half where a step resolves the decay x = h b/m. In general 1/x − 1/(exp(x) − 1), so that one joint alone
+    decays by exp(−x) however stiff its damping is (exponential fitting; Liniger and Willoughby 1970).
+    """
+    speed = np.maximum(np.abs(qd), np.finfo(float).tiny)
+    sticking = np.minimum(mechanics.dry / mechanics.friction_speed, mechanics.dry / speed)
+    x = h * (mechanics.damping + sticking) / np.diagonal(M, axis1=-2, axis2=-1)
+    safe = np.clip(x, SMALL_DECAY, 700.0)  # exp(700) still is a double
+    result: Array = np.where(x < SMALL_DECAY, 0.5 - x / 12.0 + x**3 / 720.0, 1.0 / safe - 1.0 / np.expm1(safe))
+    return np.where(x > safe, 1.0 / np.maximum(x, 1.0), result)
+
+
+def solve_step(
+    mechanics: Mechanics, state: State, drive: Drive, h: float, p: Array, late: Array
+) -> tuple[Array, Middle, Flags]:
+    """The mean velocity of a step (..., dof), what acts in its middle, and which rows (...) have no solution.
+
+    Newton's method with M, and the slope of friction, in place of the exact slope. A joint with dry friction that
+    would change its direction stops first: from rest the iteration is monotone.
+    """
+    w, early = state.qd.copy(), (1.0 - late) * h
+    failed = state.wild()
+    size = change = np.full(failed.shape, np.inf)
+    diagonal = np.arange(mechanics.robot.dof)
+    for iteration in range(MOST_ITERATIONS):
+        middle, wild = find_middle(mechanics, state, drive, h, np.where(failed[..., None], 0.0, w))
+        failed = failed | wild
+        r = carry_momentum(mechanics, middle, w, h, -1.0) + early * mechanics.resistance(w) - p
+        A = middle.M.copy()
+        bend = 1.0 - np.tanh(w / mechanics.friction_speed) ** 2
+        A[..., diagonal, diagonal] += early * (
+            mechanics.damping + mechanics.dry / mechanics.friction_speed * bend
+        )
+        r = np.where(failed[..., None], 0.0, r)
+        after = w - np.linalg.solve(A, r[..., None])[..., 0]
+        after = np.where((mechanics.dry > 0.0) & (w * after < 0.0), 0.0, after)
+        last, change = change, np.abs(after - w).max(axis=-1)
+        if iteration == 0:
+            size = np.maximum(np.abs(w).max(axis=-1), change)
+        w = after
+        settled = (change <= CONVERGED * size) | ((change <= ROUNDED * size) & (change > 0.5 * last))
+        if (settled | failed).all():
+            break
+    failed = failed | ~settled
+    w = np.where(failed[..., None], 0.0, w)
+    middle, wild = find_middle(mechanics, state, drive, h, w)
+    return w, middle, failed | wild
+
+
+def find_middle(
+    mechanics: Mechanics, state: State, drive: Drive, h: float, w: Array
+) -> tuple[Middle, Flags]:
+    """What acts in the middle of a step of mean velocity w, and which rows (...) cannot be computed.
+
+    ∂L/∂q = Cᵀ q̇ − g, of the rotation of a base less ω × (M q̇): its velocity is kept in axes of the world.
+    """
+    robot, n = mechanics.robot, mechanics.threads
+    half = advance(state, 0.5 * h * w, w - state.qd, robot.floating)
+    wild = half.wild()
+    if wild.any():
+        half = half.with_rows(wild, mechanics.rest(half))
+    q, T = half.q, half.T_world_base
+    M = mass_matrix(robot, q, T_world_base=T, threads=n)
+    C = coriolis_matrix(robot, q, half.qd, T_world_base=T, threads=n)
+    momentum = np.einsum("...ij,...j", M, half.qd)
+    push = np.einsum("...ji,...j", C, half.qd) + drive.tau
+    push -= gravity_torques(robot, q, **mechanics.shared(half))
+    pull = torques_of_wrenches(robot, q, drive.wrenches, mechanics.expressed_in, T)
+    if pull is not None:
+        push = push + pull
+    if robot.floating:
+        push[..., 3:6] -= np.cross(half.qd[..., 3:6], momentum[..., 3:6])
+    return Middle(M, momentum, push), wild
+
+
+def carry_momentum(mechanics: Mechanics, middle: Middle, w: Array, h: float, sign: float) -> Array:
+    """The momentum (..., dof) at the end of a step (sign 1) or at its beginning (sign −1), without friction."""
+    result = middle.momentum + (0.5 * sign * h) * middle.push
+    if mechanics.robot.floating:
+        u = sign * h * w[..., 3:6]
+        far = ~(np.einsum("...i,...i", u, u) < np.pi**2)
+        u = np.where(far[..., None], 0.0, u)
+        half = np.einsum("...ji,...j", left_jacobian_so3(0.5 * u), middle.push[..., 3:6])
+        turning = middle.momentum[..., 3:6] + (0.5 * sign * h) * half
+        result[..., 3:6] = np.einsum("...ji,...j", left_jacobian_inv_so3(u), turning)
+    return result
