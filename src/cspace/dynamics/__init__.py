@@ -1,5 +1,6 @@
 """Dynamics: the masses of a robot, which torques make a motion, and how it moves under given torques."""
 
+from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.coriolis import coriolis_matrix
 from cspace.dynamics.derivatives import forward_dynamics_derivatives, inverse_dynamics_derivatives
 from cspace.dynamics.forward import forward_dynamics
@@ -13,10 +14,15 @@ from cspace.dynamics.momentum import (
     kinetic_energy,
     potential_energy,
 )
+from cspace.dynamics.simulate import simulate
+from cspace.dynamics.simulation import Simulation
 
 __all__ = [
+    "PD",
+    "ComputedTorque",
     "InertiaFault",
     "InertiaReport",
+    "Simulation",
     "centroidal_momentum",
     "centroidal_momentum_matrix",
     "coriolis_matrix",
@@ -29,4 +35,5 @@ __all__ = [
     "kinetic_energy",
     "mass_matrix",
     "potential_energy",
+    "simulate",
 ]
