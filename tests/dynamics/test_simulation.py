@@ -282,6 +282,15 @@ def test_stiff_damping_decays_exactly_with_the_variational_method(damping):
     np.testing.assert_allclose(run.qd[:, 0], expected, atol=1e-12)
 
 
+@pytest.mark.parametrize("damping", [1e-3, 1.0, 30.0, 1e3, 1e6])
+def test_a_torque_turns_a_stiffly_damped_rotor_as_exactly(damping):
+    run = damped_rotor(damping).simulate(
+        [0], [0], control=lambda *_: [3.0], duration=0.2, dt=0.01, method="variational"
+    )
+    expected = 3.0 / damping * -np.expm1(-damping / 0.2 * run.times)
+    np.testing.assert_allclose(run.qd[:, 0], expected, rtol=1e-11)
+
+
 def test_stiff_damping_breaks_rk4_with_a_reason_and_not_the_adaptive_method():
     run = damped_rotor(100.0).simulate([0], [2.0], duration=5.0, dt=0.02, method="rk4")
     assert not run
@@ -293,13 +302,15 @@ def test_stiff_damping_breaks_rk4_with_a_reason_and_not_the_adaptive_method():
 
 @pytest.mark.parametrize("method", ["variational", "adaptive"])
 def test_dry_friction_stops_a_rotor_when_its_energy_is_used_up(method):
+    speed = {"variational": 1e-6, "adaptive": 1e-3}[method]
     run = damped_rotor(0.0, 0.5).simulate(
-        [0], [2.0], duration=2.0, dt=0.01, method=method, friction_speed=1e-4
+        [0], [2.0], duration=1.2, dt=0.01, method=method, friction_speed=speed
     )
     stop = 2.0 * 0.2 / 0.5
     np.testing.assert_allclose(run.q[-1, 0], 0.5 * 0.2 * 2.0**2 / 0.5, rtol=0.01)
-    np.testing.assert_allclose(run.qd[run.times < stop - 0.05, 0], 2.0 - 2.5 * run.times[run.times < stop - 0.05], atol=1e-3)
-    assert np.abs(run.qd[run.times > stop + 0.05]).max() < 1e-4
+    slides = run.times < stop - 0.05
+    np.testing.assert_allclose(run.qd[slides, 0], 2.0 - 2.5 * run.times[slides], atol=3e-3)
+    assert np.abs(run.qd[run.times > stop + 0.05]).max() < 1e-3
 
 
 def test_dry_friction_holds_a_pendulum_that_gravity_cannot_move():
@@ -324,14 +335,14 @@ def test_joints_that_mimic_rub_too():
 def test_pd_with_gravity_brings_an_arm_to_its_goal(method, rng):
     robot = arm(1)
     goal = random_q(robot, rng)
-    inertia = np.diagonal(robot.mass_matrix(goal)).max()
-    control = PD(goal, kp=40.0 * inertia, kd=20.0 * inertia)
+    inertia = 1.0 / np.diagonal(np.linalg.inv(robot.mass_matrix(goal)))  # of each joint, the others free
+    control = PD(goal, kp=40.0 * inertia, kd=12.0 * inertia)
     start = goal + 0.3 * rng.normal(size=(2, 6))
-    run = robot.simulate(start, np.zeros((2, 6)), control=control, duration=10.0, dt=0.01, method=method, every=100)
+    run = robot.simulate(start, np.zeros((2, 6)), control=control, duration=5.0, dt=0.01, method=method, every=50)
     assert run
     np.testing.assert_allclose(run.q[:, -1], [goal, goal], atol=2e-2)
     assert np.abs(run.q[:, -1] - goal).max() < 0.1 * np.abs(start - goal).max()
-    np.testing.assert_array_equal(run.tau[0, 0], control(robot, 0.0, start[0], np.zeros(6)))
+    np.testing.assert_allclose(run.tau[0, 0], control(robot, 0.0, start[0], np.zeros(6)), rtol=1e-12)
 
 
 def wave(t):
@@ -369,8 +380,13 @@ def test_a_limit_ends_a_simulation_and_names_the_joint(method):
     assert (np.abs(run.q[:-1]) <= 1.0).all() and np.abs(run.q[-1]).max() > 1.0
     through = robot.simulate([0, 0], [0, 0], duration=3.0, dt=0.01, method=method)
     assert through.reason == "ended"
-    rows = robot.simulate([[0, 0], [0, 1.0]], [0, 0], duration=0.3, dt=0.01, stop_at_limits=True, gravity=[0, 0, 0], control=lambda t, q, qd: [[0, 0], [1.0, 0.0]])
-    assert rows.ended.tolist() == [True, True] or np.isnan(rows.q[1, -1]).all()
+    rows = robot.simulate(
+        [[0, 0], [0.5, 0]], [0, 0], duration=0.4, dt=0.01, method=method, stop_at_limits=True
+    )
+    assert rows and rows.ended.tolist() == [True, False] and rows.reason.endswith(" in row 1")
+    valid = rows.times <= rows.stopped[1]
+    assert np.isfinite(rows.q[0]).all() and np.isnan(rows.q[1, ~valid]).all()
+    assert valid.sum() > 10 and np.isfinite(rows.energy[1, valid]).all()
     with pytest.raises(InputError, match="'pivot_1' outside of its limits, -1 to 1"):
         robot.simulate([0, 1.5], [0, 0], duration=1.0, dt=0.01, stop_at_limits=True)
 

@@ -64,8 +64,8 @@ class Task:
 
     @property
     def held(self) -> bool:
-        """Whether something is held over each step, so that no step may reach over the next."""
-        return self.control is not None or callable(self.wrenches)
+        """Whether something is held over each step or looked at after it, so that no step may be longer."""
+        return self.control is not None or callable(self.wrenches) or self.stop_at_limits
 
     @property
     def late(self) -> bool:

@@ -5,7 +5,8 @@ With the mean velocity w of a step from q_k to q_{k+1}, its middle q_m and L = T
     p_k     = M(q_m) w − (h/2) ∂L/∂q(q_m, w) − (h/2) τ,
     p_{k+1} = M(q_m) w + (h/2) ∂L/∂q(q_m, w) + (h/2) τ.
 
-The first equation is solved for w, the second continues. The orientation of a floating base moves by
+The first equation is solved for w, the second continues. Friction is part of τ; a joint that it stops within a
+step takes more of its forces at the beginning than at the end. The orientation of a floating base moves by
 exp(h ω) R, its middle is exp(h ω/2) R, and its rows are carried to the ends by the Jacobians of the
 exponential. Source: Marsden and West 2001, sections 1.6 and 2.3; Bou-Rabee and Marsden 2009 for groups.
 """
@@ -41,7 +42,7 @@ SMALL_DECAY: Final = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Middle:
-    """What acts in the middle of a step, (..., dof): momentum M w and impulse per time ∂L/∂q + τ; M."""
+    """What acts in the middle of a step, (..., dof): the momentum M w, the forces ∂L/∂q + τ; and M."""
 
     M: Array
     momentum: Array
@@ -54,9 +55,9 @@ def step_variational(mechanics: Mechanics, state: State, drive: Drive, h: float)
         mechanics.robot, state.q, T_world_base=state.T_world_base, threads=mechanics.threads
     )
     p = np.einsum("...ij,...j", M, state.qd)
-    late = split_resistance(mechanics, state.qd, M, h)
+    late = split_forces(mechanics, state.qd, M, h)
     w, middle, failed = solve_step(mechanics, state, drive, h, p, late)
-    ahead = carry_momentum(mechanics, middle, w, h, 1.0) - late * h * mechanics.resistance(w)
+    ahead = carry_momentum(mechanics, middle, w, h * late)
     zero = np.zeros_like(w)
     end = advance(state, h * w, zero, mechanics.robot.floating)
     if failed.any():
@@ -66,11 +67,12 @@ def step_variational(mechanics: Mechanics, state: State, drive: Drive, h: float)
     return State(end.q, np.where(failed[..., None], np.nan, qd), end.T_world_base)
 
 
-def split_resistance(mechanics: Mechanics, qd: Array, M: Array, h: float) -> Array:
-    """Which part of the friction of a step acts at its end, (..., dof), the rest acting at its beginning.
+def split_forces(mechanics: Mechanics, qd: Array, M: Array, h: float) -> Array:
+    """Which part of the forces of a step acts at its end, (..., dof), the rest acting at its beginning.
 
-    One half where a step resolves the decay x = h b/m. In general 1/x − 1/(exp(x) − 1), so that one joint alone
-    decays by exp(−x) however stiff its damping is (exponential fitting; Liniger and Willoughby 1970).
+    One half without friction. In general 1/x − 1/(exp(x) − 1) with the decay x = h b/m, so that one joint alone
+    decays by exp(−x) however stiff its damping is, and to the right velocity under a constant torque
+    (exponential fitting; Liniger and Willoughby 1970). The order remains two.
     """
     speed = np.maximum(np.abs(qd), np.finfo(float).tiny)
     sticking = np.minimum(mechanics.dry / mechanics.friction_speed, mechanics.dry / speed)
@@ -88,14 +90,14 @@ def solve_step(
     Newton's method with M, and the slope of friction, in place of the exact slope. A joint with dry friction that
     would change its direction stops first: from rest the iteration is monotone.
     """
-    w, early = state.qd.copy(), (1.0 - late) * h
+    w, early = state.qd.copy(), h * (1.0 - late)
     failed = state.wild()
     size = change = np.full(failed.shape, np.inf)
     diagonal = np.arange(mechanics.robot.dof)
     for iteration in range(MOST_ITERATIONS):
         middle, wild = find_middle(mechanics, state, drive, h, np.where(failed[..., None], 0.0, w))
         failed = failed | wild
-        r = carry_momentum(mechanics, middle, w, h, -1.0) + early * mechanics.resistance(w) - p
+        r = carry_momentum(mechanics, middle, w, -early) - p
         A = middle.M.copy()
         bend = 1.0 - np.tanh(w / mechanics.friction_speed) ** 2
         A[..., diagonal, diagonal] += early * (
@@ -133,7 +135,7 @@ def find_middle(
     M = mass_matrix(robot, q, T_world_base=T, threads=n)
     C = coriolis_matrix(robot, q, half.qd, T_world_base=T, threads=n)
     momentum = np.einsum("...ij,...j", M, half.qd)
-    push = np.einsum("...ji,...j", C, half.qd) + drive.tau
+    push = np.einsum("...ji,...j", C, half.qd) + drive.tau - mechanics.resistance(half.qd)
     push -= gravity_torques(robot, q, **mechanics.shared(half))
     pull = torques_of_wrenches(robot, q, drive.wrenches, mechanics.expressed_in, T)
     if pull is not None:
@@ -143,14 +145,17 @@ def find_middle(
     return Middle(M, momentum, push), wild
 
 
-def carry_momentum(mechanics: Mechanics, middle: Middle, w: Array, h: float, sign: float) -> Array:
-    """The momentum (..., dof) at the end of a step (sign 1) or at its beginning (sign −1), without friction."""
-    result = middle.momentum + (0.5 * sign * h) * middle.push
+def carry_momentum(mechanics: Mechanics, middle: Middle, w: Array, times: Array) -> Array:
+    """The momentum (..., dof) at the end of a step or, with negative times, at its beginning.
+
+    times (..., dof) [s]: for how long the forces act from the middle on, one half of the step for a base.
+    """
+    result: Array = middle.momentum + times * middle.push
     if mechanics.robot.floating:
-        u = sign * h * w[..., 3:6]
+        u = 2.0 * times[..., 3:6] * w[..., 3:6]
         far = ~(np.einsum("...i,...i", u, u) < np.pi**2)
         u = np.where(far[..., None], 0.0, u)
         half = np.einsum("...ji,...j", left_jacobian_so3(0.5 * u), middle.push[..., 3:6])
-        turning = middle.momentum[..., 3:6] + (0.5 * sign * h) * half
+        turning = middle.momentum[..., 3:6] + times[..., 3:6] * half
         result[..., 3:6] = np.einsum("...ji,...j", left_jacobian_inv_so3(u), turning)
     return result
