@@ -107,9 +107,9 @@ def test_the_energy_drifts_with_rk4_and_not_with_the_variational_method():
 def test_a_pendulum_swings_with_the_period_of_the_elliptic_integral(method, amplitude):
     period = 4.0 * np.sqrt(1.0 / G) * ellipk(np.sin(amplitude / 2) ** 2)
     down = np.pi / 2  # a positive angle about y lowers the rod
-    steps = 4000
+    steps = 1000
     run = pendulum().simulate([down + amplitude], [0], duration=period, dt=period / steps, method=method)
-    tolerance = {"rk4": 1e-8, "variational": 1e-4, "adaptive": 1e-6}[method]
+    tolerance = {"rk4": 1e-7, "variational": 1e-3, "adaptive": 1e-6}[method]
     assert run.q[-1, 0] == pytest.approx(down + amplitude, abs=tolerance)
     assert run.q[steps // 2, 0] == pytest.approx(down - amplitude, abs=tolerance)
     assert len(run) == steps + 1 and run.times[-1] == period
@@ -194,7 +194,7 @@ def test_a_floating_robot_converges_with_the_order_of_the_method(method, order, 
 def test_a_body_that_spins_about_its_middle_axis_turns_over_and_keeps_its_momentum(method):
     robot = rigid_body()
     spin = np.array([0, 0, 0, 1e-3, 5.0, 0])
-    run = robot.simulate([], spin, duration=8.0, dt=0.01, method=method, gravity=np.zeros(3))
+    run = robot.simulate([], spin, duration=5.0, dt=0.01, method=method, gravity=np.zeros(3))
     L = robot.centroidal_momentum(run.q, run.qd, T_world_base=run.T_world_base)[:, 3:]
     exact = {"variational": 1e-12, "rk4": 1e-5, "adaptive": 1e-7}[method]
     np.testing.assert_allclose(L, np.broadcast_to(L[0], L.shape), atol=exact * 10.0)
@@ -338,7 +338,9 @@ def test_pd_with_gravity_brings_an_arm_to_its_goal(method, rng):
     inertia = 1.0 / np.diagonal(np.linalg.inv(robot.mass_matrix(goal)))  # of each joint, the others free
     control = PD(goal, kp=40.0 * inertia, kd=12.0 * inertia)
     start = goal + 0.3 * rng.normal(size=(2, 6))
-    run = robot.simulate(start, np.zeros((2, 6)), control=control, duration=5.0, dt=0.01, method=method, every=50)
+    run = robot.simulate(
+        start, np.zeros((2, 6)), control=control, duration=5.0, dt=0.01, method=method, every=50
+    )
     assert run
     np.testing.assert_allclose(run.q[:, -1], [goal, goal], atol=2e-2)
     assert np.abs(run.q[:, -1] - goal).max() < 0.1 * np.abs(start - goal).max()
@@ -443,11 +445,11 @@ def test_an_answer_is_one_line_a_table_and_can_be_pickled():
         ({"control": 3}, InputTypeError, "control is a int"),
         ({"control": lambda t, q, qd: [1.0]}, InputError, r"control at step 0 \(t = 0 s\) has shape \(1,\)"),
         ({"control": lambda t, q, qd: np.zeros((3, 2))}, InputError, r"shape \(3, 2\), expected \(2,\)"),
-        ({"control": lambda t, q, qd: None}, InputTypeError, "control at step 0"),
+        ({"control": lambda t, q, qd: None}, InputTypeError, "control at step 0.* is None"),
         (
             {"control": lambda t, q, qd: [0, np.nan if t > 0.015 else 0]},
             InputError,
-            r"control at step 2 \(t = 0.02 s\) holds nan at index 1",
+            r"control at step 2 \(t = 0.02 s\) holds nan at index",
         ),
         ({"control": PD([0, 0, 0], 1, 1)}, InputError, r"q_goal has shape \(3,\)"),
         ({"wrenches": {"nowhere": np.zeros(6)}}, UnknownNameError, "nowhere"),

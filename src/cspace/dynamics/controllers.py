@@ -53,7 +53,9 @@ class PD:
         goal = _check_count(self.q_goal, "q_goal", robot)
         joints = self.kp * (goal - q) - self.kd * qd[..., first:]  # type: ignore[operator]
         if self.gravity_compensation:
-            joints = joints + gravity_torques(robot, q, gravity=gravity, T_world_base=T_world_base)[..., first:]
+            joints = (
+                joints + gravity_torques(robot, q, gravity=gravity, T_world_base=T_world_base)[..., first:]
+            )
         tau = np.zeros((*joints.shape[:-1], robot.dof))
         tau[..., first:] = joints
         return tau
@@ -97,7 +99,9 @@ class ComputedTorque:
     ) -> Array:
         """The torques (..., dof) at q (..., n) and qd (..., dof)."""
         if robot.floating:
-            raise InputError(f"the base of {robot.name} floats; no torque of a joint accelerates it as wanted")
+            raise InputError(
+                f"the base of {robot.name} floats; no torque of a joint accelerates it as wanted"
+            )
         q_d, qd_d, qdd_d = (
             _check_count(as_floats(value, f"{name} of the motion at t = {t:g} s"), name, robot)
             for name, value in zip(("q", "qd", "qdd"), self.motion(t), strict=True)
@@ -119,5 +123,7 @@ def _check_gain(value: ArrayLike, name: str) -> Array:
 def _check_count(value: ArrayLike, name: str, robot: KinematicModel) -> Array:
     array, n = np.asarray(value), len(robot.joint_names)
     if array.ndim == 0 or array.shape[-1] != n:
-        raise InputError(f"{name} has shape {array.shape}, expected (..., {n}): one value per joint of {robot.name}")
+        raise InputError(
+            f"{name} has shape {array.shape}, expected (..., {n}): one value per joint of {robot.name}"
+        )
     return array

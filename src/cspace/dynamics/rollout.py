@@ -25,7 +25,7 @@ from cspace.dynamics.mechanics import Drive, Flags, Mechanics, State, WrenchLaw,
 from cspace.dynamics.rows import Wrenches
 from cspace.dynamics.simulation import Piece
 from cspace.dynamics.variational_step import step_variational
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 
 Control = Callable[[float, Array, Array], ArrayLike] | PD | ComputedTorque
 
@@ -104,6 +104,8 @@ class Task:
 
 def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
     """What a control returned as (..., dof); InputError for another shape or NaN."""
+    if tau is None:
+        raise InputTypeError(f"{subject} is None; a control returns the torques")
     array = as_floats(tau, subject)
     fits = array.shape[-1:] == shape[-1:] and array.ndim <= len(shape)
     fits = fits and all(n in (1, m) for n, m in zip(array.shape[::-1], shape[::-1], strict=False))

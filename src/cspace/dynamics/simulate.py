@@ -117,7 +117,9 @@ def simulate(
         for value, subject in ((duration, "duration"), (dt, "dt"))
     )
     if length / step > MOST_STEPS:
-        raise InputError(f"dt is {step:g} s; {length:g} s then take {length / step:.3g} steps, at most 1e12 are possible")
+        raise InputError(
+            f"dt is {step:g} s; {length:g} s then take {length / step:.3g} steps, at most 1e12 are possible"
+        )
     steps = max(1, math.ceil(length / step - WHOLE_STEP))
     late = math.inf if time_limit is None else perf_counter() + positive_number(time_limit, "time_limit")
     task = Task(
@@ -220,7 +222,9 @@ def _find_energy(task: Task, q: Array, qd: Array, T: Array | None) -> Array:
 def _name_reason(task: Task, record: Record, method: str) -> str:
     """How the simulation ended: its first row that did not come to its end, those that broke down before others."""
     status = record.status.ravel()
-    order = [int(row) for code in (BROKEN, OUT_OF_TIME, AT_LIMIT) for row in np.flatnonzero(status == code)[:1]]
+    order = [
+        int(row) for code in (BROKEN, OUT_OF_TIME, AT_LIMIT) for row in np.flatnonzero(status == code)[:1]
+    ]
     if not order:
         return "ended"
     row = order[0]
@@ -238,7 +242,9 @@ def _advise(task: Task, method: str) -> str:
     stiff = task.mechanics.damping + task.mechanics.dry / task.mechanics.friction_speed
     if method == "rk4" and stiff.any():
         M = mass_matrix(task.mechanics.robot, task.start.q, T_world_base=task.start.T_world_base)
-        rates = (stiff * np.diagonal(np.linalg.inv(M), axis1=-2, axis2=-1)).reshape(-1, len(stiff)).max(axis=0)
+        rates = (
+            (stiff * np.diagonal(np.linalg.inv(M), axis1=-2, axis2=-1)).reshape(-1, len(stiff)).max(axis=0)
+        )
         fastest = int(rates.argmax())
         if task.dt * rates[fastest] > STIFF:
             first = len(stiff) - len(task.mechanics.robot.joint_names)

@@ -13,6 +13,7 @@ from cspace.errors import InputError
 from cspace.spatial import left_jacobian_inv_so3, left_jacobian_so3, log_so3
 from cspace.tables import count_things, html_table, one_line, shown
 
+
 @dataclass(frozen=True, eq=False)
 class Piece:
     """The motion between two times as polynomials of θ = (t − begin) / h, from 0 to 1.

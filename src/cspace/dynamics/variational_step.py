@@ -51,9 +51,7 @@ class Middle:
 
 def step_variational(mechanics: Mechanics, state: State, drive: Drive, h: float) -> State:
     """The state after one variational midpoint step; rows whose equation is not solved become NaN."""
-    M = mass_matrix(
-        mechanics.robot, state.q, T_world_base=state.T_world_base, threads=mechanics.threads
-    )
+    M = mass_matrix(mechanics.robot, state.q, T_world_base=state.T_world_base, threads=mechanics.threads)
     p = np.einsum("...ij,...j", M, state.qd)
     late = split_forces(mechanics, state.qd, M, h)
     w, middle, failed = solve_step(mechanics, state, drive, h, p, late)
@@ -78,7 +76,9 @@ def split_forces(mechanics: Mechanics, qd: Array, M: Array, h: float) -> Array:
     sticking = np.minimum(mechanics.dry / mechanics.friction_speed, mechanics.dry / speed)
     x = h * (mechanics.damping + sticking) / np.diagonal(M, axis1=-2, axis2=-1)
     safe = np.clip(x, SMALL_DECAY, 700.0)  # exp(700) still is a double
-    result: Array = np.where(x < SMALL_DECAY, 0.5 - x / 12.0 + x**3 / 720.0, 1.0 / safe - 1.0 / np.expm1(safe))
+    result: Array = np.where(
+        x < SMALL_DECAY, 0.5 - x / 12.0 + x**3 / 720.0, 1.0 / safe - 1.0 / np.expm1(safe)
+    )
     return np.where(x > safe, 1.0 / np.maximum(x, 1.0), result)
 
 
@@ -119,9 +119,7 @@ def solve_step(
     return w, middle, failed | wild
 
 
-def find_middle(
-    mechanics: Mechanics, state: State, drive: Drive, h: float, w: Array
-) -> tuple[Middle, Flags]:
+def find_middle(mechanics: Mechanics, state: State, drive: Drive, h: float, w: Array) -> tuple[Middle, Flags]:
     """What acts in the middle of a step of mean velocity w, and which rows (...) cannot be computed.
 
     ∂L/∂q = Cᵀ q̇ − g, of the rotation of a base less ω × (M q̇): its velocity is kept in axes of the world.
