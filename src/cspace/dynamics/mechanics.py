@@ -20,7 +20,8 @@ WrenchLaw = Callable[[float, Array, Array], Wrenches]
 """(t, q, qd) → the wrenches from time t on."""
 
 LARGEST_STATE: Final = 1e50
-"""Largest coordinate or velocity of a state: the square of a velocity times any inertia still fits a double."""
+"""Largest coordinate or velocity of a state: the square of a velocity times any inertia still fits a
+double."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +62,8 @@ class Mechanics:
     """A robot and what acts on it at every time.
 
     gravity (3,) [m/s²]. expressed_in: the axes of wrenches. damping (dof,) [N·m·s/rad or N·s/m] and dry
-    (dof,) [N·m or N]: the friction of the joints, zero for a floating base. friction_speed: where dry friction
-    has 76 % of its value [rad/s or m/s].
+    (dof,) [N·m or N]: the friction of the joints, zero for a floating base. friction_speed: where dry
+    friction has 76 % of its value [rad/s or m/s].
     """
 
     robot: KinematicModel
@@ -136,7 +137,8 @@ def advance(state: State, dx: Array, dv: Array, floating: bool) -> State:
 
 
 def displacement_rate(state: State, dx: Array, floating: bool) -> Array:
-    """The rate of the displacement dx (..., dof) that led to a state: qd, where u' = J⁻¹(u) ω for a rotation."""
+    """The rate of the displacement dx (..., dof) that led to a state: qd, where u' = J⁻¹(u) ω for a
+    rotation."""
     if not floating:
         return state.qd
     u = dx[..., 3:6]

@@ -42,13 +42,14 @@ SHORTEST_STEP: Final = 1e-13
 """Of the adaptive method, relative to the time and to dt: below it time no longer advances."""
 
 RUNNING, ENDED, AT_LIMIT, BROKEN, OUT_OF_TIME = range(5)
-"""How a row stands: before its end, after its duration, at a limit of a joint, without a next state, or cut off by
-the time limit."""
+"""How a row stands: before its end, after its duration, at a limit of a joint, without a next state, or cut
+off by the time limit."""
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """The arguments of a simulation, checked; steps is how many of length dt, the last one up to the duration."""
+    """The arguments of a simulation, checked; steps is how many of length dt, the last one up to the
+    duration."""
 
     mechanics: Mechanics
     start: State
@@ -95,8 +96,8 @@ class Task:
         if self.control is None:
             return np.zeros_like(qd)
         if isinstance(self.control, PD | ComputedTorque):
-            more = {"gravity": self.mechanics.gravity, "T_world_base": state.T_world_base}
-            tau: Any = self.control(self.mechanics.robot, t, q, qd, **more)
+            gravity, T = self.mechanics.gravity, state.T_world_base
+            tau: Any = self.control(self.mechanics.robot, t, q, qd, gravity=gravity, T_world_base=T)
         else:
             tau = self.control(t, q, qd)
         return check_torques(tau, qd.shape, f"the torque of control at step {k} (t = {t:g} s)")
@@ -111,14 +112,15 @@ def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
     fits = fits and all(n in (1, m) for n, m in zip(array.shape[::-1], shape[::-1], strict=False))
     if not fits:
         raise InputError(
-            f"{subject} has shape {array.shape}, expected {shape}: one torque or force per joint, of a floating"
-            " base its wrench [f; n] first"
+            f"{subject} has shape {array.shape}, expected {shape}: one torque or force per joint,"
+            " of a floating base its wrench [f; n] first"
         )
     return np.broadcast_to(array, shape)
 
 
 class Record:
-    """The states of a simulation as they come: times (k,), arrays (..., k, …), and how each row (...) stands."""
+    """The states of a simulation as they come: times (k,), arrays (..., k, …), and how each row (...)
+    stands."""
 
     def __init__(self, task: Task) -> None:
         start, count = task.start, -(-task.steps // task.every) + 1
@@ -273,7 +275,8 @@ def make_piece(t: float, state: State, stages: Stages) -> Piece:
 def write_between(
     task: Task, record: Record, piece: Piece, t: float, t_after: float, ends: tuple[int, int], tau: Array
 ) -> None:
-    """Record the states after t, up to the end of a step, that lie strictly within an interval of smooth motion."""
+    """Record the states after t, up to the end of a step, that lie strictly within an interval of smooth
+    motion."""
     begin, end = ends
     k = max(begin + 1, int(t / task.dt))
     k += -k % task.every

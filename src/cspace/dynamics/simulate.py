@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from time import perf_counter
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,7 +47,8 @@ WHOLE_STEP: Final = 1e-9
 """Part of a step by which a duration may exceed a whole number of steps: rounding of their quotient."""
 
 STIFF: Final = 2.0
-"""Decays of a joint within one step from which on explicit methods are unstable: 2.8 for RK4, less with others."""
+"""Decays of a joint within one step from which on explicit methods are unstable: 2.8 for RK4, less with
+others."""
 
 
 def simulate(
@@ -73,22 +74,22 @@ def simulate(
 ) -> Simulation:
     """The motion of a robot from a state on, under torques, gravity, friction and wrenches.
 
-    q (..., n) [rad or m], qd (..., dof): the state at time zero; leading axes are motions that run side by side.
-    control: t, q, qd → tau (..., dof), called once per step and held over it; PD and ComputedTorque are such;
-    None for no torques. duration [s]; dt [s]: the step. The last one ends with the duration.
+    q (..., n) [rad or m], qd (..., dof): the state at time zero; leading axes are motions that run side by
+    side. control: t, q, qd → tau (..., dof), called once per step and held over it; PD and ComputedTorque are
+    such; None for no torques. duration [s]; dt [s]: the step. The last one ends with the duration.
 
-    method: "rk4", the classical Runge–Kutta method, of order four; "variational", the variational midpoint rule
-    of order two, whose energy does not drift and which conserves momenta; or "adaptive", the method of Dormand
-    and Prince with steps that keep the local error below `tolerance`, absolute and relative. Its states at
-    multiples of dt are interpolated, and without control its steps may be longer.
+    method: "rk4", the classical Runge–Kutta method, of order four; "variational", the variational midpoint
+    rule of order two, whose energy does not drift and which conserves momenta; or "adaptive", the method of
+    Dormand and Prince with steps that keep the local error below `tolerance`, absolute and relative. Its
+    states at multiples of dt are interpolated, and without control its steps may be longer.
 
     gravity (3,) [m/s²]. wrenches: frame → (..., 6), constant, or a function of t, q and qd that returns them,
-    held over a step; expressed_in: as in forward_dynamics. friction: damping and dry friction of the joints; the
-    latter is f tanh(q̇ / friction_speed), so joints creep instead of sticking. The variational method takes it
-    implicitly; the others need steps shorter than the decay times of damped joints. T_world_base (..., 4, 4):
-    where a floating base starts, or a fixed one stands. every: of so many states one is recorded, and the last.
-    stop_at_limits: end where a joint passes one of its limits; otherwise limits do not count. time_limit [s]:
-    of the computation. threads: as in fk.
+    held over a step; expressed_in: as in forward_dynamics. friction: damping and dry friction of the joints;
+    the latter is f tanh(q̇ / friction_speed), so joints creep instead of sticking. The variational method
+    takes it implicitly; the others need steps shorter than the decay times of damped joints. T_world_base
+    (..., 4, 4): where a floating base starts, or a fixed one stands. every: of so many states one is
+    recorded, and the last. stop_at_limits: end where a joint passes one of its limits; otherwise limits do
+    not count. time_limit [s]: of the computation. threads: as in fk.
 
     Returns a Simulation, which is falsy with a reason if it broke down.
     Raises InputError for a wrong shape or NaN, also of what control returns, for steps and durations that are
@@ -98,11 +99,13 @@ def simulate(
     Marsden and West 2001 (variational); Dormand and Prince 1980 (adaptive).
     """
     name = check_choice(method, "method", METHODS)
+    damping, dry = resistances(robot) if friction else np.zeros((2, robot.dof))
     mechanics = Mechanics(
         robot,
         check_gravity(gravity),
         check_choice(expressed_in, "expressed_in", ("base", "tip")),
-        *(resistances(robot) if friction else np.zeros((2, robot.dof))),
+        damping,
+        dry,
         positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]"),
         threads,
     )
@@ -113,7 +116,7 @@ def simulate(
             " or dynamics.PD or dynamics.ComputedTorque"
         )
     length, step = (
-        positive_number(value, subject, f"it must be one positive number [s]")
+        positive_number(value, subject, "it must be one positive number [s]")
         for value, subject in ((duration, "duration"), (dt, "dt"))
     )
     if length / step > MOST_STEPS:
@@ -220,7 +223,8 @@ def _find_energy(task: Task, q: Array, qd: Array, T: Array | None) -> Array:
 
 
 def _name_reason(task: Task, record: Record, method: str) -> str:
-    """How the simulation ended: its first row that did not come to its end, those that broke down before others."""
+    """How the simulation ended: its first row that did not come to its end, those that broke down before
+    others."""
     status = record.status.ravel()
     order = [
         int(row) for code in (BROKEN, OUT_OF_TIME, AT_LIMIT) for row in np.flatnonzero(status == code)[:1]
@@ -250,7 +254,7 @@ def _advise(task: Task, method: str) -> str:
             first = len(stiff) - len(task.mechanics.robot.joint_names)
             joint = task.mechanics.robot.joint_names[fastest - first]
             return (
-                f"the friction of joint {joint!r} stops it within {1.0 / rates[fastest]:.2g} s; use a shorter dt"
-                ' or method="variational"'
+                f"the friction of joint {joint!r} stops it within {1.0 / rates[fastest]:.2g} s; use a"
+                ' shorter dt or method="variational"'
             )
     return "use a shorter dt" if method != "adaptive" else "the motion has no end there"

@@ -42,13 +42,14 @@ class Piece:
 class Simulation:
     """The motion of a robot under forces; falsy if it broke down before its end.
 
-    robot, method: names. times (k,) [s]: 0 first, the end last. q (..., k, n) [rad or m], qd (..., k, dof): the
-    states. tau (..., k, dof) [N·m or N]: the torques of the control, held from each time on. energy (..., k) [J]:
-    kinetic and potential energy of the links. T_world_base (..., k, 4, 4): the poses of a floating base, None
-    for a fixed one. A row of a batch that ended early is NaN from then on.
+    robot, method: names. times (k,) [s]: 0 first, the end last. q (..., k, n) [rad or m], qd (..., k, dof):
+    the states. tau (..., k, dof) [N·m or N]: the torques of the control, held from each time on. energy (...,
+    k) [J]: kinetic and potential energy of the links. T_world_base (..., k, 4, 4): the poses of a floating
+    base, None for a fixed one. A row of a batch that ended early is NaN from then on.
 
-    stopped (...) [s]: how far each row came. reason: "ended", "limit reached: …" with the joint, "not finite: …",
-    "not solved: …" or "time limit", of the first row that did not end. ended (...): which rows came to their end.
+    stopped (...) [s]: how far each row came. reason: "ended", "limit reached: …" with the joint, "not finite:
+    …", "not solved: …" or "time limit", of the first row that did not end. ended (...): which rows came to
+    their end.
     """
 
     robot: str

@@ -1,12 +1,13 @@
-"""The variational midpoint step: symplectic, of order two, with the momenta that symmetries conserve.
+"""The variational midpoint step, of order two: without friction it is symplectic and conserves momenta.
 
-With the mean velocity w of a step from q_k to q_{k+1}, its middle q_m and L = T − V, the momenta at its ends are
+With the mean velocity w of a step from q_k to q_{k+1}, its middle q_m and L = T − V, the momenta at the ends
+are
 
     p_k     = M(q_m) w − (h/2) ∂L/∂q(q_m, w) − (h/2) τ,
     p_{k+1} = M(q_m) w + (h/2) ∂L/∂q(q_m, w) + (h/2) τ.
 
-The first equation is solved for w, the second continues. Friction is part of τ; a joint that it stops within a
-step takes more of its forces at the beginning than at the end. The orientation of a floating base moves by
+The first equation is solved for w, the second continues. Friction is part of τ; a joint that it stops within
+a step takes more of its forces at the beginning than at the end. The orientation of a floating base moves by
 exp(h ω) R, its middle is exp(h ω/2) R, and its rows are carried to the ends by the Jacobians of the
 exponential. Source: Marsden and West 2001, sections 1.6 and 2.3; Bou-Rabee and Marsden 2009 for groups.
 """
@@ -68,12 +69,11 @@ def step_variational(mechanics: Mechanics, state: State, drive: Drive, h: float)
 def split_forces(mechanics: Mechanics, qd: Array, M: Array, h: float) -> Array:
     """Which part of the forces of a step acts at its end, (..., dof), the rest acting at its beginning.
 
-    One half without friction. In general 1/x − 1/(exp(x) − 1) with the decay x = h b/m, so that one joint alone
-    decays by exp(−x) however stiff its damping is, and to the right velocity under a constant torque
+    One half without friction. In general 1/x − 1/(exp(x) − 1) with the decay x = h b/m, so that one joint
+    alone decays by exp(−x) however stiff its damping is, and to the right velocity under a constant torque
     (exponential fitting; Liniger and Willoughby 1970). The order remains two.
     """
-    speed = np.maximum(np.abs(qd), np.finfo(float).tiny)
-    sticking = np.minimum(mechanics.dry / mechanics.friction_speed, mechanics.dry / speed)
+    sticking = mechanics.dry / np.maximum(np.abs(qd), mechanics.friction_speed)
     x = h * (mechanics.damping + sticking) / np.diagonal(M, axis1=-2, axis2=-1)
     safe = np.clip(x, SMALL_DECAY, 700.0)  # exp(700) still is a double
     result: Array = np.where(
@@ -87,8 +87,8 @@ def solve_step(
 ) -> tuple[Array, Middle, Flags]:
     """The mean velocity of a step (..., dof), what acts in its middle, and which rows (...) have no solution.
 
-    Newton's method with M, and the slope of friction, in place of the exact slope. A joint with dry friction that
-    would change its direction stops first: from rest the iteration is monotone.
+    Newton's method with M, and the slope of friction, in place of the exact slope. A joint with dry friction
+    that would change its direction stops first: from rest the iteration is monotone.
     """
     w, early = state.qd.copy(), h * (1.0 - late)
     failed = state.wild()
