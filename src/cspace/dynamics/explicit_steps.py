@@ -64,10 +64,10 @@ class Stages:
 
     def changes(self, weights: Sequence[float]) -> tuple[Array, Array]:
         """h times the weighted sums of the rates."""
-        return self.h * weigh(weights, self.xs), self.h * weigh(weights, self.vs)
+        return self.h * weigh_rates(weights, self.xs), self.h * weigh_rates(weights, self.vs)
 
 
-def weigh(weights: Sequence[float], rates: Sequence[Array]) -> Array:
+def weigh_rates(weights: Sequence[float], rates: Sequence[Array]) -> Array:
     """The weighted sum of rates (..., dof)."""
     total = np.zeros_like(rates[0])
     for weight, rate in zip(weights, rates, strict=False):

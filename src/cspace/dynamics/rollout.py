@@ -26,6 +26,7 @@ from cspace.dynamics.rows import Wrenches
 from cspace.dynamics.simulation import Piece
 from cspace.dynamics.variational_step import step_variational
 from cspace.errors import InputError, InputTypeError
+from cspace.tolerances import SHORTEST_STEP
 
 Control = Callable[[float, Array, Array], ArrayLike] | PD | ComputedTorque
 
@@ -37,9 +38,6 @@ STEP_SAFETY, SLOWEST, FASTEST = 0.9, 0.2, 5.0
 
 ERROR_ORDER: Final = 5
 """The power of the step with which the error of one step falls."""
-
-SHORTEST_STEP: Final = 1e-13
-"""Of the adaptive method, relative to the time and to dt: below it time no longer advances."""
 
 RUNNING, ENDED, AT_LIMIT, BROKEN, OUT_OF_TIME = range(5)
 """How a row stands: before its end, after its duration, at a limit of a joint, without a next state, or cut

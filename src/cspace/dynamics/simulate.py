@@ -28,23 +28,18 @@ from cspace.dynamics.rollout import (
 from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows
 from cspace.dynamics.simulation import Simulation
 from cspace.errors import InputError, InputTypeError
-from cspace.kinematics.batch import check_choice, refuse_infinite
+from cspace.kinematics.batch import check_choice, check_robot, refuse_infinite
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
+from cspace.tolerances import WHOLE_STEP
 
 METHODS: Final = (*STEPS, "adaptive")
 
 FRICTION_SPEED: Final = 1e-2
 """Where dry friction has 76 % of its value [rad/s or m/s]: a hundredth of the speeds at which arms work."""
 
-TOLERANCE: Final = 1e-9
-"""Local error of the adaptive method, absolute and relative: such runs serve as a reference of the others."""
-
 MOST_STEPS: Final = 10**12
 """Of a simulation: years of computation, and the times of neighbouring steps still differ."""
-
-WHOLE_STEP: Final = 1e-9
-"""Part of a step by which a duration may exceed a whole number of steps: rounding of their quotient."""
 
 STIFF: Final = 2.0
 """Decays of a joint within one step from which on explicit methods are unstable: 2.8 for RK4, less with
@@ -68,7 +63,7 @@ def simulate(
     T_world_base: PoseLike | None = None,
     every: int = 1,
     stop_at_limits: bool = False,
-    tolerance: float = TOLERANCE,
+    tolerance: float = 1e-9,
     time_limit: float | None = None,
     threads: int | None = None,
 ) -> Simulation:
@@ -99,8 +94,30 @@ def simulate(
     Marsden and West 2001 (variational); Dormand and Prince 1980 (adaptive).
     """
     name = check_choice(method, "method", METHODS)
+    mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
+    start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
+    task = _make_task(
+        mechanics, start, control, wrenches, duration, dt, every, stop_at_limits, tolerance, time_limit
+    )
+    mechanics.accelerations(start, Drive(np.zeros_like(start.qd), None))  # raises where M is singular
+    numbers = task.steps / task.every * start.qd.size * (16.0 if robot.floating else 4.0)
+    with guard_memory("duration / dt", f"{task.steps} steps", numbers, "record fewer states (every=)"):
+        record = run_adaptive_steps(task) if name == "adaptive" else run_fixed_steps(task, name)
+        return _make_answer(task, record, name)
+
+
+def _make_mechanics(
+    robot: KinematicModel,
+    gravity: ArrayLike,
+    expressed_in: str,
+    friction: bool,
+    friction_speed: float,
+    threads: int | None,
+) -> Mechanics:
+    """What acts on a robot at every time, checked."""
+    check_robot(robot)
     damping, dry = resistances(robot) if friction else np.zeros((2, robot.dof))
-    mechanics = Mechanics(
+    return Mechanics(
         robot,
         check_gravity(gravity),
         check_choice(expressed_in, "expressed_in", ("base", "tip")),
@@ -109,40 +126,46 @@ def simulate(
         positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]"),
         threads,
     )
-    start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
+
+
+def _make_task(
+    mechanics: Mechanics,
+    start: State,
+    control: Control | None,
+    wrenches: Wrenches | WrenchLaw | None,
+    duration: float,
+    dt: float,
+    every: int,
+    stop_at_limits: bool,
+    tolerance: float,
+    time_limit: float | None,
+) -> Task:
+    """The arguments of a simulation, checked."""
     if control is not None and not callable(control):
         raise InputTypeError(
             f"control is a {type(control).__name__}, expected a function of t, q and qd that returns torques,"
             " or dynamics.PD or dynamics.ComputedTorque"
         )
-    length, step = (
-        positive_number(value, subject, "it must be one positive number [s]")
-        for value, subject in ((duration, "duration"), (dt, "dt"))
-    )
+    length = positive_number(duration, "duration", "it must be one positive number [s]")
+    step = positive_number(dt, "dt", "it must be one positive number [s]")
     if length / step > MOST_STEPS:
         raise InputError(
-            f"dt is {step:g} s; {length:g} s then take {length / step:.3g} steps, at most 1e12 are possible"
+            f"dt is {step:g} s; {length:g} s then take {length / step:.3g} steps, of {MOST_STEPS:g} at most"
         )
-    steps = max(1, math.ceil(length / step - WHOLE_STEP))
     late = math.inf if time_limit is None else perf_counter() + positive_number(time_limit, "time_limit")
-    task = Task(
+    return Task(
         mechanics,
         start,
         control,
         wrenches,
         length,
         step,
-        steps,
+        max(1, math.ceil(length / step - WHOLE_STEP)),
         whole_number(every, "every", 1, MOST_STEPS),
         stop_at_limits,
         positive_number(tolerance, "tolerance"),
         late,
     )
-    mechanics.accelerations(start, Drive(np.zeros_like(start.qd), None))  # raises where M is singular
-    numbers = steps / task.every * start.qd.size * (16.0 if robot.floating else 4.0)
-    with guard_memory("duration / dt", f"{steps} steps", numbers, "record fewer states (every=)"):
-        record = run_adaptive_steps(task) if name == "adaptive" else run_fixed_steps(task, name)
-        return _make_answer(task, record, name)
 
 
 def _check_start(

@@ -26,16 +26,14 @@ from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.mechanics import Drive, Flags, Mechanics, State, advance
 from cspace.dynamics.rows import torques_of_wrenches
 from cspace.spatial import left_jacobian_inv_so3, left_jacobian_so3
+from cspace.tolerances import STEP_CONVERGED, STEP_ROUNDED
 
 MOST_ITERATIONS: Final = 80
 """Of Newton's method: each gains a digit or more at steps that resolve the motion; joints that change from
 sliding to sticking need some more."""
 
-CONVERGED: Final = 1e-14
-"""Last change of the mean velocity, relative to its size."""
-
-ROUNDED: Final = 1e-9
-"""Change, relative likewise, from which on one that no longer halves is rounding."""
+MOST_DECAY: Final = 700.0
+"""Decay whose exponential still is a double."""
 
 SMALL_DECAY: Final = 1e-2
 """Decay h b / m below which the split of damping is that of its series, then exact to rounding."""
@@ -75,7 +73,7 @@ def split_forces(mechanics: Mechanics, qd: Array, M: Array, h: float) -> Array:
     """
     sticking = mechanics.dry / np.maximum(np.abs(qd), mechanics.friction_speed)
     x = h * (mechanics.damping + sticking) / np.diagonal(M, axis1=-2, axis2=-1)
-    safe = np.clip(x, SMALL_DECAY, 700.0)  # exp(700) still is a double
+    safe = np.clip(x, SMALL_DECAY, MOST_DECAY)
     result: Array = np.where(
         x < SMALL_DECAY, 0.5 - x / 12.0 + x**3 / 720.0, 1.0 / safe - 1.0 / np.expm1(safe)
     )
@@ -93,30 +91,35 @@ def solve_step(
     w, early = state.qd.copy(), h * (1.0 - late)
     failed = state.wild()
     size = change = np.full(failed.shape, np.inf)
-    diagonal = np.arange(mechanics.robot.dof)
     for iteration in range(MOST_ITERATIONS):
         middle, wild = find_middle(mechanics, state, drive, h, np.where(failed[..., None], 0.0, w))
         failed = failed | wild
         r = carry_momentum(mechanics, middle, w, -early) - p
-        A = middle.M.copy()
-        bend = 1.0 - np.tanh(w / mechanics.friction_speed) ** 2
-        A[..., diagonal, diagonal] += early * (
-            mechanics.damping + mechanics.dry / mechanics.friction_speed * bend
-        )
         r = np.where(failed[..., None], 0.0, r)
-        after = w - np.linalg.solve(A, r[..., None])[..., 0]
+        after = w - np.linalg.solve(find_slope(mechanics, middle.M, w, early), r[..., None])[..., 0]
         after = np.where((mechanics.dry > 0.0) & (w * after < 0.0), 0.0, after)
         last, change = change, np.abs(after - w).max(axis=-1)
         if iteration == 0:
             size = np.maximum(np.abs(w).max(axis=-1), change)
         w = after
-        settled = (change <= CONVERGED * size) | ((change <= ROUNDED * size) & (change > 0.5 * last))
+        settled = (change <= STEP_CONVERGED * size) | (
+            (change <= STEP_ROUNDED * size) & (change > 0.5 * last)
+        )
         if (settled | failed).all():
             break
     failed = failed | ~settled
     w = np.where(failed[..., None], 0.0, w)
     middle, wild = find_middle(mechanics, state, drive, h, w)
     return w, middle, failed | wild
+
+
+def find_slope(mechanics: Mechanics, M: Array, w: Array, early: Array) -> Array:
+    """M, and the slope of the friction that acts at the beginning of a step (..., dof, dof)."""
+    stick = mechanics.dry / mechanics.friction_speed * (1.0 - np.tanh(w / mechanics.friction_speed) ** 2)
+    diagonal = np.arange(mechanics.robot.dof)
+    A = M.copy()
+    A[..., diagonal, diagonal] += early * (mechanics.damping + stick)
+    return A
 
 
 def find_middle(mechanics: Mechanics, state: State, drive: Drive, h: float, w: Array) -> tuple[Middle, Flags]:
