@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
 from cspace.dynamics.inverse import gravity_torques, inverse_dynamics
-from cspace.dynamics.mechanics import resistances
+from cspace.dynamics.mechanics import find_resistances
 from cspace.dynamics.rows import EARTH
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -107,7 +107,7 @@ class ComputedTorque:
         )
         wanted = qdd_d + self.kd * (qd_d - qd) + self.kp * (q_d - q)  # type: ignore[operator]
         more = {"gravity": gravity, "friction": False, "T_world_base": T_world_base}
-        damping, dry = resistances(robot)
+        damping, dry = find_resistances(robot)
         tau: Array = inverse_dynamics(robot, q, qd, wanted, **more)  # type: ignore[arg-type]
         return tau + damping * qd + dry * np.sign(qd_d)
 

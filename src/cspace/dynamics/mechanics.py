@@ -107,7 +107,7 @@ class Mechanics:
         return State(np.zeros_like(state.q), np.zeros_like(state.qd), still)
 
 
-def resistances(robot: KinematicModel) -> tuple[Array, Array]:
+def find_resistances(robot: KinematicModel) -> tuple[Array, Array]:
     """Damping and dry friction (dof,) of the coordinates, those of joints that mimic them included."""
     assembly = robot._assembly
     result = np.zeros((2, robot.dof))

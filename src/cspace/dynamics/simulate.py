@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, guard_memory, positive_number, whole_number
 from cspace.dynamics.mass_matrix import mass_matrix
-from cspace.dynamics.mechanics import Drive, Mechanics, State, WrenchLaw, resistances
+from cspace.dynamics.mechanics import Drive, Mechanics, State, WrenchLaw, find_resistances
 from cspace.dynamics.momentum import kinetic_energy, potential_energy
 from cspace.dynamics.rollout import (
     AT_LIMIT,
@@ -116,7 +116,7 @@ def _make_mechanics(
 ) -> Mechanics:
     """What acts on a robot at every time, checked."""
     check_robot(robot)
-    damping, dry = resistances(robot) if friction else np.zeros((2, robot.dof))
+    damping, dry = find_resistances(robot) if friction else np.zeros((2, robot.dof))
     return Mechanics(
         robot,
         check_gravity(gravity),
