@@ -66,7 +66,9 @@ def draw_energy(ax: Any) -> None:
     }
     for (name, energy), color in zip(runs.items(), ("0.55", "tab:blue", "tab:orange"), strict=True):
         ax.loglog(times[1:], np.maximum(running_maximum(energy)[1:], 1e-12), label=name, color=color)
-    ax.set(xlabel="time [s]", ylabel="largest energy error / 3 m g l", title="double pendulum, steps of 10 ms")
+    ax.set(
+        xlabel="time [s]", ylabel="largest energy error / 3 m g l", title="double pendulum, steps of 10 ms"
+    )
     ax.set_xlim(0.1, duration)
     ax.set_ylim(1e-9, 10)
     ax.legend(loc="lower right", fontsize=8)

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.dynamics.mechanics import Drive, Mechanics, State, advance, displacement_rate
+from cspace.dynamics.mechanics import Drive, Mechanics, State, advance_state, displacement_rate
 
 Weights = tuple[float, ...]
 
@@ -84,7 +84,7 @@ def find_stages(
     stages = Stages(h, [state.qd], [mechanics.accelerations(state, drive)])
     for weights in table[1:]:
         dx, dv = stages.changes(weights)
-        inner = advance(state, dx, dv, floating)
+        inner = advance_state(state, dx, dv, floating)
         stages.xs.append(displacement_rate(inner, dx, floating))
         stages.vs.append(mechanics.accelerations(inner, drive))
     return stages
@@ -93,4 +93,4 @@ def find_stages(
 def step_rk4(mechanics: Mechanics, state: State, drive: Drive, h: float) -> State:
     """The state after one step of the classical Runge–Kutta method, of order four."""
     stages = find_stages(mechanics, state, drive, h, RK4)
-    return advance(state, *stages.changes(RK4_END), mechanics.robot.floating)
+    return advance_state(state, *stages.changes(RK4_END), mechanics.robot.floating)

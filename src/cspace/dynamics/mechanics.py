@@ -117,7 +117,7 @@ def find_resistances(robot: KinematicModel) -> tuple[Array, Array]:
     return result[0], result[1]
 
 
-def advance(state: State, dx: Array, dv: Array, floating: bool) -> State:
+def advance_state(state: State, dx: Array, dv: Array, floating: bool) -> State:
     """The state after a displacement and a change of the velocities (..., dof).
 
     The first six displacements of a floating base are that of its origin and a rotation vector, in axes of

@@ -21,7 +21,7 @@ from cspace.dynamics.explicit_steps import (
     find_stages,
     step_rk4,
 )
-from cspace.dynamics.mechanics import Drive, Flags, Mechanics, State, WrenchLaw, advance
+from cspace.dynamics.mechanics import Drive, Flags, Mechanics, State, WrenchLaw, advance_state
 from cspace.dynamics.rows import Wrenches
 from cspace.dynamics.simulation import Piece
 from cspace.dynamics.variational_step import step_variational
@@ -213,7 +213,7 @@ def run_adaptive_steps(task: Task) -> Record:
         while t < t_end and record.running.any() and not late:
             step, t_after = (h, t + h) if t + h * (1.0 + SHORTEST_STEP) < t_end else (t_end - t, t_end)
             stages = find_stages(task.mechanics, state, drive, step, DORMAND_PRINCE)
-            after = advance(state, *stages.changes(DORMAND_PRINCE_END), task.mechanics.robot.floating)
+            after = advance_state(state, *stages.changes(DORMAND_PRINCE_END), task.mechanics.robot.floating)
             errors = find_errors(task, state, after, stages)
             worst = float(np.max(errors, where=record.running, initial=0.0))
             factor = find_step_factor(worst)

@@ -208,6 +208,7 @@ def _make_answer(task: Task, record: Record, method: str) -> Simulation:
     good = (record.status == ENDED) | (record.status == AT_LIMIT)
     return Simulation(
         task.mechanics.robot.name,
+        tuple(task.mechanics.robot.joint_names),
         method,
         record.times[:count],
         q,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cspace.arrays import Array, as_floats
-from cspace.dynamics.mechanics import Flags, State, advance
+from cspace.dynamics.mechanics import Flags, State, advance_state
 from cspace.errors import InputError
 from cspace.spatial import left_jacobian_inv_so3, left_jacobian_so3, log_so3
 from cspace.tables import count_things, html_table, one_line, shown
@@ -35,17 +35,18 @@ class Piece:
             sum((p * c for p, c in zip(powers, rates, strict=False)), np.zeros_like(self.state.qd))
             for rates in (self.dx, self.dv)
         )
-        return advance(self.state, dx, dv, floating)
+        return advance_state(self.state, dx, dv, floating)
 
 
 @dataclass(frozen=True, eq=False)
 class Simulation:
     """The motion of a robot under forces; falsy if it broke down before its end.
 
-    robot, method: names. times (k,) [s]: 0 first, the end last. q (..., k, n) [rad or m], qd (..., k, dof):
-    the states. tau (..., k, dof) [N·m or N]: the torques of the control, held from each time on. energy (...,
-    k) [J]: kinetic and potential energy of the links. T_world_base (..., k, 4, 4): the poses of a floating
-    base, None for a fixed one. A row of a batch that ended early is NaN from then on.
+    robot, method: names. joints: those of the coordinates. times (k,) [s]: 0 first, the end last.
+    q (..., k, n) [rad or m], qd (..., k, dof): the states. tau (..., k, dof) [N·m or N]: the torques of the
+    control, held from each time on. energy (..., k) [J]: kinetic and potential energy of the links.
+    T_world_base (..., k, 4, 4): the poses of a floating base, None for a fixed one. A row of a batch that
+    ended early is NaN from then on.
 
     stopped (...) [s]: how far each row came. reason: "ended", "limit reached: …" with the joint, "not finite:
     …", "not solved: …" or "time limit", of the first row that did not end. ended (...): which rows came to
@@ -53,6 +54,7 @@ class Simulation:
     """
 
     robot: str
+    joints: tuple[str, ...]
     method: str
     times: Array
     q: Array
@@ -148,7 +150,7 @@ class _CubicPiece(Piece):
         a, b, c = self.dx
         dx = theta * (a + theta * (b + theta * c))
         rate = (a + theta * (2.0 * b + 3.0 * theta * c)) / self.h
-        state = advance(self.state, dx, np.zeros_like(dx), floating)
+        state = advance_state(self.state, dx, np.zeros_like(dx), floating)
         if floating:
             J = left_jacobian_so3(dx[..., 3:6])
             rate[..., 3:6] = np.einsum("...ij,...j", J, rate[..., 3:6])

@@ -23,7 +23,7 @@ from cspace.arrays import Array
 from cspace.dynamics.coriolis import coriolis_matrix
 from cspace.dynamics.inverse import gravity_torques
 from cspace.dynamics.mass_matrix import mass_matrix
-from cspace.dynamics.mechanics import Drive, Flags, Mechanics, State, advance
+from cspace.dynamics.mechanics import Drive, Flags, Mechanics, State, advance_state
 from cspace.dynamics.rows import torques_of_wrenches
 from cspace.spatial import left_jacobian_inv_so3, left_jacobian_so3
 from cspace.tolerances import STEP_CONVERGED, STEP_ROUNDED
@@ -56,7 +56,7 @@ def step_variational(mechanics: Mechanics, state: State, drive: Drive, h: float)
     w, middle, failed = solve_step(mechanics, state, drive, h, p, late)
     ahead = carry_momentum(mechanics, middle, w, h * late)
     zero = np.zeros_like(w)
-    end = advance(state, h * w, zero, mechanics.robot.floating)
+    end = advance_state(state, h * w, zero, mechanics.robot.floating)
     if failed.any():
         end = end.with_rows(failed, mechanics.rest(end))
     M_end = mass_matrix(mechanics.robot, end.q, T_world_base=end.T_world_base, threads=mechanics.threads)
@@ -128,7 +128,7 @@ def find_middle(mechanics: Mechanics, state: State, drive: Drive, h: float, w: A
     ∂L/∂q = Cᵀ q̇ − g, of the rotation of a base less ω × (M q̇): its velocity is kept in axes of the world.
     """
     robot, n = mechanics.robot, mechanics.threads
-    half = advance(state, 0.5 * h * w, w - state.qd, robot.floating)
+    half = advance_state(state, 0.5 * h * w, w - state.qd, robot.floating)
     wild = half.wild()
     if wild.any():
         half = half.with_rows(wild, mechanics.rest(half))
