@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import signal
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -479,6 +481,13 @@ def test_an_answer_is_one_line_a_table_and_can_be_pickled():
             r"control at step 2 \(t = 0.02 s\) holds nan at index",
         ),
         ({"control": PD([0, 0, 0], 1, 1)}, InputError, r"q_goal has shape \(3,\)"),
+        ({"control": lambda t, q, qd: [1e300, 0]}, InputError, r"at step 0 .* the largest allowed value"),
+        (
+            {"wrenches": {"rod_1": np.zeros((3, 6))}},
+            InputError,
+            r"'rod_1' has shape \(3, 6\), expected \(6,\)",
+        ),
+        ({"wrenches": lambda t, q, qd: [1, 2]}, InputTypeError, "dict of frame"),
         ({"wrenches": {"nowhere": np.zeros(6)}}, UnknownNameError, "nowhere"),
     ],
 )
@@ -486,6 +495,43 @@ def test_bad_arguments_are_named(change, error, message):
     given = {"q": [0, 0], "qd": [0, 0], "duration": 0.1, "dt": 0.01} | change
     with pytest.raises(error, match=message):
         pendulum(2).simulate(**given)
+
+
+def test_recorded_states_are_most_of_the_memory():
+    robot, q = pendulum(2), np.random.default_rng(0).normal(size=(500, 2))
+    given = {"duration": 0.1, "dt": 0.002}
+    robot.simulate(q, [0, 0], **given)
+    tracemalloc.start()
+    run = robot.simulate(q, [0, 0], **given)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2.0 * sum(each.nbytes for each in (run.q, run.qd, run.tau, run.energy))
+
+
+def test_an_interrupt_ends_a_simulation():
+    def interrupt(t, q, qd):
+        if t > 0.05:
+            signal.raise_signal(signal.SIGINT)
+        return [0, 0]
+
+    with pytest.raises(KeyboardInterrupt):
+        pendulum(2).simulate([0, 0], [0, 0], control=interrupt, duration=1e3, dt=0.01)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_robot_without_joints_stands(method):
+    body = Link("stone", Inertial(1.0, [0, 0, 0.5], np.eye(3)))
+    run = cs.Robot(Description("stone", (body,), ())).simulate([], [], duration=0.1, dt=0.01, method=method)
+    assert run
+    assert run.q.shape == (11, 0)
+    np.testing.assert_allclose(run.energy, 0.5 * G)
+
+
+@pytest.mark.parametrize("method", ["rk4", "variational"])
+def test_a_base_that_rotates_too_fast_is_named(method):
+    run = rigid_body().simulate([], [0, 0, 0, 100, 200, 300], duration=1.0, dt=0.1, method=method)
+    assert not run
+    assert "half a turn in one step" in run.reason
 
 
 def test_bad_controllers_are_named():

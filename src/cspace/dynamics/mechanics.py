@@ -34,7 +34,9 @@ class State:
 
     def wild(self) -> Flags:
         """Which rows (...) are not finite, or too large for the functions of dynamics."""
-        largest = np.maximum(np.abs(self.q).max(axis=-1, initial=0.0), np.abs(self.qd).max(axis=-1))
+        largest = np.maximum(
+            np.abs(self.q).max(axis=-1, initial=0.0), np.abs(self.qd).max(axis=-1, initial=0.0)
+        )
         result: Flags = np.asarray(~(largest < LARGEST_STATE))
         return result
 

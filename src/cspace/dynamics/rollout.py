@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Final
@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.explicit_steps import (
     DORMAND_PRINCE,
@@ -26,7 +26,7 @@ from cspace.dynamics.rows import Wrenches
 from cspace.dynamics.simulation import Piece
 from cspace.dynamics.variational_step import step_variational
 from cspace.errors import InputError, InputTypeError
-from cspace.tolerances import SHORTEST_STEP
+from cspace.tolerances import FARTHEST, SHORTEST_STEP
 
 Control = Callable[[float, Array, Array], ArrayLike] | PD | ComputedTorque
 
@@ -86,6 +86,7 @@ class Task:
         wrenches = self.wrenches
         if callable(wrenches):
             wrenches = wrenches(self.find_time(k), state.q.copy(), state.qd.copy())
+        check_wrenches(wrenches, state.qd.shape[:-1])
         return Drive(self.find_torques(k, state), wrenches)
 
     def find_torques(self, k: int, state: State) -> Array:
@@ -105,7 +106,7 @@ def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
     """What a control returned as (..., dof); InputError for another shape or NaN."""
     if tau is None:
         raise InputTypeError(f"{subject} is None; a control returns the torques")
-    array = as_floats(tau, subject)
+    array = as_floats(tau, subject, largest=FARTHEST)
     fits = array.shape[-1:] == shape[-1:] and array.ndim <= len(shape)
     fits = fits and all(n in (1, m) for n, m in zip(array.shape[::-1], shape[::-1], strict=False))
     if not fits:
@@ -114,6 +115,16 @@ def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
             " of a floating base its wrench [f; n] first"
         )
     return np.broadcast_to(array, shape)
+
+
+def check_wrenches(wrenches: Wrenches | None, lead: tuple[int, ...]) -> None:
+    """InputError for wrenches that are for more rows than there are; see also torques_of_wrenches."""
+    for frame, wrench in wrenches.items() if isinstance(wrenches, Mapping) else ():
+        shape = as_floats(wrench, f"wrench at {frame!r}", last=(6,)).shape
+        if leading_axes(wrenches=shape[:-1], q=lead) != lead:
+            raise InputError(
+                f"wrench at {frame!r} has shape {shape}, expected {(*lead, 6)} as there are rows of q"
+            )
 
 
 class Record:
@@ -253,7 +264,7 @@ def find_errors(task: Task, before: State, after: State, stages: Stages) -> Arra
         size_x[..., :3] += np.abs(before.T_world_base[..., :3, 3])
     with np.errstate(over="ignore", invalid="ignore"):
         both = np.concatenate([dx / size_x, dv / size_v], axis=-1) / task.tolerance
-        errors = np.sqrt(np.mean(both**2, axis=-1))
+        errors = np.sqrt(np.sum(both**2, axis=-1) / max(both.shape[-1], 1))
     return np.where(np.isfinite(errors) & ~after.wild(), errors, np.inf)
 
 

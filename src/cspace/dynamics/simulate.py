@@ -82,9 +82,11 @@ def simulate(
     held over a step; expressed_in: as in forward_dynamics. friction: damping and dry friction of the joints;
     the latter is f tanh(q̇ / friction_speed), so joints creep instead of sticking. The variational method
     takes it implicitly; the others need steps shorter than the decay times of damped joints. T_world_base
-    (..., 4, 4): where a floating base starts, or a fixed one stands. every: of so many states one is
-    recorded, and the last. stop_at_limits: end where a joint passes one of its limits; otherwise limits do
-    not count. time_limit [s]: of the computation. threads: as in fk.
+    (..., 4, 4): where a floating base starts, or a fixed one stands.
+
+    every: of so many states one is recorded, and the last; the adaptive method also keeps its own steps.
+    stop_at_limits: end where a joint passes one of its limits; otherwise limits do not count. time_limit [s]:
+    of the computation, looked at between steps. threads: as in fk.
 
     Returns a Simulation, which is falsy with a reason if it broke down.
     Raises InputError for a wrong shape or NaN, also of what control returns, for steps and durations that are
@@ -281,4 +283,7 @@ def _advise(task: Task, method: str) -> str:
                 f"the friction of joint {joint!r} stops it within {1.0 / rates[fastest]:.2g} s; use a"
                 ' shorter dt or method="variational"'
             )
-    return "use a shorter dt" if method != "adaptive" else "the motion has no end there"
+    if method == "adaptive":
+        return "no step is short enough"
+    half = "; a base may not rotate by half a turn in one step" if task.mechanics.robot.floating else ""
+    return f"use a shorter dt{half}"

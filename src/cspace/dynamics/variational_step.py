@@ -97,10 +97,10 @@ def solve_step(
         r = carry_momentum(mechanics, middle, w, -early) - p
         r = np.where(failed[..., None], 0.0, r)
         after = w - np.linalg.solve(find_slope(mechanics, middle.M, w, early), r[..., None])[..., 0]
-        after = np.where((mechanics.dry > 0.0) & (w * after < 0.0), 0.0, after)
-        last, change = change, np.abs(after - w).max(axis=-1)
+        after = np.where((mechanics.dry > 0.0) & (np.sign(w) * after < 0.0), 0.0, after)
+        last, change = change, np.abs(after - w).max(axis=-1, initial=0.0)
         if iteration == 0:
-            size = np.maximum(np.abs(w).max(axis=-1), change)
+            size = np.maximum(np.abs(w).max(axis=-1, initial=0.0), change)
         w = after
         settled = (change <= STEP_CONVERGED * size) | (
             (change <= STEP_ROUNDED * size) & (change > 0.5 * last)
