@@ -29,7 +29,11 @@ SOURCES = {
             "include/cspace/search",
         ),
         *("include/cspace/shapes", "src/cspace/collision", "src/cspace/planning", "src/cspace/plan_motion"),
-        *("src/kernels", "src/library"),
+        *("src/kernels/collision.cpp", "src/kernels/search.cpp", "src/library"),
+    ],
+    "dynamics": [
+        *("include/cspace/math", "include/cspace/model", "include/cspace/dynamics"),
+        *("src/kernels/dynamics.cpp", "src/bindings/dynamics.cpp"),
     ],
     "": [
         *("include/cspace/math", "include/cspace/kinematics", "include/cspace/ik", "src/kernels"),

@@ -1,10 +1,10 @@
-"""Dynamics beside Pinocchio and dynibo, from Python, in turns in one process: benchmarks/results/dynamics.json.
+"""Dynamics beside Pinocchio and dynibo, from Python, in one process: benchmarks/results/dynamics.json.
 
 Usage: python benchmarks/dynamics.py [--rounds 60] [--batch 100000] [--robots panda ur5 g1] [--write]
 
-The same URDF files with masses (package example-robot-data); the fingers of the panda are locked, the humanoid
-floats. Arguments and outputs are prepared. Answers are compared first. Processor time per call: medians and
-95th percentiles over rounds in turns; batches on one thread.
+The same URDF files with masses (package example-robot-data); the fingers of the panda are locked, the
+humanoid floats. Arguments and outputs are prepared. Answers are compared first. Processor time per call:
+medians and 95th percentiles over rounds in turns; batches on one thread.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import arms
+import dynamics_tables
 import further_tables
 import navigation_numbers
 import planning_tables
@@ -298,4 +299,7 @@ ROWS: list[Callable[[Results], Row]] = [
 
 
 def table(results: Results) -> list[Row]:
-    return [build(results) for build in [*ROWS, *navigation_numbers.ROWS, *planning_tables.ROWS]]
+    return [
+        build(results)
+        for build in [*ROWS, *navigation_numbers.ROWS, *planning_tables.ROWS, *dynamics_tables.ROWS]
+    ]

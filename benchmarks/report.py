@@ -19,6 +19,7 @@ sys.path.insert(0, str(HERE))
 import age  # noqa: E402
 import arms  # noqa: E402
 import completeness_table  # noqa: E402
+import dynamics_tables  # noqa: E402
 import further_tables  # noqa: E402
 import navigation_tables  # noqa: E402
 import numbers_table  # noqa: E402
@@ -42,7 +43,14 @@ PLANNING = [name for _, name, *_ in planning_tables.PARTS] + ["planning_goals", 
 def measured_names() -> list[str]:
     """The results that the page shows."""
     names = [*arms.SETS, "cpp", "recorded", "install", "derived", "completeness", "seven", "following"]
-    return [*names, "building", "soundness", *(f"navigation_{part}" for part in NAVIGATION), *PLANNING]
+    return [
+        *names,
+        "building",
+        "soundness",
+        *(f"navigation_{part}" for part in NAVIGATION),
+        *PLANNING,
+        "dynamics",
+    ]
 
 
 def load() -> dict[str, Any]:
@@ -300,6 +308,13 @@ reachable position with an orientation that may be unreachable there.
 ## Collision and planning of arms
 
 {planning_tables.section(results)}
+
+## Dynamics
+
+URDF files of example-robot-data; arguments and outputs are prepared; processor time [ns], median (95th
+percentile), in turns in one process.
+
+{dynamics_tables.section(results)}
 
 ## Import
 

@@ -5,7 +5,7 @@
 #include "cspace/kinematics/forward.hpp"
 #include "cspace/tolerances.hpp"
 #include "kernels/dynamics.hpp"
-#include "rows.hpp"
+#include "kinematics_rows.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

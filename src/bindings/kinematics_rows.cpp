@@ -1,10 +1,11 @@
 // Batches of configurations: plain checked arrays in, filled arrays out, the interpreter free meanwhile.
+#include "kinematics_rows.hpp"
+
 #include <bit>
 
 #include "bindings.hpp"
 #include "kernels/kinematics.hpp"
 #include "kinematics.hpp"
-#include "rows.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

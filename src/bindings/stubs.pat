@@ -34,6 +34,22 @@ cspace._core.RobotBase.collides$:
     def collides(self, q: ArrayLike, scene: Any = None, *, margin: float = 0.0, threads: int | None = None) -> Any:
         \doc
 
+cspace._core.RobotBase.inverse_dynamics$:
+    def inverse_dynamics(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
+cspace._core.RobotBase.forward_dynamics$:
+    def forward_dynamics(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
+cspace._core.RobotBase.mass_matrix$:
+    def mass_matrix(self, q: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
+cspace._core.RobotBase.gravity_torques$:
+    def gravity_torques(self, q: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
 cspace._core.RobotBase._checked:
     @property
     def _checked(self) -> Any: ...
@@ -146,6 +162,7 @@ cspace._core.__suffix__:
     def _chain_rows(*arguments: Any) -> bool: ...
     def _chain_misses(*arguments: Any) -> None: ...
     def _tree_rows(*arguments: Any) -> bool: ...
+    def _dynamics_rows(*arguments: Any) -> bool: ...
     def _ik_build(*arguments: Any) -> None: ...
     def _ik_room(solver: Any) -> int: ...
     def _ik_answer(*arguments: Any) -> Any: ...

@@ -532,4 +532,20 @@ LEAST_GAIN: Final = 1e-12
 """The least gain, distance of influence, step and side of a cell of planners: products of a few stay far from
 the smallest double."""
 
+DEPENDENT_COLUMN: Final = 1e-5
+"""Length of what others leave of a column of a regressor of length one up to which it depends on them: angles
+of files with six digits leave 5e-6, a column of its own a hundredth and more."""
+
+LEAST_EXCITATION: Final = 1e-6
+"""Singular value of the equations of an identification, relative to the largest, up to which the data leave a
+direction undetermined: torques measured to six digits leave nothing of it."""
+
+UNDETERMINED: Final = 1e-6
+"""Share of a parameter in an undetermined direction of length one up to which it is determined all the same:
+above the rounding of singular vectors, below every real share."""
+
+CONVERGED_FIT: Final = 1e-12
+"""Relative decrease of a sum of squares, and step relative to its scale, after which a fit of parameters
+ends: some thousand roundings."""
+
 __all__ = [name for name in globals() if name.isupper()]

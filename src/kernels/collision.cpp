@@ -10,7 +10,7 @@ void prepare_workspace(const Robot& robot, Workspace& w) {
     set_identity(static_cast<Frame*>(w.frames)[0]);
     set_resting(static_cast<Rate*>(w.rates)[0]);
     place_base(robot, w);
-    w.n_order = 0;
+    w.n_order = w.blocked_balance = 0;
     for (Touch& touch : w.touches) touch = {};
     for (int b = robot.n_bodies - 1; b > 0; --b)
         if (robot.bodies[b].count) w.order[w.n_order++] = b;

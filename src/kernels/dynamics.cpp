@@ -7,7 +7,7 @@
 #include "cspace/dynamics/mass_matrix.hpp"
 #include "cspace/dynamics/momentum.hpp"
 #include "cspace/math/linear.hpp"
-#include "row_memory.hpp"
+#include "kinematics_memory.hpp"
 
 namespace cspace::dynamics::inline CSPACE_ISA {
 namespace {
@@ -18,43 +18,58 @@ using kinematics::take_array;
 // One pack of arguments. The values of the joints stand behind those of a floating base.
 template <class V>
 struct Arguments {
-    V *q, *qd, *force, *result;  // qd and force: null where not given
-    Pose<V> T;                   // of the base
-    Mat3<V> R;                   // its axes in those of the world
+    const V *q, *qd, *force;  // qd and force: null where not given
+    V* result;
+    Pose<V> T;  // of the base
+    Mat3<V> R;  // its axes in those of the world
     int n, first, dof;
 };
 
-// False if an argument is not finite.
+// Rows i to i + count of an array with `width` values each, in lanes; one row alone is read in place. Null
+// for null.
+template <class V>
+CSPACE_INLINE const V* read_rows(const double* values, std::size_t i, int count, int width,
+                                 Scratch& scratch) {
+    if (!values) return nullptr;
+    values += i * std::size_t(width);
+    if constexpr (Lanes<V>::count == 1) {
+        return values;
+    } else {
+        V* lanes = take_array<V>(scratch, width);
+        load_rows(values, std::size_t(width), count, width, lanes);
+        return lanes;
+    }
+}
+template <class V>
+CSPACE_INLINE bool finite_rows(const V* values, int width) {
+    return !values || kinematics::all_finite(values, width);
+}
+
+// width: of the result. False if an argument is not finite.
 template <class V>
 CSPACE_INLINE bool read_arguments(const Rows& rows, Scratch& scratch, std::size_t i, int count, int width,
                                   Arguments<V>& given) {
     const int n = rows.bodies.n_coordinates, first = rows.floating ? 6 : 0, dof = first + n;
-    const std::size_t at = i * std::size_t(dof);
-    V* q = take_array<V>(scratch, n);
-    V* qd = take_array<V>(scratch, dof);
-    V* force = take_array<V>(scratch, dof);
-    load_rows(rows.q + i * std::size_t(n), std::size_t(n), count, n, q);
-    bool finite = kinematics::all_finite(q, n);
-    if (rows.qd) {
-        load_rows(rows.qd + at, std::size_t(dof), count, dof, qd);
-        finite = kinematics::all_finite(qd, dof) && finite;
-    }
-    if (rows.force) {
-        load_rows(rows.force + at, std::size_t(dof), count, dof, force);
-        finite = kinematics::all_finite(force, dof) && finite;
-    }
+    const V* q = read_rows<V>(rows.q, i, count, n, scratch);
+    const V* qd = read_rows<V>(rows.qd, i, count, dof, scratch);
+    const V* force = read_rows<V>(rows.force, i, count, dof, scratch);
+    V* result;
+    if constexpr (Lanes<V>::count == 1)
+        result = rows.result + i * std::size_t(width);
+    else
+        result = take_array<V>(scratch, width);
     const auto T =
         kinematics::load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
-    given = {q,
-             rows.qd ? qd : nullptr,
-             rows.force ? force : nullptr,
-             take_array<V>(scratch, width),
-             T,
-             T.R,
-             n,
-             first,
-             dof};
-    return finite;
+    given = {q, qd, force, result, T, T.R, n, first, dof};
+    const bool finite = finite_rows(q, n), moves = finite_rows(qd, dof), pushes = finite_rows(force, dof);
+    return finite && moves && pushes;
+}
+// The result of a pack as rows.
+template <class V>
+CSPACE_INLINE void write_result(const Rows& rows, const Arguments<V>& given, std::size_t i, int count,
+                                int width) {
+    if constexpr (Lanes<V>::count > 1)
+        store_rows(given.result, width, rows.result + i * std::size_t(width), std::size_t(width), count);
 }
 template <class V>
 CSPACE_INLINE Vec3<V> vector_at(const V* values) {
@@ -114,7 +129,7 @@ bool inverse_pack(const Rows& rows, void* memory, std::size_t i, int count) {
     const int dof = rows.bodies.n_coordinates + (rows.floating ? 6 : 0);
     if (!read_arguments(rows, scratch, i, count, dof, given)) return false;
     compute_torques(rows, given, given.force, scratch, given.result);
-    store_rows(given.result, dof, rows.result + i * std::size_t(dof), std::size_t(dof), count);
+    write_result(rows, given, i, count, dof);
     return true;
 }
 
@@ -126,7 +141,7 @@ bool mass_pack(const Rows& rows, void* memory, std::size_t i, int count) {
     if (!read_arguments(rows, scratch, i, count, size, given)) return false;
     auto* links = take_array<LinkComposite<V>>(scratch, rows.bodies.n_links);
     mass_matrix(rows.bodies, given.q, given.R, rows.floating, links, given.result);
-    store_rows(given.result, size, rows.result + i * std::size_t(size), std::size_t(size), count);
+    write_result(rows, given, i, count, size);
     return true;
 }
 
@@ -193,7 +208,7 @@ bool forward_pack(const Rows& rows, void* memory, std::size_t i, int count) {
     if (!read_arguments(rows, scratch, i, count, dof, given)) return false;
     const bool regular = rows.bodies.shares ? solve_for_accelerations(rows, given, scratch, given.result)
                                             : give_way_to_torques(rows, given, scratch, given.result);
-    store_rows(given.result, dof, rows.result + i * std::size_t(dof), std::size_t(dof), count);
+    write_result(rows, given, i, count, dof);
     return regular;
 }
 
@@ -244,7 +259,7 @@ bool spatial_pack(const Rows& rows, void* memory, std::size_t i, int count) {
         case What::potential:
             *result = potential_energy(rows.bodies, fill3<V>(rows.gravity), given.T.t, whole);
     }
-    store_rows(result, size, rows.result + i * std::size_t(size), std::size_t(size), count);
+    write_result(rows, given, i, count, size);
     return true;
 }
 

@@ -8,7 +8,7 @@
 #include "cspace/math/rows.hpp"
 #include "cspace/math/stream.hpp"
 #include "cspace/math/trig.hpp"
-#include "row_memory.hpp"
+#include "kinematics_memory.hpp"
 
 namespace cspace::kinematics::inline CSPACE_ISA {
 namespace {

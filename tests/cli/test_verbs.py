@@ -18,6 +18,7 @@ LINES = {
     "fk": "fk ur5e 0.1 -1.2 1 0.2 0.4 0.3",
     "ik": "ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 pi 0",
     "jacobian": "jacobian ur5e 0.1 -1.2 1 0.2 0.4 0.3",
+    "dynamics": "dynamics panda --pose ready --qd 0 1 0 0 0 0 0",
     "dh": "dh ur5e",
     "export": "export planar_2r",
     "nav": f"nav {ROOT}/examples/yard.txt --start 1 1 --goal 9 9",

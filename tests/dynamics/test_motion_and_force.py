@@ -1,4 +1,4 @@
-"""Laws that tie the mass matrix, inverse and forward dynamics together, on random trees with mimicking joints."""
+"""Laws of the mass matrix, inverse and forward dynamics, on random trees with mimicking joints."""
 
 from __future__ import annotations
 

@@ -43,10 +43,10 @@ class EdgeCheck {
         for (int i = 0; i < float_lanes; ++i)
             now[i] = {first_half_width * float(2 * i + 1 - float_lanes), first_half_width};
         set_intervals(now, count);
-        if (begin_edge()) return Verdict::blocked;
+        if (begin_edge() || begin_search(first_half_width)) return Verdict::blocked;
         place_rates(robot_, half_, block_.frames, block_.rates);
-        const Moving motion{*this, block_};
-        bool is_blocked = test_first_block(motion, first_half_width);
+        const Moving motion{*this, block_, first_half_width};
+        bool is_blocked = test_first_block(motion);
         while (true) {
             if (is_blocked) return Verdict::blocked;
             const unsigned unsure = block_.unsure;
@@ -67,26 +67,25 @@ class EdgeCheck {
         }
     }
 
-    // Free if none of 8 n configurations at equal distances, both ends included, touches anything.
+    // Free if none of 8 n configurations at equal distances, both ends included, touches anything. Each lane
+    // of the first block stands for n of them: those within whose motion nothing is near need no more.
     bool sample(int n) {
         const float step = 2.0f / float(float_lanes * n - 1);
-        // The middle of the rows first: it stands for all of them when candidates are chosen.
         const int middle = n / 2;
+        const float covered = step * float(middle);
         set_samples(middle, n, step);
         if (begin_edge()) return false;
-        const float covered = step * float(middle);
-        if (test_first_block(Still{*this, covered}, covered)) return false;
-        if (is_clear()) return true;
-        for (int row = 0; row < n; ++row) {
-            if (row == middle) continue;
-            set_samples(row, n, step);
-            place_next();
-            if (test_all(Still{*this, 0.0f})) return false;
-        }
-        return true;
+        if (begin_search(covered)) return false;
+        if (n == 1) return !test_first_block(Still{*this});
+        set_width(fill_floats(covered));
+        place_rates(robot_, half_, block_.frames, block_.rates);
+        if (test_first_block(Moving{*this, block_, covered})) return false;
+        return are_free(block_.unsure, n, step);
     }
 
   private:
+    static constexpr int most_balance = 4;
+
     const Robot& robot_;
     const Scene& scene_;
     Workspace& w_;
@@ -100,6 +99,7 @@ class EdgeCheck {
     struct Moving {
         const EdgeCheck& edge;
         Block& block;
+        float first_half;  // of the intervals of the first block
         static constexpr bool is_moving = true, is_cell = false, is_shrinking = false;
         static Floats no_growth() { return fill_floats(0.0f); }
         CSPACE_INLINE Floats growth(int x, const Place& at) const {
@@ -155,14 +155,13 @@ class EdgeCheck {
                                   block.rates[pair.b]),
                     edge.width_2_ * kappa, kappa, fill_floats(0.0f)};
         }
-        static float cover(float) { return 0; }
         static bool is_done(const Block& block) { return block.hit != 0; }
     };
-    // Samples do not move; `covered` widens the search for candidates to the samples of later blocks.
+    // Samples do not move.
     struct Still {
         const EdgeCheck& edge;
-        float covered;
         static constexpr bool is_moving = false, is_cell = false, is_shrinking = false;
+        static constexpr float first_half = 0;
         static NoMotion no_growth() { return {}; }
         CSPACE_INLINE NoMotion growth(int, const Place&) const { return {}; }
         // As of Moving.
@@ -170,7 +169,6 @@ class EdgeCheck {
             void bound_growth(NoMotion, float) {}
         };
         static Relative relative(int) { return {}; }
-        float cover(float reach) const { return reach * covered; }
         static bool is_done(const Block& block) { return block.hit != 0; }
     };
 
@@ -196,10 +194,34 @@ class EdgeCheck {
         }
     }
 
+    static CSPACE_INLINE float sample_place(int k, int n, float step) {
+        return 0.5f * step * float(2 * k - (float_lanes * n - 1));
+    }
     CSPACE_INLINE void set_samples(int row, int n, float step) {
-        for (int i = 0; i < float_lanes; ++i)
-            middle_[i] = 0.5f * step * float(2 * (i * n + row) - (float_lanes * n - 1));
+        for (int i = 0; i < float_lanes; ++i) middle_[i] = sample_place(i * n + row, n, step);
         set_coordinates();
+    }
+    // The samples of some lanes of the first block but for those that it has tested.
+    bool are_free(unsigned lanes, int n, float step) {
+        int filled = 0;
+        for (; lanes; lanes &= lanes - 1)
+            for (int row = 0; row < n; ++row) {
+                if (row == n / 2) continue;
+                middle_[filled++] = sample_place(lowest_lane(lanes) * n + row, n, step);
+                if (filled == float_lanes && touches_samples(filled)) return false;
+            }
+        return filled == 0 || !touches_samples(filled);
+    }
+    bool touches_samples(int& filled) {
+        for (int i = filled; i < float_lanes; ++i) middle_[i] = middle_[0];
+        filled = 0;
+        set_coordinates();
+        place_next();
+        return test_all(Still{*this});
+    }
+    CSPACE_INLINE void set_width(Floats width) {
+        width_ = width;
+        width_2_ = width * width;
     }
     CSPACE_INLINE void set_intervals(const Interval* now, int count) {
         alignas(32) float width[float_lanes];
@@ -207,8 +229,7 @@ class EdgeCheck {
             middle_[i] = now[i].middle;
             width[i] = now[i].half;
         }
-        width_ = load_floats(width);
-        width_2_ = width_ * width_;
+        set_width(load_floats(width));
         block_.wanted = (1u << count) - 1;
         set_coordinates();
     }
@@ -225,15 +246,6 @@ class EdgeCheck {
         return true;
     }
 
-    // No primitive and no pair of links is near, in any block.
-    bool is_clear() const {
-        for (int b = 1; b < robot_.n_bodies; ++b)
-            if (w_.near_counts[b]) return false;
-        for (int p = 0; p < robot_.n_pairs; ++p)
-            if (w_.kept_pairs[p]) return false;
-        return true;
-    }
-
     // Begins the first block with what found a contact last, for which the last bodies need no place; true
     // if something touches.
     bool begin_edge() {
@@ -247,38 +259,75 @@ class EdgeCheck {
             block_.place_rest(q_);
         return is_blocked;
     }
-    template <class Motion>
-    bool test_first_block(const Motion& motion, float covered) {
-        if (Motion::is_moving || covered > 0) {  // a configuration alone does not move
-            bound_motion(robot_.levers, robot_.body_stride, w_.kappa, w_.reach);
-            bound_motion(robot_.pair_levers, robot_.pair_stride, w_.pair_kappa, w_.pair_reach);
-        }
+    // Chooses candidates. Where most edges that came so far were blocked, tests the block as it is first:
+    // that costs less than with motions. True if something touches.
+    bool begin_search(float covered) {
+        bound_motion(robot_.levers, robot_.body_stride, w_.kappa, w_.reach);
+        bound_motion(robot_.pair_levers, robot_.pair_stride, w_.pair_kappa, w_.pair_reach);
         find_near(covered);
+        if (w_.blocked_balance <= 0) return false;
+        const Still motion{*this};
+        const bool is_blocked = test_each([&](int test) {
+            return test < robot_.n_bodies ? touches_near(test, motion)
+                                          : touches_pair(test - robot_.n_bodies, motion);
+        });
+        if (is_blocked) note_blocked(true);
+        return is_blocked;
+    }
+    bool touches_near(int x, const Still& motion) {
+        if (w_.near_counts[x] == 0) return false;
+        const Candidates near = {w_.near + x * w_.near_stride, w_.near_counts[x]};
+        const float r = robot_.bodies[x].ball.r + scene_.margin;
+        const Candidates touched = block_.narrow(near, block_.body_place(x), r, NoMotion{}, w_.near_body);
+        return touched.count && block_.test_links(x, touched, motion);
+    }
+    bool touches_pair(int p, const Still& motion) {
+        const BodyPair& pair = robot_.pairs[p];
+        const float r = robot_.bodies[pair.a].ball.r + robot_.bodies[pair.b].ball.r;
+        return block_.may_meet(block_.body_place(pair.a), block_.body_place(pair.b), r, NoMotion{}) &&
+               test_likely_pair(p, motion);
+    }
+    void note_blocked(bool is_blocked) {
+        int& balance = w_.blocked_balance;
+        if (is_blocked)
+            balance += balance < most_balance;
+        else
+            balance -= balance > -most_balance;
+    }
+    template <class Motion>
+    bool test_first_block(const Motion& motion) {
         is_first_ = true;
         const bool is_blocked = test_all(motion);
         is_first_ = false;
+        note_blocked(is_blocked);
         return is_blocked;
     }
 
     // All tests of a block; true if something touches.
     template <class Motion>
     bool test_all(const Motion& motion) {
+        return test_each([&](int test) {
+            return test < robot_.n_bodies ? test_body(test, motion)
+                                          : test_pair(test - robot_.n_bodies, motion);
+        });
+    }
+    // The test that finds a contact comes first from then on.
+    template <class Touches>
+    bool test_each(const Touches& touches) {
         for (int k = 0; k < w_.n_order; ++k) {
             const int test = w_.order[k];
-            if (test < robot_.n_bodies ? test_body(test, motion)
-                                       : test_pair(test - robot_.n_bodies, motion)) {
-                for (int i = k; i > 0; --i) w_.order[i] = w_.order[i - 1];
-                w_.order[0] = test;
-                w_.contact.at = middle_[lowest_lane(block_.hit)];
-                return true;
-            }
+            if (!touches(test)) continue;
+            for (int i = k; i > 0; --i) w_.order[i] = w_.order[i - 1];
+            w_.order[0] = test;
+            w_.contact.at = middle_[lowest_lane(block_.hit)];
+            return true;
         }
         return false;
     }
 
     // The test that found a contact last, before candidates are chosen: it settles most blocked edges.
     bool test_likely(int test) {
-        const Still motion{*this, 0.0f};
+        const Still motion{*this};
         if (test >= robot_.n_bodies) return test_likely_pair(test - robot_.n_bodies, motion);
         if (scene_.n_nodes) return false;
         const Place& at = block_.body_place(test);
@@ -356,15 +405,9 @@ class EdgeCheck {
         const Place& at = block_.body_place(x);
         const float r = robot_.bodies[x].ball.r + scene_.margin;
         const auto growth = motion.growth(x, at);
-        Candidates touched = {near, count};
-        if (is_first_) {
-            const float covered = motion.cover(w_.reach[x]);
-            touched = block_.narrow(touched, at, r + covered, growth, near);
-            count = touched.count;
-            if (covered > 0) touched = block_.narrow(touched, at, r, growth, w_.near_body);
-        } else {
-            touched = block_.narrow(touched, at, r, growth, w_.near_body);
-        }
+        const Candidates touched =
+            block_.narrow({near, count}, at, r, growth, is_first_ ? near : w_.near_body);
+        if (is_first_) count = touched.count;
         return touched.count && block_.test_links(x, touched, motion);
     }
 
@@ -376,8 +419,7 @@ class EdgeCheck {
         const Place &at_a = block_.body_place(pair.a), &at_b = block_.body_place(pair.b);
         const float r = robot_.bodies[pair.a].ball.r + robot_.bodies[pair.b].ball.r;
         if (is_first_) {
-            const float reach =
-                Motion::is_moving ? w_.pair_reach[p] * first_half_width : motion.cover(w_.pair_reach[p]);
+            const float reach = w_.pair_reach[p] * motion.first_half;
             w_.kept_pairs[p] = block_.may_meet(at_a, at_b, r + reach, NoMotion{});
             if (!w_.kept_pairs[p]) return false;
         } else if (!Motion::is_moving && !block_.may_meet(at_a, at_b, r, NoMotion{})) {
@@ -404,8 +446,7 @@ class EdgeCheck {
             const Place &a = block_.link_place(links.a), &b = block_.link_place(links.b);
             const float sum = robot_.links[links.a].ball.r + robot_.links[links.b].ball.r;
             if (is_first_) {
-                w_.kept_links[k] =
-                    block_.may_meet(a, b, sum + motion.cover(w_.pair_reach[p]), relative.most_growth);
+                w_.kept_links[k] = block_.may_meet(a, b, sum, relative.most_growth);
                 if (!w_.kept_links[k]) continue;
                 ++kept;
             }

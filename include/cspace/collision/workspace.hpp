@@ -45,6 +45,7 @@ struct Workspace {
     int *kept_pairs, *kept_links;                            // whether a body pair, a link pair may touch
     // Bodies (x) and body pairs (n_bodies + pair); the one that found a contact last comes first.
     int *order, n_order;
+    int blocked_balance;  // of edges that these did not settle: above zero where more were blocked lately
     float *kappa, *pair_kappa, *reach, *pair_reach;  // bounds along the edge, see edge.hpp
     Interval* stack;
     int stack_size;

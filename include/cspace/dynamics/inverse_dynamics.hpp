@@ -36,10 +36,9 @@ namespace cspace::dynamics::inline CSPACE_ISA {
 template <class V>
 CSPACE_INLINE Mat3<V> acceleration_gradient(const Vec3<V>& w, const Vec3<V>& wd) {
     const V xx = w.x * w.x, yy = w.y * w.y, zz = w.z * w.z;
-    const V xy = w.x * w.y, xz = w.x * w.z, yz = w.y * w.z;
-    return {{{-(yy + zz), xy - wd.z, xz + wd.y},
-             {xy + wd.z, -(xx + zz), yz - wd.x},
-             {xz - wd.y, yz + wd.x, -(xx + yy)}}};
+    return {{{-(yy + zz), w.x * w.y - wd.z, w.x * w.z + wd.y},
+             {w.x * w.y + wd.z, -(xx + zz), w.y * w.z - wd.x},
+             {w.x * w.z - wd.y, w.y * w.z + wd.x, -(xx + yy)}}};
 }
 
 // ∫ p × K p dm of a body with the second moment S.

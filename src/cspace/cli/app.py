@@ -26,6 +26,7 @@ VERBS: Final[Mapping[str, str]] = MappingProxyType(
         "fk": "the pose of the tip, or of any frame, at given joints",
         "ik": "every joint configuration that reaches a pose",
         "jacobian": "the Jacobian, its singular values and the distance to singularity",
+        "dynamics": "the torques of a motion, or the motion of torques, and the energies",
         "dh": "the Denavit-Hartenberg table and the link matrices",
         "nav": "a path through a map, by one planner or by all of them for comparison",
         "plan": "a free path of an arm among obstacles, every motion of it proved",

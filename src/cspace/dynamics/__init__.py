@@ -1,9 +1,12 @@
 """Dynamics: the masses of a robot, which torques make a motion, and how it moves under given torques."""
 
+from cspace.dynamics.base_parameters import BaseParameters, base_parameters
 from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.coriolis import coriolis_matrix
 from cspace.dynamics.derivatives import forward_dynamics_derivatives, inverse_dynamics_derivatives
+from cspace.dynamics.exciting_trajectory import ExcitingTrajectory, exciting_trajectory
 from cspace.dynamics.forward import forward_dynamics
+from cspace.dynamics.identify import Identification, identify
 from cspace.dynamics.inertia_checks import InertiaFault
 from cspace.dynamics.inertia_report import InertiaReport, inertia_report
 from cspace.dynamics.inverse import gravity_torques, inverse_dynamics
@@ -14,26 +17,38 @@ from cspace.dynamics.momentum import (
     kinetic_energy,
     potential_energy,
 )
+from cspace.dynamics.regressor import parameter_names, parameters, regressor
 from cspace.dynamics.simulate import simulate
 from cspace.dynamics.simulation import Simulation
+from cspace.dynamics.with_parameters import with_parameters
 
 __all__ = [
     "PD",
+    "BaseParameters",
     "ComputedTorque",
+    "ExcitingTrajectory",
+    "Identification",
     "InertiaFault",
     "InertiaReport",
     "Simulation",
+    "base_parameters",
     "centroidal_momentum",
     "centroidal_momentum_matrix",
     "coriolis_matrix",
+    "exciting_trajectory",
     "forward_dynamics",
     "forward_dynamics_derivatives",
     "gravity_torques",
+    "identify",
     "inertia_report",
     "inverse_dynamics",
     "inverse_dynamics_derivatives",
     "kinetic_energy",
     "mass_matrix",
+    "parameter_names",
+    "parameters",
     "potential_energy",
+    "regressor",
     "simulate",
+    "with_parameters",
 ]

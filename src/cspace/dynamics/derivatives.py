@@ -29,8 +29,8 @@ def inverse_dynamics_derivatives(
     The position of a floating base is varied by a displacement [v; ω] in the axes of the world, its
     velocities and accelerations in these axes kept. Dry friction counts as constant.
 
-    q (..., n) [rad or m], qd, qdd (..., dof), gravity (3,), friction, T_world_base (..., 4, 4), threads: as in
-    inverse_dynamics.
+    q (..., n) [rad or m], qd, qdd (..., dof), gravity (3,), friction, T_world_base (..., 4, 4), threads: as
+    in inverse_dynamics.
 
     Returns dq, dqd and M, each (..., dof, dof): row i holds the derivatives of tau[i].
     Raises InputError for a wrong shape or NaN and where no link has a mass.
@@ -68,5 +68,5 @@ def forward_dynamics_derivatives(
     shared = {"gravity": gravity, "friction": friction, "T_world_base": T_world_base, "threads": threads}
     qdd = forward_dynamics(robot, q, qd, tau, **shared)  # type: ignore[arg-type]
     dq, dqd, M = inverse_dynamics_derivatives(robot, q, qd, qdd, **shared)  # type: ignore[arg-type]
-    inverse = np.linalg.inv(M)
+    inverse = np.linalg.inv(M).astype(np.float64, copy=False)
     return -inverse @ dq, -inverse @ dqd, inverse

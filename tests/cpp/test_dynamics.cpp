@@ -1,0 +1,155 @@
+// Dynamics of the core without Python: forward undoes inverse, columns of the mass matrix are torques, lanes
+// agree with one configuration, on random trees with a fixed or floating base and with shared coordinates.
+#include <cmath>
+#include <new>
+#include <random>
+#include <vector>
+
+#include "check.hpp"
+#include "cspace/dynamics/make_links.hpp"
+#include "cspace/model/robot_model.hpp"
+#include "cspace/spatial/rotation.hpp"
+#include "kernels/dynamics.hpp"
+
+using namespace cspace;
+using namespace cspace::dynamics;
+
+namespace {
+
+struct Random {
+    std::mt19937_64 generator{11};
+    double operator()(double low = -1.0, double high = 1.0) {
+        return std::uniform_real_distribution<double>(low, high)(generator);
+    }
+};
+
+Posed random_pose(Random& random) {
+    const Vec3d a{random(), random(), random()};
+    const double angle = random(-3.0, 3.0);
+    return {spatial::rotation_about((1.0 / norm(a)) * a, std::cos(angle), std::sin(angle)),
+            {random(), random(), random()}};
+}
+
+// A tree of n joints, of which the last shares the coordinate of the first where `shares`.
+model::RobotModel random_robot(Random& random, int n, bool shares) {
+    std::vector<model::Joint> joints;
+    std::vector<model::Body> bodies;
+    for (int k = 0; k <= n; ++k) {
+        const double a = random(0.1, 0.5), b = random(0.1, 0.5), c = random(0.1, 0.5);
+        bodies.push_back(
+            {{random(), random(), random()}, random(0.5, 2.0), {a + b, 0.01, 0.02, a + c, 0.03, b + c}});
+        if (k == n) break;
+        const int parent = k == 0 ? -1 : int(random(0.0, k + 0.999)) - 1;
+        const bool follows = shares && k == n - 1;
+        joints.push_back({random_pose(random), parent, follows ? 0 : k, follows ? -0.7 : 1.0, 0.1,
+                          random() > 0.4, 0.0, 0.05, 0.02, 0.03});
+    }
+    return {joints, {}, bodies, shares ? n - 1 : n};
+}
+
+struct Memory {
+    explicit Memory(std::size_t bytes) : start(::operator new(bytes, std::align_val_t(64))) {}
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
+    ~Memory() { ::operator delete(start, std::align_val_t(64)); }
+    void* start;
+};
+
+std::vector<double> random_numbers(Random& random, std::size_t n) {
+    std::vector<double> numbers(n);
+    for (double& x : numbers) x = random(-2.0, 2.0);
+    return numbers;
+}
+
+struct Case {
+    int n;
+    bool shares, floating;
+};
+
+}  // namespace
+
+TEST(forward_dynamics_undoes_inverse_dynamics_and_the_mass_matrix_is_their_slope) {
+    Random random;
+    for (const Case& c : {Case{1, false, false}, Case{7, false, false}, Case{9, false, true},
+                          Case{8, true, false}, Case{8, true, true}}) {
+        const model::RobotModel robot = random_robot(random, c.n, c.shares);
+        const Links links(robot.tree());
+        const std::size_t n = std::size_t(robot.n_coordinates()), dof = n + (c.floating ? 6 : 0), count = 13;
+        CHECK(links.view().shares == c.shares);
+        const auto q = random_numbers(random, count * n), qd = random_numbers(random, count * dof),
+                   qdd = random_numbers(random, count * dof);
+        std::vector<double> tau(count * dof), again(count * dof), alone(dof), M(count * dof * dof);
+        Rows rows{};
+        rows.bodies = links.view();
+        rows.gravity = {0.3, -0.2, -9.81};
+        rows.floating = c.floating;
+        rows.rubs = true;
+        rows.q = q.data();
+        rows.qd = qd.data();
+        rows.force = qdd.data();
+        rows.result = tau.data();
+        const Memory memory(scratch_bytes(rows));
+        CHECK(kernels::inverse_rows(rows, 0, count, memory.start));
+        rows.force = tau.data();
+        rows.result = again.data();
+        CHECK(kernels::forward_rows(rows, 0, count, memory.start));
+        for (std::size_t i = 0; i < again.size(); ++i) CHECK_NEAR(again[i], qdd[i], 1e-7);
+        // One configuration alone.
+        rows.force = qdd.data();
+        rows.result = alone.data();
+        CHECK(kernels::inverse_rows(rows, 0, 1, memory.start));
+        for (std::size_t i = 0; i < dof; ++i) CHECK_NEAR(alone[i], tau[i], 1e-10);
+        // M q̈ is what acceleration adds to the torques.
+        rows.result = M.data();
+        CHECK(kernels::mass_rows(rows, 0, count, memory.start));
+        rows.force = nullptr;
+        rows.result = again.data();
+        CHECK(kernels::inverse_rows(rows, 0, count, memory.start));
+        for (std::size_t r = 0; r < count; ++r) {
+            for (std::size_t i = 0; i < dof; ++i) {
+                double sum = again[r * dof + i];
+                for (std::size_t j = 0; j < dof; ++j) {
+                    sum += M[(r * dof + i) * dof + j] * qdd[r * dof + j];
+                    CHECK_NEAR(M[(r * dof + i) * dof + j], M[(r * dof + j) * dof + i], 0.0);
+                }
+                CHECK_NEAR(sum, tau[r * dof + i], 1e-9);
+            }
+        }
+        // The Coriolis matrix and the derivatives fit into the same memory, and C q̇ is what velocity adds.
+        std::vector<double> C(count * dof * dof), both(2 * count * dof * dof), rest(count * dof),
+            still(count * dof);
+        rows.rubs = false;
+        rows.what = What::coriolis;
+        rows.result = C.data();
+        CHECK(kernels::spatial_rows(rows, 0, count, memory.start));
+        rows.what = What::derivatives;
+        rows.result = both.data();
+        CHECK(kernels::spatial_rows(rows, 0, count, memory.start));
+        rows.result = again.data();
+        CHECK(kernels::inverse_rows(rows, 0, count, memory.start));
+        rows.qd = rest.data();
+        rows.result = still.data();
+        CHECK(kernels::inverse_rows(rows, 0, count, memory.start));
+        for (std::size_t r = 0; r < count; ++r) {
+            for (std::size_t i = 0; i < dof; ++i) {
+                double sum = still[r * dof + i];
+                for (std::size_t j = 0; j < dof; ++j) sum += C[(r * dof + i) * dof + j] * qd[r * dof + j];
+                CHECK_NEAR(sum, again[r * dof + i], 1e-9);
+            }
+        }
+    }
+}
+
+TEST(a_number_that_is_not_finite_is_refused) {
+    Random random;
+    const model::RobotModel robot = random_robot(random, 3, false);
+    const Links links(robot.tree());
+    std::vector<double> q(3), result(3);
+    q[1] = std::nan("");
+    Rows rows{};
+    rows.bodies = links.view();
+    rows.q = q.data();
+    rows.result = result.data();
+    const Memory memory(scratch_bytes(rows));
+    CHECK(!kernels::inverse_rows(rows, 0, 1, memory.start));
+}
