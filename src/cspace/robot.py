@@ -240,6 +240,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         kinetic_energy = dynamics.kinetic_energy
         potential_energy = dynamics.potential_energy
         regressor = dynamics.regressor
+        simulate = dynamics.simulate
         redundancy = ik.redundancy
         resolved_rate = ik.resolved_rate
         task_velocity = ik.task_velocity
@@ -263,6 +264,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         inverse_dynamics_derivatives = _Later("cspace.dynamics")
         kinetic_energy, potential_energy = (_Later("cspace.dynamics") for _ in range(2))
         regressor = _Later("cspace.dynamics")
+        simulate = _Later("cspace.dynamics")
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
 

@@ -25,6 +25,7 @@ LINES = {
     "plan": "plan ur5e --geometry skeleton --from home --to up",
     "planners": "planners rrt",
     "space": f"space planar_2r --scene {ROOT}/examples/two_links.txt --from -0.3 0.5 --to -1.2 1.25",
+    "simulate": "simulate puma560 0.1 -1.2 1 0.2 0.4 0.3 --duration 0.1",
     "doctor": "doctor",
 }
 Q = [0.1, -1.2, 1.0, 0.2, 0.4, 0.3]
@@ -117,6 +118,21 @@ def test_fk_of_another_frame():
     for frame in robot.frames:
         found = cspace(f"fk ur5e --frame {frame} --json", *typed(Q)).json
         np.testing.assert_allclose(found["matrix"], robot.fk(Q, frame=frame), atol=1e-15)
+
+
+def test_simulate_says_what_the_library_says(tmp_path):
+    robot, picture = cs.load_robot("puma560"), tmp_path / "fall.png"
+    line = f"simulate puma560 --qd 1 0 0 0 0 0 --duration 0.05 --every 10 --plot {picture} --json"
+    found = cspace(line, *typed(Q)).json
+    run = robot.simulate(Q, [1, 0, 0, 0, 0, 0], duration=0.05, dt=1e-3, every=10)
+    for name in ("times", "q", "qd", "energy"):
+        np.testing.assert_array_equal(found[name], getattr(run, name))
+    assert picture.stat().st_size > 10_000
+    assert found["written"] == [str(picture)]
+    told = cspace("simulate puma560 --duration 0.05 --method variational", *typed(Q))
+    assert "ended   ended" in told.out
+    assert told.code == 0
+    assert cspace("simulate puma560 --duration -1", *typed(Q)).code == 2
 
 
 def test_jacobian_says_what_the_library_says():

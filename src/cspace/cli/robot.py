@@ -46,13 +46,16 @@ def load_posed(args: argparse.Namespace) -> tuple[Robot, Array, str | None]:
     robot = load_chosen(args)
     if args.frame is None:
         need_chain(robot)
+    return robot, read_posed(args, robot), args.frame or robot.tip
+
+
+def read_posed(args: argparse.Namespace, robot: Robot) -> Array:
+    """The configuration (n,) that is typed, or named by --pose."""
     if args.pose is None:
-        q = read_configuration(args.q, robot, "q", degrees=args.deg)
-    elif args.q:
+        return read_configuration(args.q, robot, "q", degrees=args.deg)
+    if args.q:
         raise UsageError(f"give either values of the joints or --pose {args.pose}, not both")
-    else:
-        q = robot.named_poses[args.pose]
-    return robot, q, args.frame or robot.tip
+    return robot.named_poses[args.pose]
 
 
 def need_chain(robot: Robot) -> None:

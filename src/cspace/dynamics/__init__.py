@@ -1,6 +1,7 @@
 """Dynamics: the masses of a robot, which torques make a motion, and how it moves under given torques."""
 
 from cspace.dynamics.base_parameters import BaseParameters, base_parameters
+from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.coriolis import coriolis_matrix
 from cspace.dynamics.derivatives import forward_dynamics_derivatives, inverse_dynamics_derivatives
 from cspace.dynamics.exciting_trajectory import ExcitingTrajectory, exciting_trajectory
@@ -17,14 +18,19 @@ from cspace.dynamics.momentum import (
     potential_energy,
 )
 from cspace.dynamics.regressor import parameter_names, parameters, regressor
+from cspace.dynamics.simulate import simulate
+from cspace.dynamics.simulation import Simulation
 from cspace.dynamics.with_parameters import with_parameters
 
 __all__ = [
+    "PD",
     "BaseParameters",
+    "ComputedTorque",
     "ExcitingTrajectory",
     "Identification",
     "InertiaFault",
     "InertiaReport",
+    "Simulation",
     "base_parameters",
     "centroidal_momentum",
     "centroidal_momentum_matrix",
@@ -43,5 +49,6 @@ __all__ = [
     "parameters",
     "potential_energy",
     "regressor",
+    "simulate",
     "with_parameters",
 ]

@@ -14,6 +14,7 @@ from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
 from cspace.plot.plans import plan
 from cspace.plot.scenes import collision, scene
+from cspace.plot.simulations import simulation
 from cspace.plot.space_slices import space_projection, space_slice
 from cspace.plot.vehicles import coverage, drive
 from cspace.plot.worlds import animation, route, routes, world
@@ -31,4 +32,4 @@ __all__ = [
 ]
 __all__ += ["coverage", "drive", "world"]
 __all__ += ["collision", "configuration_space", "plan", "scene", "surface"]
-__all__ += ["space_projection", "space_slice"]
+__all__ += ["simulation", "space_projection", "space_slice"]

@@ -1,0 +1,289 @@
+"""Forward simulation: the motion of a robot under torques, gravity, friction and wrenches."""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Array, guard_memory, positive_number, whole_number
+from cspace.dynamics.mass_matrix import mass_matrix
+from cspace.dynamics.mechanics import Drive, Mechanics, State, WrenchLaw, find_resistances
+from cspace.dynamics.momentum import kinetic_energy, potential_energy
+from cspace.dynamics.rollout import (
+    AT_LIMIT,
+    BROKEN,
+    ENDED,
+    OUT_OF_TIME,
+    STEPS,
+    Control,
+    Record,
+    Task,
+    run_adaptive_steps,
+    run_fixed_steps,
+)
+from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows
+from cspace.dynamics.simulation import Simulation
+from cspace.errors import InputError, InputTypeError
+from cspace.kinematics.batch import check_choice, check_robot, refuse_infinite
+from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.spatial.checks import PoseLike
+from cspace.tolerances import WHOLE_STEP
+
+METHODS: Final = (*STEPS, "adaptive")
+
+FRICTION_SPEED: Final = 1e-2
+"""Where dry friction has 76 % of its value [rad/s or m/s]: a hundredth of the speeds at which arms work."""
+
+MOST_STEPS: Final = 10**12
+"""Of a simulation: years of computation, and the times of neighbouring steps still differ."""
+
+STIFF: Final = 2.0
+"""Decays of a joint within one step from which on explicit methods are unstable: 2.8 for RK4, less with
+others."""
+
+
+def simulate(
+    robot: KinematicModel,
+    q: ArrayLike,
+    qd: ArrayLike,
+    *,
+    control: Control | None = None,
+    duration: float,
+    dt: float,
+    method: str = "rk4",
+    gravity: ArrayLike = EARTH,
+    wrenches: Wrenches | WrenchLaw | None = None,
+    expressed_in: str = "base",
+    friction: bool = True,
+    friction_speed: float = FRICTION_SPEED,
+    T_world_base: PoseLike | None = None,
+    every: int = 1,
+    stop_at_limits: bool = False,
+    tolerance: float = 1e-9,
+    time_limit: float | None = None,
+    threads: int | None = None,
+) -> Simulation:
+    """The motion of a robot from a state on, under torques, gravity, friction and wrenches.
+
+    q (..., n) [rad or m], qd (..., dof): the state at time zero; leading axes are motions that run side by
+    side. control: t, q, qd → tau (..., dof), called once per step and held over it; PD and ComputedTorque are
+    such; None for no torques. duration [s]; dt [s]: the step. The last one ends with the duration.
+
+    method: "rk4", the classical Runge–Kutta method, of order four; "variational", the variational midpoint
+    rule of order two, whose energy does not drift and which conserves momenta; or "adaptive", the method of
+    Dormand and Prince with steps that keep the local error below `tolerance`, absolute and relative. Its
+    states at multiples of dt are interpolated, and without control its steps may be longer.
+
+    gravity (3,) [m/s²]. wrenches: frame → (..., 6), constant, or a function of t, q and qd that returns them,
+    held over a step; expressed_in: as in forward_dynamics. friction: damping and dry friction of the joints;
+    the latter is f tanh(q̇ / friction_speed), so joints creep instead of sticking. The variational method
+    takes it implicitly; the others need steps shorter than the decay times of damped joints. T_world_base
+    (..., 4, 4): where a floating base starts, or a fixed one stands.
+
+    every: of so many states one is recorded, and the last; the adaptive method also keeps its own steps.
+    stop_at_limits: end where a joint passes one of its limits; otherwise limits do not count. time_limit [s]:
+    of the computation, looked at between steps. threads: as in fk.
+
+    Returns a Simulation, which is falsy with a reason if it broke down.
+    Raises InputError for a wrong shape or NaN, also of what control returns, for steps and durations that are
+    not positive, a start outside of the limits that count, and where a joint moves no inertia;
+    UnknownNameError for an unknown method or frame.
+
+    Marsden and West 2001 (variational); Dormand and Prince 1980 (adaptive).
+    """
+    name = check_choice(method, "method", METHODS)
+    mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
+    start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
+    task = _make_task(
+        mechanics, start, control, wrenches, duration, dt, every, stop_at_limits, tolerance, time_limit
+    )
+    mechanics.accelerations(start, Drive(np.zeros_like(start.qd), None))  # raises where M is singular
+    numbers = task.steps / task.every * start.qd.size * (16.0 if robot.floating else 4.0)
+    with guard_memory("duration / dt", f"{task.steps} steps", numbers, "record fewer states (every=)"):
+        record = run_adaptive_steps(task) if name == "adaptive" else run_fixed_steps(task, name)
+        return _make_answer(task, record, name)
+
+
+def _make_mechanics(
+    robot: KinematicModel,
+    gravity: ArrayLike,
+    expressed_in: str,
+    friction: bool,
+    friction_speed: float,
+    threads: int | None,
+) -> Mechanics:
+    """What acts on a robot at every time, checked."""
+    check_robot(robot)
+    damping, dry = find_resistances(robot) if friction else np.zeros((2, robot.dof))
+    return Mechanics(
+        robot,
+        check_gravity(gravity),
+        check_choice(expressed_in, "expressed_in", ("base", "tip")),
+        damping,
+        dry,
+        positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]"),
+        threads,
+    )
+
+
+def _make_task(
+    mechanics: Mechanics,
+    start: State,
+    control: Control | None,
+    wrenches: Wrenches | WrenchLaw | None,
+    duration: float,
+    dt: float,
+    every: int,
+    stop_at_limits: bool,
+    tolerance: float,
+    time_limit: float | None,
+) -> Task:
+    """The arguments of a simulation, checked."""
+    if control is not None and not callable(control):
+        raise InputTypeError(
+            f"control is a {type(control).__name__}, expected a function of t, q and qd that returns torques,"
+            " or dynamics.PD or dynamics.ComputedTorque"
+        )
+    length = positive_number(duration, "duration", "it must be one positive number [s]")
+    step = positive_number(dt, "dt", "it must be one positive number [s]")
+    if length / step > MOST_STEPS:
+        raise InputError(
+            f"dt is {step:g} s; {length:g} s then take {length / step:.3g} steps, of {MOST_STEPS:g} at most"
+        )
+    late = math.inf if time_limit is None else perf_counter() + positive_number(time_limit, "time_limit")
+    return Task(
+        mechanics,
+        start,
+        control,
+        wrenches,
+        length,
+        step,
+        max(1, math.ceil(length / step - WHOLE_STEP)),
+        whole_number(every, "every", 1, MOST_STEPS),
+        stop_at_limits,
+        positive_number(tolerance, "tolerance"),
+        late,
+    )
+
+
+def _check_start(
+    robot: KinematicModel,
+    q: ArrayLike,
+    qd: ArrayLike,
+    T_world_base: PoseLike | None,
+    threads: int | None,
+    stop_at_limits: bool,
+) -> State:
+    """The state at time zero; leading axes are broadcast."""
+    batch = dynamic_rows(robot, q, qd=qd, T_world_base=T_world_base, threads=threads)
+    refuse_infinite(batch)
+    assert batch.qd is not None
+    n, T = len(robot.joint_names), batch.T_world_base
+    if robot.floating and T is None:
+        T = np.eye(4)[None]
+    if T is not None and robot.floating:
+        T = np.broadcast_to(T, (len(batch.q), 4, 4)).reshape((*batch.shape, 4, 4)).copy()
+    elif T is not None:
+        T = T.reshape((*(batch.shape if len(T) > 1 else ()), 4, 4))
+    start = State(batch.q.reshape((*batch.shape, n)), batch.qd.reshape((*batch.shape, robot.dof)), T)
+    beyond = (start.q < robot.limits.lower) | (start.q > robot.limits.upper)
+    if stop_at_limits and beyond.any():
+        joint = int(np.argwhere(beyond)[0][-1])
+        low, high = robot.limits.lower[joint], robot.limits.upper[joint]
+        raise InputError(
+            f"q starts with joint {robot.joint_names[joint]!r} outside of its limits, {low:g} to {high:g};"
+            " start inside, or leave out stop_at_limits"
+        )
+    return start
+
+
+def _make_answer(task: Task, record: Record, method: str) -> Simulation:
+    """The answer of what was recorded."""
+    count = record.count
+    T = record.T_world_base
+    q, qd = record.q[..., :count, :], record.qd[..., :count, :]
+    T = None if T is None else T[..., :count, :, :]
+    good = (record.status == ENDED) | (record.status == AT_LIMIT)
+    return Simulation(
+        task.mechanics.robot.name,
+        tuple(task.mechanics.robot.joint_names),
+        method,
+        record.times[:count],
+        q,
+        qd,
+        record.tau[..., :count, :],
+        _find_energy(task, q, qd, T),
+        T,
+        record.stopped,
+        np.asarray(record.status == ENDED),
+        _name_reason(task, record, method),
+        bool(good.all()),
+        tuple(record.pieces),
+    )
+
+
+def _find_energy(task: Task, q: Array, qd: Array, T: Array | None) -> Array:
+    """The energy (..., k) [J] of states; NaN where there is none."""
+    robot, threads = task.mechanics.robot, task.mechanics.threads
+    valid = np.isfinite(qd).all(axis=-1)
+    whole = bool(valid.all())
+    if T is None and task.start.T_world_base is not None:
+        place = task.start.T_world_base
+        T = place if place.ndim == 2 else np.broadcast_to(place[..., None, :, :], (*valid.shape, 4, 4))
+    if not whole:
+        q, qd = q[valid], qd[valid]
+        T = T if T is None or T.ndim == 2 else T[valid]
+    energy = kinetic_energy(robot, q, qd, T_world_base=T, threads=threads)
+    energy = energy + potential_energy(
+        robot, q, gravity=task.mechanics.gravity, T_world_base=T, threads=threads
+    )
+    if whole:
+        return energy
+    result = np.full(valid.shape, np.nan)
+    result[valid] = energy
+    return result
+
+
+def _name_reason(task: Task, record: Record, method: str) -> str:
+    """How the simulation ended: its first row that did not come to its end, those that broke down before
+    others."""
+    status = record.status.ravel()
+    order = [
+        int(row) for code in (BROKEN, OUT_OF_TIME, AT_LIMIT) for row in np.flatnonzero(status == code)[:1]
+    ]
+    if not order:
+        return "ended"
+    row = order[0]
+    t = f"t = {record.stopped.ravel()[row]:g} s" + (f" in row {row}" if record.status.ndim else "")
+    if status[row] == OUT_OF_TIME:
+        return f"time limit, at {t}"
+    if status[row] == AT_LIMIT:
+        return f"limit reached: joint {task.mechanics.robot.joint_names[record.joint.ravel()[row]]!r} at {t}"
+    word = "not solved: no step from" if method == "variational" else "not finite: after"
+    return f"{word} {t}; {_advise(task, method)}"
+
+
+def _advise(task: Task, method: str) -> str:
+    """What helps a simulation that broke down."""
+    stiff = task.mechanics.damping + task.mechanics.dry / task.mechanics.friction_speed
+    if method == "rk4" and stiff.any():
+        M = mass_matrix(task.mechanics.robot, task.start.q, T_world_base=task.start.T_world_base)
+        rates = (
+            (stiff * np.diagonal(np.linalg.inv(M), axis1=-2, axis2=-1)).reshape(-1, len(stiff)).max(axis=0)
+        )
+        fastest = int(rates.argmax())
+        if task.dt * rates[fastest] > STIFF:
+            first = len(stiff) - len(task.mechanics.robot.joint_names)
+            joint = task.mechanics.robot.joint_names[fastest - first]
+            return (
+                f"the friction of joint {joint!r} stops it within {1.0 / rates[fastest]:.2g} s; use a"
+                ' shorter dt or method="variational"'
+            )
+    if method == "adaptive":
+        return "no step is short enough"
+    half = "; a base may not rotate by half a turn in one step" if task.mechanics.robot.floating else ""
+    return f"use a shorter dt{half}"

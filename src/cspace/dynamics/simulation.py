@@ -1,0 +1,157 @@
+"""The answer of a simulation: states over time, their energy, and why it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.dynamics.mechanics import Flags, State, advance_state
+from cspace.errors import InputError
+from cspace.spatial import left_jacobian_inv_so3, left_jacobian_so3, log_so3
+from cspace.tables import count_things, html_table, one_line, shown
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """The motion between two times as polynomials of θ = (t − begin) / h, from 0 to 1.
+
+    dx, dv: the coefficients (..., dof) of θ, θ², … of displacement and change of velocity.
+    """
+
+    begin: float
+    h: float
+    state: State
+    dx: Sequence[Array]
+    dv: Sequence[Array]
+
+    def find_state(self, t: float, floating: bool) -> State:
+        """The state at a time."""
+        theta = (t - self.begin) / self.h
+        powers = [theta ** (k + 1) for k in range(max(len(self.dx), len(self.dv)))]
+        dx, dv = (
+            sum((p * c for p, c in zip(powers, rates, strict=False)), np.zeros_like(self.state.qd))
+            for rates in (self.dx, self.dv)
+        )
+        return advance_state(self.state, dx, dv, floating)
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """The motion of a robot under forces; falsy if it broke down before its end.
+
+    robot, method: names. joints: those of the coordinates. times (k,) [s]: 0 first, the end last.
+    q (..., k, n) [rad or m], qd (..., k, dof): the states. tau (..., k, dof) [N·m or N]: the torques of the
+    control, held from each time on. energy (..., k) [J]: kinetic and potential energy of the links.
+    T_world_base (..., k, 4, 4): the poses of a floating base, None for a fixed one. A row of a batch that
+    ended early is NaN from then on.
+
+    stopped (...) [s]: how far each row came. reason: "ended", "limit reached: …" with the joint, "not finite:
+    …", "not solved: …" or "time limit", of the first row that did not end. ended (...): which rows came to
+    their end.
+    """
+
+    robot: str
+    joints: tuple[str, ...]
+    method: str
+    times: Array
+    q: Array
+    qd: Array
+    tau: Array
+    energy: Array
+    T_world_base: Array | None
+    stopped: Array
+    ended: Flags
+    reason: str
+    _truth: bool = True
+    _pieces: tuple[Piece, ...] = field(default=(), repr=False)
+
+    def __bool__(self) -> bool:
+        return self._truth
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __call__(self, t: float) -> tuple[Array, ...]:
+        """The state at any time within the simulation.
+
+        Of the adaptive method it is that of its own interpolation, with errors of the size of its tolerance.
+        Otherwise it is the cubic through the recorded positions and velocities before and after t.
+
+        t [s]. Returns q (..., n) and qd (..., dof), and T_world_base (..., 4, 4) of a floating base.
+        Raises InputError for a time outside of the simulation.
+        """
+        time = float(as_floats(t, "t"))
+        if not self.times[0] <= time <= self.times[-1]:
+            raise InputError(f"t is {time:g} s; the simulation is from 0 to {self.times[-1]:g} s")
+        state = self._find_piece(time).find_state(time, self.T_world_base is not None)
+        both = state.q, state.qd
+        return both if state.T_world_base is None else (*both, state.T_world_base)
+
+    def _find_piece(self, t: float) -> Piece:
+        if self._pieces:
+            begins = [piece.begin for piece in self._pieces]
+            return self._pieces[max(int(np.searchsorted(begins, t, side="right")) - 1, 0)]
+        k = min(max(int(np.searchsorted(self.times, t, side="right")) - 1, 0), max(len(self) - 2, 0))
+        return self._find_cubic(k)
+
+    def _find_cubic(self, k: int) -> Piece:
+        """The cubic of Hermite from record k to the next."""
+        state = self._state(k)
+        if len(self) == 1:
+            return Piece(0.0, 1.0, state, (), ())
+        after, h = self._state(k + 1), float(self.times[k + 1] - self.times[k])
+        slope, slope_after = h * state.qd, h * after.qd
+        step = np.zeros_like(state.qd)
+        step[..., step.shape[-1] - state.q.shape[-1] :] = after.q - state.q
+        if self.T_world_base is not None:
+            T, T_after = self.T_world_base[..., k, :, :], self.T_world_base[..., k + 1, :, :]
+            step[..., :3] = T_after[..., :3, 3] - T[..., :3, 3]
+            step[..., 3:6] = log_so3(T_after[..., :3, :3] @ np.swapaxes(T[..., :3, :3], -1, -2))
+            J = left_jacobian_inv_so3(step[..., 3:6])
+            slope_after[..., 3:6] = np.einsum("...ij,...j", J, slope_after[..., 3:6])
+        bend = 3.0 * step - 2.0 * slope - slope_after
+        dx = slope, bend, slope + slope_after - 2.0 * step
+        return _CubicPiece(float(self.times[k]), h, state, dx, ())
+
+    def _state(self, k: int) -> State:
+        T = None if self.T_world_base is None else self.T_world_base[..., k, :, :]
+        return State(self.q[..., k, :], self.qd[..., k, :], T)
+
+    @property
+    def summary(self) -> str:
+        """What was simulated and how it ended, in one line."""
+        rows = self.stopped.size
+        many = f", {count_things(rows, 'row')}" if self.stopped.ndim else ""
+        records = f"{count_things(len(self), 'state')} to {shown(self.times[-1])} s"
+        return f"{self.robot} by {self.method}: {records}{many}, {self.reason}"
+
+    def __repr__(self) -> str:
+        return one_line("Simulation", self.summary)
+
+    def _repr_html_(self) -> str:
+        titles = ["row", "until [s]", "energy at first [J]", "energy at last [J]"]
+        energy, stopped = self.energy.reshape(-1, len(self)), self.stopped.ravel()
+        lasts = np.searchsorted(self.times, stopped, side="right") - 1
+        rows = [
+            [str(i), shown(until), shown(row[0]), shown(row[last])]
+            for i, (until, row, last) in enumerate(zip(stopped, energy, lasts, strict=True))
+        ]
+        return html_table(self.summary, titles, rows)
+
+
+class _CubicPiece(Piece):
+    """A piece whose velocity is the rate of its displacement."""
+
+    def find_state(self, t: float, floating: bool) -> State:
+        theta = (t - self.begin) / self.h
+        a, b, c = self.dx
+        dx = theta * (a + theta * (b + theta * c))
+        rate = (a + theta * (2.0 * b + 3.0 * theta * c)) / self.h
+        state = advance_state(self.state, dx, np.zeros_like(dx), floating)
+        if floating:
+            J = left_jacobian_so3(dx[..., 3:6])
+            rate[..., 3:6] = np.einsum("...ij,...j", J, rate[..., 3:6])
+        return State(state.q, rate, state.T_world_base)
