@@ -30,6 +30,7 @@ sys.path.append(str(HERE.parent / "tests"))
 import cspace as cs  # noqa: E402
 from collision.motion_bench import ROBOTS, problems, published_robot  # noqa: E402
 from cspace.planning import AORRTC, RRT, ArmSpace, InformedRRTStar, RRTConnect, RRTStar  # noqa: E402
+from planning_summary import summarize  # noqa: E402
 
 IMPROVE = 8000
 """Motions that AORRTC may check: about ten milliseconds."""
@@ -44,17 +45,6 @@ COLUMNS = {
     "cost": "cost_simplified",
 }
 """Of the peer's lines."""
-
-
-def summarize(values: list[float]) -> dict[str, float]:
-    """Median, mean, p95 and the largest."""
-    rows = np.array(values)
-    return {
-        "median": float(np.median(rows)),
-        "mean": float(rows.mean()),
-        "p95": float(np.quantile(rows, 0.95)),
-        "worst": float(rows.max()),
-    }
 
 
 def measure_plans(name: str, repeat: int, vamp: Path | None) -> dict[str, Any]:

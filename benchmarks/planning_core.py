@@ -27,7 +27,7 @@ sys.path.append(str(HERE.parent / "tests"))
 
 import cspace as cs  # noqa: E402
 from collision.motion_bench import ROBOTS, problems, published_robot  # noqa: E402
-from planning import summarize  # noqa: E402
+from planning_summary import summarize  # noqa: E402
 
 EDGES, EDGE_LENGTH = 96, 1.0
 """Random edges per problem, and their length [rad] before they are clipped to the bounds."""

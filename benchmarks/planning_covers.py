@@ -31,7 +31,7 @@ import cspace as cs  # noqa: E402
 from collision.motion_bench import problems, published_robot  # noqa: E402
 from cspace.model import Geometry, Mesh  # noqa: E402
 from cspace.planning import ArmSpace, RRTConnect  # noqa: E402
-from planning import summarize  # noqa: E402
+from planning_summary import summarize  # noqa: E402
 
 MESHES: Final = "cmeel.prefix/share/example-robot-data/robots/panda_description/urdf/panda.urdf"
 """Where the wheel of example-robot-data puts the description."""

@@ -26,7 +26,7 @@ import numpy as np  # noqa: E402
 import cspace as cs  # noqa: E402
 from collision.motion_bench import ROBOTS, problems, published_robot  # noqa: E402
 from cspace.planning import PRM, ArmSpace, LazyPRM, Plan, PRMStar, Roadmap, RRTConnect  # noqa: E402
-from planning import summarize  # noqa: E402
+from planning_summary import summarize  # noqa: E402
 
 SIZES = (1000, 4000, 10000)
 """Samples of the roadmaps."""

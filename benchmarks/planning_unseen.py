@@ -38,7 +38,7 @@ import cspace as cs  # noqa: E402
 from collision.motion_bench import ROBOTS, obstacle, published_robot  # noqa: E402
 from cspace.planning import ArmSpace, RRTConnect  # noqa: E402
 from motion_judge import MotionJudge, rotation_of  # noqa: E402
-from planning import summarize  # noqa: E402
+from planning_summary import summarize  # noqa: E402
 from planning_judge import BAND, Judge  # noqa: E402
 from planning_proofs import PRESSED, press_edges, prove_edges  # noqa: E402
 

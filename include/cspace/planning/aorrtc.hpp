@@ -30,6 +30,7 @@ class CostBoundedTrees {
     // Searches for a path shorter than `bound`, until `budget` edges are checked.
     SearchEnd run(float bound, std::int64_t budget) {
         bound_ = bound;
+        trees_.allow_edges(budget);
         list_pairs();
         while (counts().edges < budget && !pairs_.empty()) {
             if (!space_.has_time()) return SearchEnd::no_time;

@@ -35,6 +35,7 @@ class RrtConnect {
 
     // Searches until the trees meet, or `budget` edges are checked in all. Goes on when called again.
     SearchEnd run(std::int64_t budget) {
+        trees_.allow_edges(budget);
         if (straight_.empty()) list_straight_edges();
         while (counts().edges < budget) {
             if (!space_.has_time()) return SearchEnd::no_time;

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -70,7 +71,10 @@ class TreePair {
         Tree& tree = trees_[std::size_t(t)];
         return space_.find_nearest(tree.nodes, tree.leaves, q);
     }
+    // Motions that may be checked in all; further ones count as blocked without a look.
+    void allow_edges(std::int64_t most) { most_edges_ = most; }
     bool check_edge(const float* a, const float* b) {
+        if (counts_.edges >= most_edges_) return false;
         ++counts_.edges;
         const bool is_free = space_.is_free(a, b);
         counts_.blocked += !is_free;
@@ -119,6 +123,7 @@ class TreePair {
     std::array<Tree, 2> trees_;
     std::vector<PathNode> path_;
     Counts counts_;
+    std::int64_t most_edges_ = std::numeric_limits<std::int64_t>::max();
 
     // The path through a node of tree 0 and one of tree 1.
     void join(int from_start, int from_goal) {
