@@ -38,9 +38,9 @@ import cspace as cs  # noqa: E402
 from collision.motion_bench import ROBOTS, obstacle, published_robot  # noqa: E402
 from cspace.planning import ArmSpace, RRTConnect  # noqa: E402
 from motion_judge import MotionJudge, rotation_of  # noqa: E402
-from planning_summary import summarize  # noqa: E402
 from planning_judge import BAND, Judge  # noqa: E402
 from planning_proofs import PRESSED, press_edges, prove_edges  # noqa: E402
+from planning_summary import summarize  # noqa: E402
 
 ARMS: Final = {"ur5e": 0.85, "iiwa14": 0.8, "fr3": 0.8, "gen3": 0.9, "xarm7": 0.7}
 """The arms, and how far from the base obstacles stand at most [m]."""
