@@ -238,6 +238,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         inertia_report = dynamics.inertia_report
         inverse_dynamics_derivatives = dynamics.inverse_dynamics_derivatives
         kinetic_energy = dynamics.kinetic_energy
+        operational_space = dynamics.operational_space
         potential_energy = dynamics.potential_energy
         regressor = dynamics.regressor
         simulate = dynamics.simulate
@@ -263,6 +264,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         forward_dynamics_derivatives = _Later("cspace.dynamics")
         inverse_dynamics_derivatives = _Later("cspace.dynamics")
         kinetic_energy, potential_energy = (_Later("cspace.dynamics") for _ in range(2))
+        operational_space = _Later("cspace.dynamics")
         regressor = _Later("cspace.dynamics")
         simulate = _Later("cspace.dynamics")
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))

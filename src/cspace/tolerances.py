@@ -548,4 +548,8 @@ CONVERGED_FIT: Final = 1e-12
 """Relative decrease of a sum of squares, and step relative to its scale, after which a fit of parameters
 ends: some thousand roundings."""
 
+LOST_MOTION: Final = 1e-12
+"""How much a unit wrench moves a frame, relative to that of the best one, that is nothing: rounding leaves
+1e-16, and of the root, as a singular value, 1e-6 is nearly singular."""
+
 __all__ = [name for name in globals() if name.isupper()]

@@ -17,6 +17,7 @@ from cspace.dynamics.momentum import (
     kinetic_energy,
     potential_energy,
 )
+from cspace.dynamics.operational_space import OperationalSpace, operational_space
 from cspace.dynamics.regressor import parameter_names, parameters, regressor
 from cspace.dynamics.simulate import simulate
 from cspace.dynamics.simulation import Simulation
@@ -30,6 +31,7 @@ __all__ = [
     "Identification",
     "InertiaFault",
     "InertiaReport",
+    "OperationalSpace",
     "Simulation",
     "base_parameters",
     "centroidal_momentum",
@@ -45,6 +47,7 @@ __all__ = [
     "inverse_dynamics_derivatives",
     "kinetic_energy",
     "mass_matrix",
+    "operational_space",
     "parameter_names",
     "parameters",
     "potential_energy",
