@@ -132,6 +132,18 @@ def test_one_row_alone_and_among_others_agree(robot, rng):
     )
 
 
+@pytest.mark.parametrize("count", [1, 2, 9])
+@pytest.mark.parametrize("robot", [ARMS[1], TREES[0]], ids=lambda robot: robot.name)
+def test_a_result_may_be_written_over_an_argument(robot, rng, count):
+    q = random_q(robot, rng, count)
+    qd, force = rng.normal(size=(2, count, robot.dof))
+    for function in (robot.inverse_dynamics, robot.forward_dynamics):
+        expected = function(q, qd, force)
+        for k in range(3):
+            given = [q.copy(), qd.copy(), force.copy()]
+            np.testing.assert_array_equal(function(*given, out=given[k]), expected)
+
+
 @pytest.mark.parametrize("robot", [*TREES[:3], ARMS[1]], ids=lambda robot: robot.name)
 def test_a_floating_base_obeys_the_law_of_the_whole_body(robot, rng):
     free = cs.Robot(robot.description, floating=True)

@@ -49,19 +49,14 @@ def run_rows(
     gravity: Array,
     friction: bool,
 ) -> bool:
-    """Fill in the result; see _core._dynamics_rows."""
-    return _core._dynamics_rows(
-        robot,
-        what,
-        batch.q,
-        batch.qd,
-        force,
-        batch.T_world_base,
-        gravity,
-        friction,
-        result,
-        batch.threads,
-    )
+    """Fill in the result, which may be one of the arguments; see _core._dynamics_rows."""
+    given = (batch.q, batch.qd, force, batch.T_world_base, gravity)
+    is_shared = any(array is not None and np.may_share_memory(array, result) for array in given)
+    to = np.empty_like(result) if is_shared else result
+    is_done = _core._dynamics_rows(robot, what, *given, friction, to, batch.threads)
+    if is_shared:
+        result[...] = to
+    return is_done
 
 
 def fill_rows(
