@@ -29,9 +29,6 @@ def test_dynamics(name, floating):
     robot = Robot(from_urdf(FILES[name]), floating=floating)
     oracle = PinocchioRobot(FILES[name], robot)
     pin, model, data = oracle.pin, oracle.model, oracle.data
-    moving = sum(inertia.mass for inertia in list(model.inertias)[1:])
-    if model.nv == 0 or moving == 0.0:
-        pytest.skip("nothing with a mass moves")
     model.gravity.linear = np.array([0.3, -0.2, -9.81])
     rng = np.random.default_rng(len(name))
     T = random_pose(rng) if floating else np.eye(4)
@@ -49,6 +46,9 @@ def test_dynamics(name, floating):
     extra = np.diag(own) - armature if np.abs(own).max(initial=0.0) else 0 * armature
     tau = S.T @ pin.rnea(model, data, pin_q, S @ qd, change)
     same(robot.inverse_dynamics(q, qd, qdd, **laws), tau + extra @ qdd)
+    if robot.dof == 0:  # one rigid body on a fixed base
+        assert model.nv == 0
+        return
     upper = np.triu(pin.crba(model, data, pin_q))
     M = S.T @ (upper + np.triu(upper, 1).T) @ S + extra
     same(robot.mass_matrix(q, **placed), M)
