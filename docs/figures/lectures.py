@@ -240,6 +240,61 @@ def descents():
     return axes
 
 
+def point_arm(*links):
+    """A planar arm in a vertical plane; each link (mass, length) carries its mass at its end."""
+    bodies, joints, end = [cs.model.Link("base")], [], 0.0
+    for k, (mass, length) in enumerate(links):
+        point = cs.model.Inertial(mass, (length, 0, 0), np.zeros((3, 3)))
+        parent = bodies[-1].name
+        bodies.append(cs.model.Link(f"link_{k + 1}", point))
+        origin = cs.pose((end, 0, 0))
+        joints.append(
+            cs.model.Joint(f"joint_{k + 1}", "continuous", parent, bodies[-1].name, origin, axis=(0, -1, 0))
+        )
+        end = length
+    return cs.Robot(cs.model.Description("points", tuple(bodies), tuple(joints)))
+
+
+def forces():
+    """Torques of a motion, what they are spent on, and the motion that they make."""
+    arm, count = point_arm((1.5, 0.5), (0.7, 0.3)), 200
+    t = np.linspace(0, 1, count + 1)[:, None]
+    goal = np.array([1.2, 2.0])
+    q = goal * (10 * t**3 - 15 * t**4 + 6 * t**5)
+    qd, qdd = goal * 30 * t**2 * (1 - t) ** 2, goal * 60 * t * (1 - t) * (1 - 2 * t)
+    tau = arm.inverse_dynamics(q, qd, qdd)
+    parts = {
+        "torque": tau,
+        "acceleration, M q̈": (arm.mass_matrix(q) @ qdd[..., None])[..., 0],
+        "velocity, C q̇": (arm.coriolis_matrix(q, qd) @ qd[..., None])[..., 0],
+        "weight, g": arm.gravity_torques(q),
+    }
+    figure, axes = plt.subplots(1, 3, figsize=(11.5, 3.4), layout="constrained")
+    for joint, ax in enumerate(axes[:2]):
+        for (name, values), color in zip(parts.items(), (INK, BLUE, GREEN, RED), strict=True):
+            ax.plot(t[:, 0], values[:, joint], color=color, lw=2.2 if name == "torque" else 1.4, label=name)
+        ax.set(title=f"joint {joint + 1}", xlabel="time [s]", ylabel="torque [N·m]")
+        ax.grid(alpha=0.3)
+    axes[0].legend(fontsize=8)
+    for robot, style, name in (
+        (arm, "-", "the same arm"),
+        (arm.with_payload(0.02, com=(0.3, 0, 0), frame="link_2"), "--", "with 20 g at the tip"),
+    ):
+        run = robot.simulate(
+            [0, 0],
+            [0, 0],
+            control=lambda now, *_: tau[min(round(now * count), count)],
+            duration=1,
+            dt=1 / count,
+        )
+        for joint, color in enumerate((BLUE, RED)):
+            axes[2].plot(run.times, run.q[:, joint], style, color=color, label=f"joint {joint + 1}, {name}")
+    axes[2].set(title="replayed", xlabel="time [s]", ylabel="angle [rad]")
+    axes[2].legend(fontsize=8)
+    axes[2].grid(alpha=0.3)
+    return axes
+
+
 PICTURES: tuple[Callable[[], Any], ...] = (
     one_point_two_frames,
     turned_tip,
@@ -254,6 +309,7 @@ PICTURES: tuple[Callable[[], Any], ...] = (
     rpr_solutions,
     elbow_solutions,
     descents,
+    forces,
 )
 
 
