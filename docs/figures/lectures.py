@@ -269,7 +269,7 @@ def forces():
         "velocity, C q̇": (arm.coriolis_matrix(q, qd) @ qd[..., None])[..., 0],
         "weight, g": arm.gravity_torques(q),
     }
-    figure, axes = plt.subplots(1, 3, figsize=(11.5, 3.4), layout="constrained")
+    _, axes = plt.subplots(1, 3, figsize=(11.5, 3.4), layout="constrained")
     for joint, ax in enumerate(axes[:2]):
         for (name, values), color in zip(parts.items(), (INK, BLUE, GREEN, RED), strict=True):
             ax.plot(t[:, 0], values[:, joint], color=color, lw=2.2 if name == "torque" else 1.4, label=name)
