@@ -79,7 +79,7 @@ WEIGHTS = {
     "xarm7": 13.7,
 }
 """Rounded weights [kg] as the makers advertise them, to find a wrong unit or a lost link. Those of the
-iiwa were looked up in its data sheet, the others were not. They count cables and brackets that a file leaves out."""
+iiwa were looked up in its data sheet, the others were not. They count cables that a file leaves out."""
 
 NEAR_THE_WEIGHT = 0.2
 
