@@ -50,6 +50,31 @@ def test_rows_of_a_redundant_arm_reach_the_pose_within_limits(name, seed):
         assert len(goals.find_more().rows) > len(goals.rows)
 
 
+@pytest.mark.parametrize("name", ["ur5e", "panda", "planar_3r"])
+def test_several_poses_have_the_rows_of_each(name):
+    robot = arm(name)
+    space = ArmSpace(robot)
+    start, *q = robot.random_configuration(4, rng=3)
+    poses = robot.fk(np.array(q))
+    goals = find_goals(robot, space, start[None], poses)
+    each = [find_goals(robot, space, start[None], T) for T in poses]
+    rows = np.concatenate([part.rows for part in each])
+    order = np.argsort(np.linalg.norm(rows - start, axis=1), kind="stable")
+    np.testing.assert_allclose(goals.rows, rows[order], atol=1e-12)
+    assert goals.is_whole == all(part.is_whole for part in each)
+    assert (goals.find_more is None) == all(part.find_more is None for part in each)
+    if goals.find_more is not None:
+        assert len(goals.find_more().rows) > len(goals.rows)
+    far = robot.fk(q[0]) + np.array([[0, 0, 0, 9.0], [0] * 4, [0] * 4, [0] * 4])
+    np.testing.assert_array_equal(
+        find_goals(robot, space, start[None], [far, poses[0]]).rows, each[0].rows[: len(each[0].rows)]
+    )
+    none = cs.plan(robot, start, [far] * 5)
+    assert none.status == "unreachable"
+    assert none.reason.startswith("pose 0: no IK solution")
+    assert none.reason.endswith("and 2 more")
+
+
 def test_rows_outside_limits_and_rows_of_nan_are_left_out():
     robot = arm("ur5e")
     rows = np.array([[0.1] * 6, [np.nan] * 6, [7.0, 0, 0, 0, 0, 0], [0, 0, 2 * np.pi + 0.1, 0, 0, 0]])

@@ -10,7 +10,7 @@ from cspace.collision.checks import explain_contacts
 from cspace.errors import InputError, InputTypeError
 from cspace.plan_motion.goals import GoalLike, Goals
 from cspace.plan_motion.parts import solve_parts
-from cspace.plan_motion.poses import solve_pose
+from cspace.plan_motion.poses import solve_any_pose, solve_pose
 from cspace.plan_motion.regions import sample_region
 from cspace.planning import ArmSpace, Region
 from cspace.planning.space import are_names
@@ -46,6 +46,8 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: GoalLike) -> 
     shape = shape_of(goal, "goal")
     if shape == (4, 4) and (space.dof != POSE_ROWS or is_pose(goal)):
         return solve_pose(robot, space, starts[0], goal)
+    if shape[1:] == (4, 4) and shape[0]:
+        return solve_any_pose(robot, space, starts[0], as_pose(goal, "goal"))
     if not shape and is_pose(goal):  # an object that holds a pose, such as scipy's RigidTransform
         return solve_pose(robot, space, starts[0], one_pose(goal, "goal"))
     check_kind(goal, shape, space.dof)
@@ -57,8 +59,8 @@ def check_kind(goal: object, shape: tuple[int, ...], dof: int) -> None:
     if len(shape) not in (1, 2):
         said = f"has shape {shape}" if shape else f"is a {type(goal).__name__}"
         raise InputTypeError(
-            f"goal {said}; it must be configurations (dof,) or (g, dof), one pose (4, 4), a named pose, a"
-            " dict of keywords of robot.ik, or a cs.planning.Region"
+            f"goal {said}; it must be configurations (dof,) or (g, dof), poses (4, 4) or (g, 4, 4), a named"
+            " pose, a dict of keywords of robot.ik, or a cs.planning.Region"
         )
     if shape == (POSITION_SIZE,) and dof != POSITION_SIZE:
         raise InputError(

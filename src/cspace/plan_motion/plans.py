@@ -47,12 +47,13 @@ def plan(
     """A free way of a robot from a start to a goal, every motion of it proved.
 
     start: a configuration (dof,) [rad or m], or several (s, dof) to choose from; or a name of
-    `robot.named_poses`, such as "home". goal: the same; or a pose (4, 4) of the tip, reached by whichever of
-    its IK solutions within the limits is easiest; the keywords of `robot.ik` as a dict, such as
-    {"position": p}; or a `planning.Region` of poses, of which free configurations are sampled. Of redundant
-    arms the solutions are samples over the self-motion. scene: None without obstacles. planner: a name of
-    `cs.planning.PLANNERS`, or an ArmPlanner. margin [m]: everything keeps so far away from everything else.
-    rng: seed or generator; the same seed gives the same plan on every machine. options: those of the planner.
+    `robot.named_poses`, such as "home". goal: the same; or a pose (4, 4) of the tip or several (g, 4, 4),
+    reached by whichever of their IK solutions within the limits is easiest; the keywords of `robot.ik` as a
+    dict, such as {"position": p}; or a `planning.Region` of poses, of which free configurations are sampled.
+    Of redundant arms the solutions are samples over the self-motion. scene: None without obstacles. planner:
+    a name of `cs.planning.PLANNERS`, or an ArmPlanner. margin [m]: everything keeps so far away from
+    everything else. rng: seed or generator; the same seed gives the same plan on every machine. options:
+    those of the planner.
     verify: "mesh" checks the path once more, at samples, with the exact shapes of the links in place of their
     spheres (needs the extra `mesh`); a path that fails is not returned. A collision.MeshJudge of a robot with
     the same joints may be given instead, such as the one with meshes where this one has given spheres.

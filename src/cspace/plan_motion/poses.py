@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -30,6 +31,9 @@ MANY_VALUES: Final = 256
 MOST_VALUES: Final = 4096
 """Combinations of values of several redundant joints: ten milliseconds."""
 
+SHOWN_POSES: Final = 3
+"""Poses without a solution of which a reason tells."""
+
 STARTS: Final = 256
 """Descents within limits where few values of several redundant joints have no solution: a third of them find
 one where 4096 values have none, and they take a millisecond."""
@@ -45,6 +49,34 @@ def solve_pose(robot: Robot, space: ArmSpace, start: Array, goal: PoseLike) -> G
     if not len(rows) and len(robot.solver.redundant_joints) > 1:  # they may fill a corner of the limits alone
         rows = sort_near(robot.solver, robot.ik_many_starts(T, STARTS, rng=0).q, robot.limits, start)
     return few_samples(robot, space, start, T, rows) or solve_pose_densely(robot, space, start, T)
+
+
+def solve_any_pose(robot: Robot, space: ArmSpace, start: Array, poses: Array) -> Goals:
+    """The solutions of several poses (g, 4, 4), any of which is the goal; the nearest to the start first."""
+    return join_goals(robot, start, [solve_pose(robot, space, start, T) for T in poses])
+
+
+def join_goals(robot: Robot, start: Array, parts: Sequence[Goals]) -> Goals:
+    """The configurations of several goals as those of one; its reason is that of each goal."""
+    is_whole = all(part.is_whole for part in parts)
+    rows = sort_near(robot.solver, np.concatenate([part.rows for part in parts]), robot.limits, start)
+    if not len(rows):
+        named = "; ".join(f"pose {k}: {part.reason}" for k, part in enumerate(parts[:SHOWN_POSES]))
+        others = f"; and {len(parts) - SHOWN_POSES} more" if len(parts) > SHOWN_POSES else ""
+        return Goals(rows, named + others, is_whole=is_whole)
+    if all(part.find_more is None for part in parts):
+        return Goals(rows, is_whole=is_whole)
+    more = partial(join_more, robot, start, parts)
+    return Goals(rows, is_whole=is_whole, find_more=more)
+
+
+def join_more(robot: Robot, start: Array, parts: Sequence[Goals]) -> Goals:
+    """As join_goals, with further configurations of each goal that has some."""
+    return join_goals(
+        robot,
+        start,
+        [replace(part.find_more() if part.find_more else part, find_more=None) for part in parts],
+    )
 
 
 def solve_each_pose(
