@@ -13,21 +13,25 @@
 
 namespace cspace {
 
-// What a kernel needs to know of its scalar: how many lanes, and what a comparison yields.
+// What a kernel needs to know of its scalar: how many lanes, of which numbers, and what a comparison yields.
 template <class V>
 struct Lanes;
 template <>
 struct Lanes<double> {
     static constexpr int count = 1;
+    using scalar = double;
     using mask = bool;
 };
 template <int N>
 struct Lanes<Pack<N>> {
     static constexpr int count = N;
+    using scalar = double;
     using mask = Mask<N>;
 };
 template <class V>
 using mask_of = typename Lanes<V>::mask;
+template <class V>
+using scalar_of = typename Lanes<V>::scalar;
 
 }  // namespace cspace
 
@@ -38,6 +42,10 @@ template <class V>
 CSPACE_INLINE V fill(double x) {
     if constexpr (Lanes<V>::count == 1) {
         return x;
+    } else if constexpr (std::is_same_v<scalar_of<V>, float>) {
+        V r;
+        for (int i = 0; i < Lanes<V>::count; ++i) r.v[i] = float(x);
+        return r;
     } else if constexpr (is_split<Lanes<V>::count>) {
         const auto half = fill<Pack<Lanes<V>::count / 2>>(x);
         return {half, half};
