@@ -1,4 +1,7 @@
 // What is computed in common axes; see spatial_links.hpp.
+#include <cstdint>
+#include <cstring>
+
 #include "cspace/dynamics/coriolis.hpp"
 #include "cspace/dynamics/derivatives.hpp"
 #include "cspace/dynamics/momentum.hpp"
@@ -9,6 +12,15 @@
 namespace cspace::dynamics::inline CSPACE_ISA {
 namespace {
 
+// The columns of `slopes` (3, n, n) and of the identity beside each other in rows of packs, and back.
+CSPACE_INLINE void copy_columns(double* matrices, int n, int step, double* beside, bool back) {
+    for (int i = 0; i < n; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            double *own = matrices + (k * n + i) * n, *other = beside + i * step + k * n;
+            std::memcpy(back ? own : other, back ? other : own, sizeof(double) * std::size_t(n));
+        }
+    }
+}
 // The derivatives of torques (3, n, n) become those of the accelerations that they cause: −M⁻¹ ∂τ and M⁻¹.
 template <class V>
 CSPACE_INLINE bool respond(V* slopes, int n, Scratch scratch) {
@@ -25,7 +37,18 @@ CSPACE_INLINE bool respond(V* slopes, int n, Scratch scratch) {
         n, L, take_array<int>(scratch, square), take_array<int>(scratch, n), take_array<int>(scratch, square),
         take_array<int>(scratch, n)};
     const bool regular = all(factor_sparse(factor, tolerance::singular_inertia));
-    for (int k = 0; k < 3; ++k) solve_sparse(factor, slopes + k * square, n);
+    if constexpr (Lanes<V>::count == 1) {
+        const int packs = (3 * n + native_width - 1) / native_width;
+        const std::size_t beyond = reinterpret_cast<std::uintptr_t>(scratch.next) % sizeof(Wide);
+        if (beyond) scratch.next += sizeof(Wide) - beyond;
+        Wide* beside = take_array<Wide>(scratch, n * packs);
+        for (int i = 0; i < n; ++i) beside[(i + 1) * packs - 1] = fill<Wide>(0.0);
+        copy_columns(slopes, n, packs * native_width, reinterpret_cast<double*>(beside), false);
+        solve_sparse(factor, beside, packs);
+        copy_columns(slopes, n, packs * native_width, reinterpret_cast<double*>(beside), true);
+    } else {
+        for (int k = 0; k < 3; ++k) solve_sparse(factor, slopes + k * square, n);
+    }
     return regular;
 }
 

@@ -55,64 +55,47 @@ CSPACE_INLINE mask_of<V> factor_sparse(const SparseFactor<V>& factor, double lea
     return regular;
 }
 
-// The columns c to c + count of B (n, columns), row by row: M⁻¹ B takes their place. Of packs w columns at a
-// time; of single numbers as many as a pack has lanes.
-template <int w, class V>
-CSPACE_INLINE void solve_columns(const SparseFactor<V>& factor, V* B, int columns, int c, int count) {
-    constexpr bool across = Lanes<V>::count == 1;
-    using W = std::conditional_t<across, Pack<native_width>, V>;
+// w columns of B (n, columns) from column c on, row by row: those of M⁻¹ B take their place. W: V, or a pack
+// of columns where V is one number.
+template <int w, class V, class W>
+CSPACE_INLINE void solve_columns(const SparseFactor<V>& factor, W* B, int columns, int c) {
     const int n = factor.n;
-    const auto get = [&](int i, int j) -> W {
-        if constexpr (across)
-            return load<W>(B + i * columns + c, count);
-        else
-            return B[i * columns + c + j];
-    };
-    const auto put = [&](int i, int j, W x) {
-        if constexpr (across)
-            store(B + i * columns + c, x, count);
-        else
-            B[i * columns + c + j] = x;
-    };
     const auto number = [](V x) -> W {
-        if constexpr (across)
+        if constexpr (Lanes<V>::count == 1)
             return fill<W>(x);
         else
             return x;
     };
+    const auto take_off = [&](const V& multiple, int k, W(&sum)[w]) {
+        const W minus = number(-multiple);
+        for (int j = 0; j < w; ++j) sum[j] = mul_add(minus, B[k * columns + c + j], sum[j]);
+    };
     for (int i = n - 1; i >= 0; --i) {  // Lᵀ
         W sum[w];
-        for (int j = 0; j < w; ++j) sum[j] = get(i, j);
+        for (int j = 0; j < w; ++j) sum[j] = B[i * columns + c + j];
         for (int b = 0; b < factor.n_behind[i]; ++b) {
             const int k = factor.behind[i * n + b];
-            const W minus = number(-factor.L[k * n + i]);
-            for (int j = 0; j < w; ++j) sum[j] = mul_add(minus, get(k, j), sum[j]);
+            take_off(factor.L[k * n + i], k, sum);
         }
-        for (int j = 0; j < w; ++j) put(i, j, sum[j]);
+        for (int j = 0; j < w; ++j) B[i * columns + c + j] = sum[j];
     }
     for (int i = 0; i < n; ++i) {  // D L
         const W inverse = number(factor.L[i * (n + 1)]);
         W sum[w];
-        for (int j = 0; j < w; ++j) sum[j] = get(i, j) * inverse;
+        for (int j = 0; j < w; ++j) sum[j] = B[i * columns + c + j] * inverse;
         for (int b = 0; b < factor.n_before[i]; ++b) {
             const int k = factor.before[i * n + b];
-            const W minus = number(-factor.L[i * n + k]);
-            for (int j = 0; j < w; ++j) sum[j] = mul_add(minus, get(k, j), sum[j]);
+            take_off(factor.L[i * n + k], k, sum);
         }
-        for (int j = 0; j < w; ++j) put(i, j, sum[j]);
+        for (int j = 0; j < w; ++j) B[i * columns + c + j] = sum[j];
     }
 }
 // B (n, columns) becomes M⁻¹ B.
-template <class V>
-CSPACE_INLINE void solve_sparse(const SparseFactor<V>& factor, V* B, int columns) {
+template <class V, class W>
+CSPACE_INLINE void solve_sparse(const SparseFactor<V>& factor, W* B, int columns) {
     int c = 0;
-    if constexpr (Lanes<V>::count == 1) {
-        for (; c < columns; c += native_width)
-            solve_columns<1>(factor, B, columns, c, columns - c < native_width ? columns - c : native_width);
-    } else {
-        for (; c + 4 <= columns; c += 4) solve_columns<4>(factor, B, columns, c, 4);
-        for (; c < columns; ++c) solve_columns<1>(factor, B, columns, c, 1);
-    }
+    for (; c + 4 <= columns; c += 4) solve_columns<4>(factor, B, columns, c);
+    for (; c < columns; ++c) solve_columns<1>(factor, B, columns, c);
 }
 
 }  // namespace cspace::dynamics::inline CSPACE_ISA
