@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 
 #include "cspace/math/float_trig.hpp"
 #include "cspace/math/lanes.hpp"
@@ -26,22 +25,6 @@ namespace cspace::inline CSPACE_ISA {
 
 inline constexpr int float_register_lanes = CSPACE_VECTOR_EXTENSIONS ? 2 * register_lanes : 4;
 using FloatPack = FloatRegister<float_register_lanes>;
-
-// A vector made of one number in all places: GCC does not find the broadcast in a loop over sixteen.
-template <class Raw, int... lanes>
-CSPACE_INLINE Raw repeat_float(float x, std::integer_sequence<int, lanes...>) {
-    return Raw{((void)lanes, x)...};
-}
-template <>
-CSPACE_INLINE FloatPack fill<FloatPack>(double x) {
-#if CSPACE_VECTOR_EXTENSIONS
-    return {repeat_float<FloatPack::Raw>(float(x), std::make_integer_sequence<int, float_register_lanes>())};
-#else
-    FloatPack r;
-    for (float& each : r.v) each = float(x);
-    return r;
-#endif
-}
 
 #define CSPACE_WITH_SCALAR(Result, op)                                  \
     template <int N>                                                    \

@@ -15,6 +15,7 @@ from cspace.dynamics.rows import Push, dynamic_rows
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.batch import Batch, broadcast_rows, check_output, thread_count
 from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.spatial import as_pose
 
 LARGEST_ANGLE: Final = 1e4
 """Values of joints that are computed in floats are below this [rad or m]; see float_trig.hpp."""
@@ -32,14 +33,14 @@ def is_single(dtype: npt.DTypeLike) -> bool:
 
 
 def rows_in(
-    single: bool, robot: KinematicModel, q: Any, *, T_world_base: Any = None, threads: Any = None, **given: Any
+    single: bool, robot: KinematicModel, q: Any, *, T_world_base: Any = None, threads: Any = None, **rest: Any
 ) -> Batch:
     """dynamic_rows, in floats if `single`; arrays of floats are then taken as they are."""
     if not single:
-        return dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads, **given)
-    arrays = {"q": q, **{name: value for name, value in given.items() if value is not None}}
+        return dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads, **rest)
+    arrays = {"q": q, **{name: value for name, value in rest.items() if value is not None}}
     sizes = {name: len(robot.joint_names) if name == "q" else robot.dof for name in arrays}
-    is_ready = T_world_base is None and robot.mass > 0.0
+    is_ready = robot.mass > 0.0
     for name, value in arrays.items():
         is_ready = (
             is_ready
@@ -50,11 +51,14 @@ def rows_in(
             and value.flags.aligned
         )
     if not is_ready:
-        batch = dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads, **given)
+        batch = dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads, **rest)
         names = ("q", "qd", "qdd", "tau", "T_world_base")
         rows = {name: to_floats(getattr(batch, name)) for name in names}
         return replace(batch, **rows)
-    shape, rows = broadcast_rows({name: (value, 1) for name, value in arrays.items()})
+    given = {name: (value, 1) for name, value in arrays.items()}
+    if T_world_base is not None:
+        given["T_world_base"] = (to_floats(as_pose(T_world_base, "T_world_base")), 2)
+    shape, rows = broadcast_rows(given, shared=("T_world_base",))
     return Batch(shape=shape, threads=thread_count(threads, shape), **rows)
 
 
