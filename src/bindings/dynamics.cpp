@@ -151,7 +151,7 @@ constexpr const char* words = "cspace.dynamics";
 // The largest number of joints for which a single call works on the stack.
 constexpr int stack_links = 64, stack_dof = stack_links + 6;
 struct alignas(64) Stack {
-    double values[80 * stack_links + stack_dof * (5 * stack_dof + 16) + 16];
+    double values[80 * stack_links + stack_dof * (5 * stack_dof + 18) + 16];
 };
 
 // Whether the rotation of T (4, 4) is one within tolerance::rotation_error and the rest fits, as in

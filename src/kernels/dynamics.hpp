@@ -63,7 +63,7 @@ struct RegressorRows {
 template <class S>
 std::size_t scratch_bytes(const BasicRows<S>& rows) {
     const std::size_t n = std::size_t(rows.bodies.n_links), dof = std::size_t(rows.bodies.n_coordinates) + 6;
-    return 64 * (80 * n + dof * (4 * dof + 6) + 20 * std::size_t(rows.n_wrenches) + 8);
+    return 64 * (80 * n + dof * (6 * dof + 24) + 20 * std::size_t(rows.n_wrenches) + 8);
 }
 inline std::size_t scratch_bytes(const RegressorRows& rows) { return scratch_bytes(rows.rows); }
 

@@ -16,18 +16,18 @@ struct Growth {
     Twist<V> axis, rate, bend;
 };
 
-// dq and dqd (columns, columns), row by row: the derivatives of tau by the positions and velocities of the
+// dq and dqd (columns, columns), rows `stride` apart: the derivatives of tau by the positions and velocities of the
 // joints, and by a displacement of a floating base, [v; ω] in the axes of the world, that leaves its
 // velocities and accelerations in these axes as they are. base, change: its motion and the time derivative of
-// that, less gravity. links, whole: as of place_links with change. M (columns, columns) is the derivative by
-// the accelerations, the mass matrix.
+// that, less gravity. links, whole: as of place_links with change. M is the derivative by the
+// accelerations, the mass matrix.
 template <class V>
 CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& base, const Twist<V>& change,
                                       bool floating, bool rubs, const SpatialLink<V>* links,
-                                      const SpatialBody<V>& whole, V* dq, V* dqd, V* M) {
+                                      const SpatialBody<V>& whole, int stride, V* dq, V* dqd, V* M) {
     const int first = floating ? 6 : 0, columns = first + bodies.n_coordinates;
     const auto add = [&](V* matrix, int row, int column, V value) {
-        V& entry = matrix[row * columns + column];
+        V& entry = matrix[row * stride + column];
         entry = entry + value;
     };
     const auto add_rows = [&](V* matrix, int column, const Wrench<V>& wrench) {
@@ -37,7 +37,12 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
     const auto growth_of = [&](int k) -> Growth<V> {
         return {links[k].axis, links[k].axis_rate, links[k].axis_bend};
     };
-    for (int i = 0; i < columns * columns; ++i) dq[i] = dqd[i] = M[i] = fill<V>(0.0);
+    for (int i = 0; i < columns; ++i) {
+        for (int j = 0; j < columns; ++j) {
+            const int k = i * stride + j;
+            dq[k] = dqd[k] = M[k] = fill<V>(0.0);
+        }
+    }
     for (int k = 0; k < bodies.n_links; ++k) {
         const Link& link = bodies.links[k];
         const SpatialLink<V>& state = links[k];
@@ -114,7 +119,7 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
         }
     }
     for (int i = 0; i < 6; ++i)
-        for (int j = 6; j < columns; ++j) M[j * columns + i] = M[i * columns + j];
+        for (int j = 6; j < columns; ++j) M[j * stride + i] = M[i * stride + j];
 }
 
 }  // namespace cspace::dynamics::inline CSPACE_ISA

@@ -9,12 +9,12 @@
 
 namespace cspace::dynamics {
 // L left of the diagonal and D⁻¹ on it, row by row. Where L has entries: those of row i are at before[i n] and
-// so on, n_before[i] of them; those of column i at behind[i n] and so on.
+// so on, n_before[i] of them; those of column i at behind[i n] and so on. used: memory for n numbers.
 template <class V>
 struct SparseFactor {
     int n;
     V* L;
-    int *before, *n_before, *behind, *n_behind;
+    int *before, *n_before, *behind, *n_behind, *used;
 };
 }  // namespace cspace::dynamics
 
@@ -56,7 +56,7 @@ CSPACE_INLINE mask_of<V> factor_sparse(const SparseFactor<V>& factor, double lea
 }
 
 // w columns of B (n, columns) from column c on, row by row: those of M⁻¹ B take their place. W: V, or a pack
-// of columns where V is one number.
+// of columns where V is one number. Rows of zeros, as of joints that do not carry each other, add nothing.
 template <int w, class V, class W>
 CSPACE_INLINE void solve_columns(const SparseFactor<V>& factor, W* B, int columns, int c) {
     const int n = factor.n;
@@ -75,8 +75,11 @@ CSPACE_INLINE void solve_columns(const SparseFactor<V>& factor, W* B, int column
         for (int j = 0; j < w; ++j) sum[j] = B[i * columns + c + j];
         for (int b = 0; b < factor.n_behind[i]; ++b) {
             const int k = factor.behind[i * n + b];
-            take_off(factor.L[k * n + i], k, sum);
+            if (factor.used[k]) take_off(factor.L[k * n + i], k, sum);
         }
+        W bits = sum[0];
+        for (int j = 1; j < w; ++j) bits = bit_or(bits, sum[j]);
+        factor.used[i] = !all(bits == 0.0);
         for (int j = 0; j < w; ++j) B[i * columns + c + j] = sum[j];
     }
     for (int i = 0; i < n; ++i) {  // D L
@@ -94,6 +97,7 @@ CSPACE_INLINE void solve_columns(const SparseFactor<V>& factor, W* B, int column
 template <class V, class W>
 CSPACE_INLINE void solve_sparse(const SparseFactor<V>& factor, W* B, int columns) {
     int c = 0;
+    for (; c + 8 <= columns; c += 8) solve_columns<8>(factor, B, columns, c);
     for (; c + 4 <= columns; c += 4) solve_columns<4>(factor, B, columns, c);
     for (; c < columns; ++c) solve_columns<1>(factor, B, columns, c);
 }
