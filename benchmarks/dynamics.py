@@ -4,8 +4,8 @@ Usage: python benchmarks/dynamics.py [--rounds 60] [--batch 100000] [--robots pa
 
 The same URDF files with masses (package example-robot-data); the fingers of the panda are locked, the
 humanoid floats. Arguments and outputs are prepared. Answers are compared first. Processor time per call:
-medians and 95th percentiles over rounds in turns; batches on one thread. Pinocchio has parallel calls of inverse and
-forward dynamics alone: batches of all else stand beside its single calls, one after another.
+medians and 95th percentiles over rounds in turns; batches on one thread. Pinocchio has parallel calls of
+inverse and forward dynamics alone: batches of all else, as large as a cache, stand beside its single calls.
 """
 
 from __future__ import annotations
@@ -36,8 +36,13 @@ ROBOTS: dict[str, dict[str, Any]] = {
 }
 CHUNK = 50
 """Calls per reading of the clock."""
-MATRICES = 256
-"""Rows of a batch whose answers are matrices."""
+MATRICES = ("mass matrix", "Coriolis matrix", "inverse derivatives", "forward derivatives", "regressor")
+REPEAT = 5
+"""Batches of these per reading of the clock."""
+CACHE = 1 << 19
+"""Bytes of answers per batch of functions that give matrices, which then stay in the second-level cache."""
+LEAST = 64
+"""Rows of such a batch at least."""
 
 
 class Case:
@@ -160,18 +165,21 @@ class Case:
             },
         }
 
-    def matrices(self, count: int) -> Calls:
-        """Functions that give a matrix per row, for so many rows that these stay in the cache."""
+    def matrices(self, task: str) -> tuple[int, dict[str, Callable[[], Any]]]:
+        """A function that gives a matrix per row, for about so many rows as stay in the cache."""
         robot, n = self.robot, self.robot.dof
+        columns = robot.regressor(self.q, self.qd, self.qdd, **self.placed).shape[1]
+        size = {"regressor": columns * n}.get(task, (3 if "derivatives" in task else 1) * n * n)
+        count = max(LEAST, CACHE // (8 * size) // 16 * 16)
         rng = np.random.default_rng(8)
         q = rng.uniform(-2, 2, (count, len(self.q)))
         qd, qdd = rng.normal(size=(2, count, n))
         args: dict[str, Any] = {"threads": 1, **({"T_world_base": self.T} if robot.floating else {})}
         tau = robot.inverse_dynamics(q, qd, qdd, **args)
         q32, M32 = q.astype(np.float32), np.empty((count, n, n), np.float32)
-        square, three, Y = np.empty((count, n, n)), np.empty((count, 3, n, n)), robot.regressor(q, qd, qdd, **args)
+        square, three, Y = (np.empty((count, *shape)) for shape in ((n, n), (3, n, n), (n, columns)))
         data = (q, qd, qdd)
-        return {
+        calls: Calls = {
             "mass matrix": {
                 "cspace": lambda: robot.mass_matrix(q, out=square, **args),
                 "float32": lambda: robot.mass_matrix(q32, out=M32, dtype=np.float32, **args),
@@ -185,6 +193,7 @@ class Case:
             },
             "regressor": {"cspace": lambda: robot.regressor(*data, out=Y, **args)},
         }
+        return count, calls[task]
 
     def difference(self) -> float:
         """Largest difference to Pinocchio, relative to the largest torque."""
@@ -248,7 +257,9 @@ def main() -> None:
             "batch": per_row(measure(case.batches(options.batch), few, 1), options.batch),
             "difference": case.difference(),
         }
-        row["batch"] |= per_row(measure(case.matrices(MATRICES), options.rounds, 1), MATRICES)
+        for task in MATRICES:
+            count, calls = case.matrices(task)
+            row["batch"] |= per_row(measure({task: calls}, options.rounds, REPEAT), count)
         for task, contenders in row["batch"].items():
             contenders.setdefault("pinocchio", row["single"][task]["pinocchio"])
         results["robots"][name] = row

@@ -230,9 +230,9 @@ PyObject* split_matrices(PyObject* array) {
     const npy_intp count = PyArray_DIM(all, 0);
     PyObject* answer = PyTuple_New(count);
     for (npy_intp k = 0; answer && k < count; ++k) {
-        PyObject* matrix = PyArray_New(&PyArray_Type, 2, PyArray_DIMS(all) + 1, NPY_DOUBLE, nullptr,
-                                       PyArray_BYTES(all) + k * PyArray_STRIDE(all, 0), 0, NPY_ARRAY_CARRAY,
-                                       nullptr);
+        PyObject* matrix =
+            PyArray_New(&PyArray_Type, 2, PyArray_DIMS(all) + 1, NPY_DOUBLE, nullptr,
+                        PyArray_BYTES(all) + k * PyArray_STRIDE(all, 0), 0, NPY_ARRAY_CARRAY, nullptr);
         if (matrix) {
             PyTuple_SET_ITEM(answer, k, matrix);
             Py_INCREF(array);

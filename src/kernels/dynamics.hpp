@@ -39,20 +39,20 @@ struct BasicRows {
     BasicMultibody<S> bodies;
     Vec3d gravity;
     bool floating, rubs;
-    const S *q, *qd;         // qd null: at rest
-    const S* force;          // qdd of inverse dynamics (null: zero), tau of forward dynamics
-    const S* T_world_base;   // null: identity
-    std::size_t base_stride; // 0: one pose for all
-    S* result;               // tau or qdd (rows, dof), M (rows, dof, dof), or as What says
-    What what;               // for spatial_rows
+    const S *q, *qd;               // qd null: at rest
+    const S* force;                // qdd of inverse dynamics (null: zero), tau of forward dynamics
+    const S* T_world_base;         // null: identity
+    std::size_t base_stride;       // 0: one pose for all
+    S* result;                     // tau or qdd (rows, dof), M (rows, dof, dof), or as What says
+    What what;                     // for spatial_rows
     const BasicPush<S>* wrenches;  // of inverse and forward dynamics
     int n_wrenches;
 };
 using Rows = BasicRows<double>;
 using FloatRows = BasicRows<float>;
 
-// The regressor of inverse dynamics (rows, dof, columns): ten columns per body, of a floating base first, then
-// one per joint for its armature and, with rubs, for damping and dry friction.
+// The regressor of inverse dynamics (rows, dof, columns): ten columns per body, of a floating base first,
+// then one per joint for its armature and, with rubs, for damping and dry friction.
 struct RegressorRows {
     Rows rows;            // with qd and force (qdd)
     const Posed* frames;  // of each body, in which its parameters are, in the axes of its link
@@ -69,7 +69,7 @@ inline std::size_t scratch_bytes(const RegressorRows& rows) { return scratch_byt
 
 }  // namespace cspace::dynamics
 
-#define CSPACE_DYNAMICS_KERNEL(name, Rows) \
+#define CSPACE_DYNAMICS_KERNEL(name, Rows)      \
     CSPACE_KERNEL(cspace::dynamics, bool, name, \
                   (const Rows& rows, std::size_t begin, std::size_t end, void* scratch))
 // Rows begin to end. False if an argument among them is not finite; the results are then of no use.

@@ -46,7 +46,8 @@ CSPACE_INLINE bool finite_rows(const V* values, int width, bool angles = false) 
     } else {
         mask_of<V> fits = fill<V>(0.0) == 0.0f;
         for (int i = 0; i < width; ++i)
-            fits = fits && (angles ? and_bits(values[i], 0x7fffffffu) < largest_float_angle : values[i] * 0.0f == 0.0f);
+            fits = fits && (angles ? and_bits(values[i], 0x7fffffffu) < largest_float_angle
+                                   : values[i] * 0.0f == 0.0f);
         return all(fits);
     }
 }
@@ -80,11 +81,7 @@ CSPACE_INLINE AppliedWrenches<V> read_wrenches(const BasicRows<scalar_of<V>>& ro
         load_rows(push.values + i * push.stride, push.stride, count, 6, numbers);
         Vec3<V> f = vector_at(numbers), n = vector_at(numbers + 3);
         const Mat3<V> axes = push.in_frame_axes ? fill33<V>(push.axes) : transpose(R);
-        list[k] = {push.path,
-                   push.depth,
-                   push.in_frame_axes,
-                   fill3<V>(push.point),
-                   {axes * f, axes * n}};
+        list[k] = {push.path, push.depth, push.in_frame_axes, fill3<V>(push.point), {axes * f, axes * n}};
     }
     return {list, rows.n_wrenches};
 }
@@ -104,20 +101,22 @@ CSPACE_INLINE bool read_arguments(const BasicRows<scalar_of<V>>& rows, Scratch& 
         result = take_array<V>(scratch, width);
     const auto T = read_base<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
     given = {q, qd, force, result, T, T.R, read_wrenches(rows, i, count, T.R, scratch), n, first, dof};
-    const bool finite = finite_rows(q, n, true), moves = finite_rows(qd, dof), pushes = finite_rows(force, dof);
+    const bool finite = finite_rows(q, n, true), moves = finite_rows(qd, dof),
+               pushes = finite_rows(force, dof);
     return finite && moves && pushes;
 }
 // The result of a pack as rows.
 template <class V>
-CSPACE_INLINE void write_result(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given,
-                                std::size_t i, int count, int width) {
+CSPACE_INLINE void write_result(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given, std::size_t i,
+                                int count, int width) {
     if constexpr (Lanes<V>::count > 1)
         store_rows(given.result, width, rows.result + i * std::size_t(width), std::size_t(width), count);
 }
 
 // How the base moves, in its axes, its acceleration less gravity. acceleration: of a floating base, or null.
 template <class V>
-CSPACE_INLINE Motion<V> base_motion(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given, const V* acceleration) {
+CSPACE_INLINE Motion<V> base_motion(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given,
+                                    const V* acceleration) {
     const V zero = fill<V>(0.0);
     const Vec3<V> rest = {zero, zero, zero};
     Motion<V> base = {rest, rest, -fill3<V>(rows.gravity)};
@@ -145,12 +144,11 @@ CSPACE_INLINE void compute_torques(const BasicRows<scalar_of<V>>& rows, const Ar
                                    const V* qdd, Scratch scratch, V* tau) {
     auto* links = take_array<LinkMotion<V>>(scratch, rows.bodies.n_links);
     const Motion<V> base = base_motion(rows, given, qdd);
-    const Wrench<V> on_base =
-        given.qd || qdd
-            ? inverse_dynamics(rows.bodies, base, given.q, joint_rates(given, scratch),
-                               qdd ? qdd + given.first : nullptr, rows.rubs, links, tau + given.first,
-                               given.wrenches)
-            : gravity_torques(rows.bodies, base.a, given.q, links, tau + given.first);
+    const Wrench<V> on_base = given.qd || qdd
+                                  ? inverse_dynamics(rows.bodies, base, given.q, joint_rates(given, scratch),
+                                                     qdd ? qdd + given.first : nullptr, rows.rubs, links,
+                                                     tau + given.first, given.wrenches)
+                                  : gravity_torques(rows.bodies, base.a, given.q, links, tau + given.first);
     if (!given.first) return;
     set_vector(tau, given.R * on_base.f);
     set_vector(tau + 3, given.R * on_base.n);

@@ -33,7 +33,8 @@ bool mass_pack(const BasicRows<scalar_of<V>>& rows, void* memory, std::size_t i,
 
 // q̈ = M⁻¹ (τ − b) with the dense mass matrix, for coordinates that move several joints.
 template <class V>
-bool solve_for_accelerations(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given, Scratch scratch, V* qdd) {
+bool solve_for_accelerations(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given, Scratch scratch,
+                             V* qdd) {
     const int dof = given.dof;
     V* M = take_array<V>(scratch, dof * dof);
     V** row = take_array<V*>(scratch, (dof + 7) / 8 * 8);
@@ -55,14 +56,14 @@ bool solve_for_accelerations(const BasicRows<scalar_of<V>>& rows, const Argument
 
 // The accelerations of a floating base and of the joints by articulated bodies.
 template <class V>
-CSPACE_INLINE bool give_way_to_torques(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given, Scratch scratch, V* qdd) {
+CSPACE_INLINE bool give_way_to_torques(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given,
+                                       Scratch scratch, V* qdd) {
     auto* links = take_array<LinkResponse<V>>(scratch, rows.bodies.n_links);
     Motion<V> base = base_motion(rows, given, static_cast<const V*>(nullptr));
     mask_of<V> regular;
     const V* tau = given.force + given.first;
-    const Articulated<V> felt =
-        articulate(rows.bodies, base.w, given.q, joint_rates(given, scratch), tau, rows.rubs, links, regular,
-                   given.wrenches);
+    const Articulated<V> felt = articulate(rows.bodies, base.w, given.q, joint_rates(given, scratch), tau,
+                                           rows.rubs, links, regular, given.wrenches);
     if (given.first) {
         const Mat3<V> A = to_matrix(felt.A), C = to_matrix(felt.C);
         V inertia[6][6], x[6];

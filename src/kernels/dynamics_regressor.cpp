@@ -1,7 +1,6 @@
-#include "cspace/dynamics/regressor.hpp"
-
 #include <cstring>
 
+#include "cspace/dynamics/regressor.hpp"
 #include "dynamics_arguments.hpp"
 
 namespace cspace::dynamics::inline CSPACE_ISA {
@@ -25,8 +24,8 @@ struct RegressorWriter {
 
 // The columns of a body: of the twist of a floating base, and of every joint from link k to the base.
 template <class V>
-CSPACE_INLINE void write_body(const Multibody& bodies, const MovingBody<V>& body, int k, int column, int first,
-                              const MovingFrame<V>* links, const RegressorWriter<V>& to) {
+CSPACE_INLINE void write_body(const Multibody& bodies, const MovingBody<V>& body, int k, int column,
+                              int first, const MovingFrame<V>* links, const RegressorWriter<V>& to) {
     const V zero = fill<V>(0.0), one = fill<V>(1.0);
     const Vec3<V> none = {zero, zero, zero},
                   unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
@@ -57,8 +56,8 @@ CSPACE_INLINE void write_body(const Multibody& bodies, const MovingBody<V>& body
 
 // The columns of armature, damping and dry friction of all joints.
 template <class V>
-CSPACE_INLINE void write_resistances(const Multibody& bodies, bool rubs, const V* qd, const V* qdd, int column,
-                                     int first, const RegressorWriter<V>& to) {
+CSPACE_INLINE void write_resistances(const Multibody& bodies, bool rubs, const V* qd, const V* qdd,
+                                     int column, int first, const RegressorWriter<V>& to) {
     const int n = bodies.n_links;
     const V zero = fill<V>(0.0), one = fill<V>(1.0);
     for (int k = 0; k < n; ++k) {
@@ -87,7 +86,8 @@ bool regressor_pack(const RegressorRows& task, void* memory, std::size_t i, int 
     auto* links = take_array<MovingFrame<V>>(scratch, bodies.n_links);
     const V zero = fill<V>(0.0);
     const Vec3<V> none = {zero, zero, zero};
-    MovingFrame<V> root = {{}, {column(given.R, 0), column(given.R, 1), column(given.R, 2), none},
+    MovingFrame<V> root = {{},
+                           {column(given.R, 0), column(given.R, 1), column(given.R, 2), none},
                            {none, none, -fill3<V>(rows.gravity)}};
     if (given.first) {
         root.motion.w = vector_at(given.qd + 3);

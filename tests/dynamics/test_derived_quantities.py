@@ -146,7 +146,9 @@ def test_derivatives_of_forward_dynamics_are_those_of_inverse_dynamics_through_t
     forward = robot.forward_dynamics_derivatives(q, qd, tau, **placed)
     weight = np.abs(forward[2]).max()
     for found, expected in zip(forward, (-dq, -dqd, np.eye(robot.dof)), strict=True):
-        np.testing.assert_allclose(M @ found, expected, atol=1e-12 * scale(expected) * max(1.0, weight * scale(M)))
+        np.testing.assert_allclose(
+            M @ found, expected, atol=1e-12 * scale(expected) * max(1.0, weight * scale(M))
+        )
 
 
 @pytest.mark.parametrize("robot", [*ROBOTS[:2], TREES[1], FREE[0]], ids=lambda robot: robot.name)

@@ -72,7 +72,9 @@ def test_an_answer_may_be_written_over_a_wrench(rng):
     q, qd, force = random_q(robot, rng, 9), *rng.normal(size=(2, 9, 6))
     w = rng.normal(size=(9, 6))
     expected = robot.inverse_dynamics(q, qd, force, wrenches={robot.tip: w})
-    np.testing.assert_array_equal(robot.inverse_dynamics(q, qd, force, wrenches={robot.tip: w}, out=w), expected)
+    np.testing.assert_array_equal(
+        robot.inverse_dynamics(q, qd, force, wrenches={robot.tip: w}, out=w), expected
+    )
 
 
 def test_bad_wrenches_are_named():

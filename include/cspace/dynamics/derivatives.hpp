@@ -16,8 +16,8 @@ struct Growth {
     Twist<V> axis, rate, bend;
 };
 
-// dq and dqd (columns, columns), rows `stride` apart: the derivatives of tau by the positions and velocities of the
-// joints, and by a displacement of a floating base, [v; ω] in the axes of the world, that leaves its
+// dq and dqd (columns, columns), rows `stride` apart: the derivatives of tau by the positions and velocities
+// of the joints, and by a displacement of a floating base, [v; ω] in the axes of the world, that leaves its
 // velocities and accelerations in these axes as they are. base, change: its motion and the time derivative of
 // that, less gravity. links, whole: as of place_links with change. M is the derivative by the
 // accelerations, the mass matrix.

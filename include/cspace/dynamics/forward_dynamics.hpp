@@ -43,7 +43,8 @@ CSPACE_INLINE Articulated<V> rigid_response(const MomentsOf<V>& body, const Vec3
     const Vec3<V> h = fill3<V>(body.first);
     const Symmetric3<scalar_of<V>>& S = body.second;
     const Mat3<V> K = acceleration_gradient(w, {zero, zero, zero});
-    return {fill_symmetric<V>(Symmetric3<scalar_of<V>>{S.yy + S.zz, -S.xy, -S.xz, S.xx + S.zz, -S.yz, S.xx + S.yy}),
+    return {fill_symmetric<V>(
+                Symmetric3<scalar_of<V>>{S.yy + S.zz, -S.xy, -S.xz, S.xx + S.zz, -S.yz, S.xx + S.yy}),
             {m, zero, zero, m, zero, m},
             {{{zero, -h.z, h.y}, {h.z, zero, -h.x}, {-h.y, h.x, zero}}},
             {K * h, torque_of_gradient(K, S)}};
@@ -97,7 +98,8 @@ CSPACE_INLINE void shift_response(Articulated<V>& body, const Vec3<V>& t) {
 // What the parent of a link feels, in the frame of the link, since its joint gives way to the force tau.
 // Fills U, the inertia and u. regular: becomes false where the joint moves no inertia.
 template <class V>
-CSPACE_INLINE Articulated<V> give_way(const LinkOf<V>& link, LinkResponse<V>& state, V tau, mask_of<V>& regular) {
+CSPACE_INLINE Articulated<V> give_way(const LinkOf<V>& link, LinkResponse<V>& state, V tau,
+                                      mask_of<V>& regular) {
     const Articulated<V>& body = state.body;
     const Vec3<V> last_of_B = link.prismatic ? column(body.B, 2) : row(body.B, 2);
     if (link.prismatic)
@@ -126,8 +128,7 @@ CSPACE_INLINE Articulated<V> give_way(const LinkOf<V>& link, LinkResponse<V>& st
 template <class V>
 CSPACE_INLINE Articulated<V> articulate(const MultibodyOf<V>& bodies, const Vec3<V>& base_w, const V* q,
                                         const V* qd, const V* tau, bool rubs, LinkResponse<V>* links,
-                                        mask_of<V>& regular,
-                                        const AppliedWrenches<V>& applied = {}) {
+                                        mask_of<V>& regular, const AppliedWrenches<V>& applied = {}) {
     const V zero = fill<V>(0.0);
     regular = zero == 0.0;
     turn_links(bodies, q, links);

@@ -65,26 +65,10 @@ inline Moments<float> to_floats(const Moments<double>& m) {
             {float(S.xx), float(S.xy), float(S.xz), float(S.yy), float(S.yz), float(S.zz)}};
 }
 inline BasicLink<float> to_floats(const Link& a) {
-    return {a.parent,
-            a.coordinate,
-            a.prismatic,
-            a.turned,
-            a.tilt,
-            float(a.ratio),
-            float(a.turn),
-            float(a.angle),
-            float(a.slide),
-            float(a.z),
-            float(a.cos_phi),
-            float(a.sin_phi),
-            float(a.cos_alpha),
-            float(a.sin_alpha),
-            to_floats(a.t),
-            to_floats(a.d),
-            to_floats(a.body),
-            float(a.carried_mass),
-            float(a.armature),
-            float(a.damping),
+    return {a.parent,         a.coordinate,      a.prismatic,           a.turned,           a.tilt,
+            float(a.ratio),   float(a.turn),     float(a.angle),        float(a.slide),     float(a.z),
+            float(a.cos_phi), float(a.sin_phi),  float(a.cos_alpha),    float(a.sin_alpha), to_floats(a.t),
+            to_floats(a.d),   to_floats(a.body), float(a.carried_mass), float(a.armature),  float(a.damping),
             float(a.friction)};
 }
 
@@ -128,8 +112,8 @@ class Links {
         const Mat3d turn = {{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
         return {turn * frame.T_joint_frame.R, turn * frame.T_joint_frame.t};
     }
-    // The first frame on the base and on each link in the axes of the latter, of a link without frames its own
-    // as the tree has it: the frames of the parameters of bodies.
+    // The first frame on the base and on each link in the axes of the latter, of a link without frames its
+    // own as the tree has it: the frames of the parameters of bodies.
     const std::vector<Posed>& body_frames() const { return body_frames_; }
 
     // The links from the base to one of them.

@@ -33,7 +33,7 @@ struct BasicLink {
     S slide, z;                     // both are 0 for a revolute joint
     S cos_phi, sin_phi;             // φ
     S cos_alpha, sin_alpha;         // α, whose sine is not negative
-    Vec3<S> t, d;                          // in the axes of the parent
+    Vec3<S> t, d;                   // in the axes of the parent
     Moments<S> body;                // in its own axes
     S carried_mass;                 // of all that the joint moves [kg]
     S armature, damping, friction;  // of the joint
@@ -43,7 +43,7 @@ template <class S>
 struct BasicMultibody {
     const BasicLink<S>* links;
     int n_links, n_coordinates;
-    bool shares;           // a coordinate moves several joints
+    bool shares;      // a coordinate moves several joints
     Moments<S> base;  // what is fixed to the base, in its axes
     S mass;
 };

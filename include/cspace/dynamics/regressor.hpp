@@ -1,4 +1,5 @@
-// The regressor Y of inverse dynamics: tau = Y π, with the mass, first moments and inertia of every body in π.
+// The regressor Y of inverse dynamics: tau = Y π, with the mass, first moments and inertia of every body in
+// π.
 //
 // The wrench that moves a body is linear in its ten parameters. What a joint feels of it is its power in a
 // unit motion of the joint, all seen from the body (Atkeson, An and Hollerbach 1986).
@@ -81,17 +82,16 @@ CSPACE_INLINE void add_powers(const MovingBody<V>& body, const Vec3<V>& v, const
     const Vec3<V> u = transpose_times(body.R, v), z = transpose_times(body.R, w);
     const Vec3<V>&a = body.motion.a, &wd = body.motion.wd, &turning = body.motion.w;
     const Vec3<V> first = transpose_times(body.K, u) + cross(a, z), across = cross(z, turning);
-    const V values[body_parameters] = {
-        dot(u, a),
-        first.x,
-        first.y,
-        first.z,
-        z.x * wd.x + across.x * turning.x,
-        z.x * wd.y + z.y * wd.x + across.x * turning.y + across.y * turning.x,
-        z.x * wd.z + z.z * wd.x + across.x * turning.z + across.z * turning.x,
-        z.y * wd.y + across.y * turning.y,
-        z.y * wd.z + z.z * wd.y + across.y * turning.z + across.z * turning.y,
-        z.z * wd.z + across.z * turning.z};
+    const V values[body_parameters] = {dot(u, a),
+                                       first.x,
+                                       first.y,
+                                       first.z,
+                                       z.x * wd.x + across.x * turning.x,
+                                       z.x * wd.y + z.y * wd.x + across.x * turning.y + across.y * turning.x,
+                                       z.x * wd.z + z.z * wd.x + across.x * turning.z + across.z * turning.x,
+                                       z.y * wd.y + across.y * turning.y,
+                                       z.y * wd.z + z.z * wd.y + across.y * turning.z + across.z * turning.y,
+                                       z.z * wd.z + across.z * turning.z};
     for (int i = 0; i < body_parameters; ++i) powers[i] = powers[i] + values[i];
 }
 // The same for a unit of the coordinate that moves a joint.

@@ -8,8 +8,8 @@
 #include "cspace/math/rows.hpp"
 
 namespace cspace::dynamics {
-// L left of the diagonal and D⁻¹ on it, row by row. Where L has entries: those of row i are at before[i n] and
-// so on, n_before[i] of them; those of column i at behind[i n] and so on. used: memory for n numbers.
+// L left of the diagonal and D⁻¹ on it, row by row. Where L has entries: those of row i are at before[i n]
+// and so on, n_before[i] of them; those of column i at behind[i n] and so on. used: memory for n numbers.
 template <class V>
 struct SparseFactor {
     int n;
@@ -96,8 +96,10 @@ CSPACE_INLINE void solve_columns(const SparseFactor<V>& factor, W* B, int column
 // B (n, columns) becomes M⁻¹ B.
 template <class V, class W>
 CSPACE_INLINE void solve_sparse(const SparseFactor<V>& factor, W* B, int columns) {
+    // L in packs and eight columns stay in the fastest cache together only where both are small.
+    const bool both_fit = Lanes<V>::count == 1 || factor.n <= 16;
     int c = 0;
-    for (; c + 8 <= columns; c += 8) solve_columns<8>(factor, B, columns, c);
+    for (; c + 8 <= columns && both_fit; c += 8) solve_columns<8>(factor, B, columns, c);
     for (; c + 4 <= columns; c += 4) solve_columns<4>(factor, B, columns, c);
     for (; c < columns; ++c) solve_columns<1>(factor, B, columns, c);
 }

@@ -26,14 +26,14 @@ namespace cspace::inline CSPACE_ISA {
 inline constexpr int float_register_lanes = CSPACE_VECTOR_EXTENSIONS ? 2 * register_lanes : 4;
 using FloatPack = FloatRegister<float_register_lanes>;
 
-#define CSPACE_WITH_SCALAR(Result, op)                                  \
-    template <int N>                                                    \
-    CSPACE_INLINE Result<N> operator op(FloatRegister<N> a, float b) {  \
-        return a op fill<FloatRegister<N>>(b);                          \
-    }                                                                   \
-    template <int N>                                                    \
-    CSPACE_INLINE Result<N> operator op(float a, FloatRegister<N> b) {  \
-        return fill<FloatRegister<N>>(a) op b;                          \
+#define CSPACE_WITH_SCALAR(Result, op)                                 \
+    template <int N>                                                   \
+    CSPACE_INLINE Result<N> operator op(FloatRegister<N> a, float b) { \
+        return a op fill<FloatRegister<N>>(b);                         \
+    }                                                                  \
+    template <int N>                                                   \
+    CSPACE_INLINE Result<N> operator op(float a, FloatRegister<N> b) { \
+        return fill<FloatRegister<N>>(a) op b;                         \
     }
 CSPACE_WITH_SCALAR(FloatRegister, +)
 CSPACE_WITH_SCALAR(FloatRegister, -)
@@ -122,7 +122,8 @@ CSPACE_INLINE void store_every_fourth(FloatPack x, float* row, std::size_t step)
 // Four by four numbers of each 128 bits: rows become columns.
 CSPACE_INLINE void exchange_rows_and_columns(FloatPack (&a)[4]) {
     const auto low = CSPACE_FLOATS(unpacklo)(a[0].v, a[1].v), high = CSPACE_FLOATS(unpackhi)(a[0].v, a[1].v);
-    const auto low_2 = CSPACE_FLOATS(unpacklo)(a[2].v, a[3].v), high_2 = CSPACE_FLOATS(unpackhi)(a[2].v, a[3].v);
+    const auto low_2 = CSPACE_FLOATS(unpacklo)(a[2].v, a[3].v),
+               high_2 = CSPACE_FLOATS(unpackhi)(a[2].v, a[3].v);
     a[0] = {CSPACE_FLOATS(shuffle)(low, low_2, 0x44)};
     a[1] = {CSPACE_FLOATS(shuffle)(low, low_2, 0xee)};
     a[2] = {CSPACE_FLOATS(shuffle)(high, high_2, 0x44)};
@@ -162,7 +163,8 @@ CSPACE_INLINE void load_rows(const float* rows, std::size_t stride, int count, i
         std::memcpy(&values[j], column, sizeof column);
     }
 }
-CSPACE_INLINE void store_rows(const FloatPack* values, int width, float* rows, std::size_t stride, int count) {
+CSPACE_INLINE void store_rows(const FloatPack* values, int width, float* rows, std::size_t stride,
+                              int count) {
     if (has_four_columns && width >= 4 && count >= float_register_lanes)
         return over_four_columns(width, [&](int j) { store_four_columns(values + j, rows + j, stride); });
     for (int j = 0; j < width; ++j) {

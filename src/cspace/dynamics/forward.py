@@ -35,8 +35,8 @@ def forward_dynamics(
     """The accelerations of the joints under given torques; see Robot.forward_dynamics.
 
     q (..., n) [rad or m], qd, tau (..., dof), gravity (3,) [m/s²], wrenches: frame → (..., 6), expressed_in:
-    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof). dtype: float64,
-    or float32 to compute in single precision.
+    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof). dtype:
+    float64, or float32 to compute in single precision.
     Returns qdd (..., dof) [rad/s² or m/s²].
     Raises InputError for a wrong shape or NaN, and where a joint moves no inertia, UnknownNameError for an
     unknown frame.

@@ -31,8 +31,8 @@ def inverse_dynamics(
     """The joint torques and forces behind a motion; see Robot.inverse_dynamics.
 
     q (..., n) [rad or m], qd, qdd (..., dof), gravity (3,) [m/s²], wrenches: frame → (..., 6), expressed_in:
-    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof). dtype: float64,
-    or float32 to compute in single precision.
+    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof). dtype:
+    float64, or float32 to compute in single precision.
     Returns tau (..., dof) [N·m or N].
     Raises InputError for a wrong shape or NaN and where no link has a mass, UnknownNameError for an unknown
     frame.
