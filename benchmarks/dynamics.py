@@ -4,7 +4,8 @@ Usage: python benchmarks/dynamics.py [--rounds 60] [--batch 100000] [--robots pa
 
 The same URDF files with masses (package example-robot-data); the fingers of the panda are locked, the
 humanoid floats. Arguments and outputs are prepared. Answers are compared first. Processor time per call:
-medians and 95th percentiles over rounds in turns; batches on one thread.
+medians and 95th percentiles over rounds in turns; batches on one thread. Pinocchio has parallel calls of
+inverse and forward dynamics alone: batches of all else, as large as a cache, stand beside its single calls.
 """
 
 from __future__ import annotations
@@ -35,6 +36,13 @@ ROBOTS: dict[str, dict[str, Any]] = {
 }
 CHUNK = 50
 """Calls per reading of the clock."""
+MATRICES = ("mass matrix", "Coriolis matrix", "inverse derivatives", "forward derivatives", "regressor")
+REPEAT = 5
+"""Batches of these per reading of the clock."""
+CACHE = 1 << 19
+"""Bytes of answers per batch of functions that give matrices, which then stay in the second-level cache."""
+LEAST = 64
+"""Rows of such a batch at least."""
 
 
 class Case:
@@ -62,6 +70,7 @@ class Case:
         n, dof, robot = len(self.robot.joint_names), self.robot.dof, self.robot
         self.q, self.qd, self.qdd = rng.uniform(-2, 2, n), *rng.normal(size=(2, dof))
         self.T = np.eye(4)
+        self.frame = robot.tip or robot.leaves[0]
         self.placed = {"T_world_base": self.T} if robot.floating else {}
         self.tau = robot.inverse_dynamics(self.q, self.qd, self.qdd, friction=False, **self.placed)
 
@@ -72,21 +81,37 @@ class Case:
         S = self.oracle.velocity_map(self.T)
         v, a, tau = S @ self.qd, S @ self.qdd, np.linalg.pinv(S).T @ self.tau
         q, qd, qdd = self.q, self.qd, self.qdd
-        calls: Calls = {
-            "inverse dynamics": {"pinocchio": lambda: pin.rnea(model, data, pin_q, v, a)},
-            "mass matrix": {"pinocchio": lambda: pin.crba(model, data, pin_q)},
-            "forward dynamics": {"pinocchio": lambda: pin.aba(model, data, pin_q, v, tau)},
+        ours, T = self.tau, self.T
+        peer: dict[str, Callable[[], Any]] = {
+            "inverse dynamics": lambda: pin.rnea(model, data, pin_q, v, a),
+            "mass matrix": lambda: pin.crba(model, data, pin_q),
+            "forward dynamics": lambda: pin.aba(model, data, pin_q, v, tau),
+            "Coriolis matrix": lambda: pin.computeCoriolisMatrix(model, data, pin_q, v),
+            "inverse derivatives": lambda: pin.computeRNEADerivatives(model, data, pin_q, v, a),
+            "forward derivatives": lambda: pin.computeABADerivatives(model, data, pin_q, v, tau),
+            "regressor": lambda: pin.computeJointTorqueRegressor(model, data, pin_q, v, a),
         }
-        if robot.floating:
-            T, ours = self.T, self.tau
-            calls["inverse dynamics"]["cspace"] = lambda: robot.inverse_dynamics(q, qd, qdd, T_world_base=T)
-            calls["mass matrix"]["cspace"] = lambda: robot.mass_matrix(q, T_world_base=T)
-            calls["forward dynamics"]["cspace"] = lambda: robot.forward_dynamics(q, qd, ours, T_world_base=T)
-        else:
-            ours = self.tau
-            calls["inverse dynamics"]["cspace"] = lambda: robot.inverse_dynamics(q, qd, qdd)
-            calls["mass matrix"]["cspace"] = lambda: robot.mass_matrix(q)
-            calls["forward dynamics"]["cspace"] = lambda: robot.forward_dynamics(q, qd, ours)
+        fixed: dict[str, Callable[[], Any]] = {
+            "inverse dynamics": lambda: robot.inverse_dynamics(q, qd, qdd),
+            "mass matrix": lambda: robot.mass_matrix(q),
+            "forward dynamics": lambda: robot.forward_dynamics(q, qd, ours),
+            "Coriolis matrix": lambda: robot.coriolis_matrix(q, qd),
+            "inverse derivatives": lambda: robot.inverse_dynamics_derivatives(q, qd, qdd),
+            "forward derivatives": lambda: robot.forward_dynamics_derivatives(q, qd, ours),
+            "regressor": lambda: robot.regressor(q, qd, qdd),
+        }
+        floating: dict[str, Callable[[], Any]] = {
+            "inverse dynamics": lambda: robot.inverse_dynamics(q, qd, qdd, T_world_base=T),
+            "mass matrix": lambda: robot.mass_matrix(q, T_world_base=T),
+            "forward dynamics": lambda: robot.forward_dynamics(q, qd, ours, T_world_base=T),
+            "Coriolis matrix": lambda: robot.coriolis_matrix(q, qd, T_world_base=T),
+            "inverse derivatives": lambda: robot.inverse_dynamics_derivatives(q, qd, qdd, T_world_base=T),
+            "forward derivatives": lambda: robot.forward_dynamics_derivatives(q, qd, ours, T_world_base=T),
+            "regressor": lambda: robot.regressor(q, qd, qdd, T_world_base=T),
+        }
+        own = floating if robot.floating else fixed
+        calls: Calls = {task: {"pinocchio": peer[task], "cspace": own[task]} for task in peer}
+        if not robot.floating:
             self.add_dynibo(calls)
         return calls
 
@@ -121,24 +146,54 @@ class Case:
         v, a, force = (np.asfortranarray(S @ row.T) for row in (qd, qdd, tau))
         result = np.empty_like(v, order="F")
         pool = pin.ModelPool(self.model, 1)
-        most = 1000
-        square = np.empty((most, robot.dof, robot.dof))
-
-        def mass_matrices() -> None:
-            for i in range(0, count - most + 1, most):
-                robot.mass_matrix(q[i : i + most], out=square, threads=1, **T)
-
+        wrench = {self.frame: np.random.default_rng(7).normal(size=(count, 6))}
+        floats: dict[str, Any] = {"threads": 1, "dtype": np.float32, **T}
+        q32, qd32, qdd32, tau32 = (x.astype(np.float32) for x in (q, qd, qdd, tau))
+        out32, args, loads = np.empty_like(out, dtype=np.float32), {"threads": 1, **T}, (q, qd, qdd)
         return {
             "inverse dynamics": {
                 "pinocchio": lambda: pin.rneaInParallel(1, pool, pin_q, v, a, result),
-                "cspace": lambda: robot.inverse_dynamics(q, qd, qdd, out=out, threads=1, **T),
+                "cspace": lambda: robot.inverse_dynamics(q, qd, qdd, out=out, **args),
+                "float32": lambda: robot.inverse_dynamics(q32, qd32, qdd32, out=out32, **floats),
+                "wrenches": lambda: robot.inverse_dynamics(*loads, wrenches=wrench, out=out, **args),
             },
             "forward dynamics": {
                 "pinocchio": lambda: pin.abaInParallel(1, pool, pin_q, v, force, result),
-                "cspace": lambda: robot.forward_dynamics(q, qd, tau, out=out, threads=1, **T),
+                "cspace": lambda: robot.forward_dynamics(q, qd, tau, out=out, **args),
+                "float32": lambda: robot.forward_dynamics(q32, qd32, tau32, out=out32, **floats),
+                "wrenches": lambda: robot.forward_dynamics(q, qd, tau, wrenches=wrench, out=out, **args),
             },
-            "mass matrix": {"cspace": lambda: mass_matrices()},
         }
+
+    def matrices(self, task: str) -> tuple[int, dict[str, Callable[[], Any]]]:
+        """A function that gives a matrix per row, for about so many rows as stay in the cache."""
+        robot, n = self.robot, self.robot.dof
+        columns = robot.regressor(self.q, self.qd, self.qdd, **self.placed).shape[1]
+        size = {"regressor": columns * n}.get(task, (3 if "derivatives" in task else 1) * n * n)
+        count = max(LEAST, CACHE // (8 * size) // 16 * 16)
+        rng = np.random.default_rng(8)
+        q = rng.uniform(-2, 2, (count, len(self.q)))
+        qd, qdd = rng.normal(size=(2, count, n))
+        args: dict[str, Any] = {"threads": 1, **({"T_world_base": self.T} if robot.floating else {})}
+        tau = robot.inverse_dynamics(q, qd, qdd, **args)
+        q32, M32 = q.astype(np.float32), np.empty((count, n, n), np.float32)
+        square, three, Y = (np.empty((count, *shape)) for shape in ((n, n), (3, n, n), (n, columns)))
+        data = (q, qd, qdd)
+        calls: Calls = {
+            "mass matrix": {
+                "cspace": lambda: robot.mass_matrix(q, out=square, **args),
+                "float32": lambda: robot.mass_matrix(q32, out=M32, dtype=np.float32, **args),
+            },
+            "Coriolis matrix": {"cspace": lambda: robot.coriolis_matrix(q, qd, out=square, **args)},
+            "inverse derivatives": {
+                "cspace": lambda: robot.inverse_dynamics_derivatives(*data, out=three, **args)
+            },
+            "forward derivatives": {
+                "cspace": lambda: robot.forward_dynamics_derivatives(q, qd, tau, out=three, **args)
+            },
+            "regressor": {"cspace": lambda: robot.regressor(*data, out=Y, **args)},
+        }
+        return count, calls[task]
 
     def difference(self) -> float:
         """Largest difference to Pinocchio, relative to the largest torque."""
@@ -176,6 +231,14 @@ def measure(calls: Calls, rounds: int, repeat: int) -> dict[str, dict[str, dict[
     }
 
 
+def per_row(found: dict[str, dict[str, dict[str, float]]], count: int) -> dict[str, Any]:
+    """Times of a whole batch as those of one row."""
+    return {
+        task: {peer: {key: t / count for key, t in times.items()} for peer, times in contenders.items()}
+        for task, contenders in found.items()
+    }
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -187,17 +250,18 @@ def main() -> None:
     options = parser.parse_args()
     results: dict[str, Any] = {"machine": "", "robots": {}}
     for name in options.robots:
-        case = Case(name)
+        case, few = Case(name), max(3, options.rounds // 12)
         row = {
             "dof": case.robot.dof,
             "single": measure(case.calls(), options.rounds, CHUNK),
-            "batch": measure(case.batches(options.batch), max(3, options.rounds // 12), 1),
+            "batch": per_row(measure(case.batches(options.batch), few, 1), options.batch),
             "difference": case.difference(),
         }
-        for contenders in row["batch"].values():
-            for times in contenders.values():
-                for key in times:
-                    times[key] /= options.batch
+        for task in MATRICES:
+            count, calls = case.matrices(task)
+            row["batch"] |= per_row(measure({task: calls}, options.rounds, REPEAT), count)
+        for task, contenders in row["batch"].items():
+            contenders.setdefault("pinocchio", row["single"][task]["pinocchio"])
         results["robots"][name] = row
         print(f"{name}: {row['dof']} velocities, difference to Pinocchio {row['difference']:.1e}")
         for kind in ("single", "batch"):
@@ -205,7 +269,7 @@ def main() -> None:
                 times = ", ".join(
                     f"{peer} {t['median']:.0f} ({t['p95']:.0f})" for peer, t in sorted(contenders.items())
                 )
-                print(f"  {kind:6} {task:17} {times} ns")
+                print(f"  {kind:6} {task:19} {times} ns")
     if options.write:
         (HERE / "results/dynamics.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
 

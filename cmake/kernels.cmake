@@ -63,8 +63,10 @@ endif()
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" has_wide_moves)
 if(has_wide_moves)
-  set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/kinematics.cpp ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/dynamics.cpp
-               APPEND PROPERTY COMPILE_OPTIONS -mmove-max=256 -mstore-max=256)
+  foreach(kernel kinematics dynamics dynamics_floats dynamics_regressor dynamics_spatial)
+    set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/${kernel}.cpp
+                 APPEND PROPERTY COMPILE_OPTIONS -mmove-max=256 -mstore-max=256)
+  endforeach()
 endif()
 
 # Verdicts on edges and nearest nodes are the same on every machine: no product and sum are rounded at once.

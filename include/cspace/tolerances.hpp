@@ -127,5 +127,7 @@ inline constexpr double same_distance = 1e-12, same_gradient = 1e-9;
 // Inertia left to a joint, relative to that of the body which it turns or slides, that is none: what the
 // joints beyond take away leaves rounding of 1e-16.
 inline constexpr double singular_inertia = 1e-13;
+// The same in floats, which leave rounding of 1e-7.
+inline constexpr float singular_inertia_of_floats = 1e-6f;
 
 }  // namespace cspace::tolerance

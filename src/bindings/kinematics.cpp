@@ -58,9 +58,9 @@ void free_kinematics(PyObject* self) {
     free_object(self);
 }
 
-const dynamics::Multibody& multibody_of(KinematicsObject& robot) {
+const dynamics::Links& links_of(KinematicsObject& robot) {
     if (!robot.links) robot.links = std::make_unique<const dynamics::Links>(robot.model->tree());
-    return robot.links->view();
+    return *robot.links;
 }
 
 namespace {

@@ -16,7 +16,6 @@
 
 namespace cspace::dynamics {
 class Links;
-struct Multibody;
 }  // namespace cspace::dynamics
 
 struct KinematicsObject {
@@ -44,7 +43,7 @@ PyObject* call_python(const char* module, const char* function, const char* meth
                       PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
 
 // The links of a robot, for dynamics. Call it with the interpreter lock.
-const cspace::dynamics::Multibody& multibody_of(KinematicsObject& robot);
+const cspace::dynamics::Links& links_of(KinematicsObject& robot);
 
 // A robot as an argument, and the chain to one of its frames. Throws for an object that is not a robot, and
 // for a frame that it does not have.

@@ -24,6 +24,8 @@ T* data_of(PyObject* array) {
 template <class T>
 inline constexpr int numpy_type = NPY_DOUBLE;
 template <>
+inline constexpr int numpy_type<float> = NPY_FLOAT;
+template <>
 inline constexpr int numpy_type<std::int64_t> = NPY_INT64;
 template <>
 inline constexpr int numpy_type<std::int32_t> = NPY_INT32;

@@ -106,6 +106,13 @@ PyMethodDef robot_methods[] = {
     {"mass_matrix", as_method(&compute_mass_matrix), METH_FASTCALL | METH_KEYWORDS, mass_matrix_doc},
     {"gravity_torques", as_method(&compute_gravity_torques), METH_FASTCALL | METH_KEYWORDS,
      gravity_torques_doc},
+    {"coriolis_matrix", as_method(&compute_coriolis_matrix), METH_FASTCALL | METH_KEYWORDS,
+     coriolis_matrix_doc},
+    {"inverse_dynamics_derivatives", as_method(&compute_inverse_derivatives), METH_FASTCALL | METH_KEYWORDS,
+     inverse_derivatives_doc},
+    {"forward_dynamics_derivatives", as_method(&compute_forward_derivatives), METH_FASTCALL | METH_KEYWORDS,
+     forward_derivatives_doc},
+    {"regressor", as_method(&compute_regressor), METH_FASTCALL | METH_KEYWORDS, regressor_doc},
     {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef robot_attributes[] = {
     {"_solver", &get_solver, &set_solver, "The solver, None before it is built; set once.", nullptr},

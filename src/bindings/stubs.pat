@@ -6,7 +6,7 @@ cspace._core.isa:
 
 cspace._core.KinematicsBase.__init__:
     \from typing import Any
-    \from numpy.typing import ArrayLike
+    \from numpy.typing import ArrayLike, DTypeLike
     def __init__(self, assembly: Any) -> None: ...
 
 cspace._core.KinematicsBase.dof:
@@ -35,19 +35,35 @@ cspace._core.RobotBase.collides$:
         \doc
 
 cspace._core.RobotBase.inverse_dynamics$:
-    def inverse_dynamics(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+    def inverse_dynamics(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[Any] | None = None, threads: int | None = None, dtype: DTypeLike = numpy.float64) -> NDArray[Any]:
         \doc
 
 cspace._core.RobotBase.forward_dynamics$:
-    def forward_dynamics(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+    def forward_dynamics(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[Any] | None = None, threads: int | None = None, dtype: DTypeLike = numpy.float64) -> NDArray[Any]:
         \doc
 
 cspace._core.RobotBase.mass_matrix$:
-    def mass_matrix(self, q: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+    def mass_matrix(self, q: ArrayLike, *, T_world_base: Any = None, out: NDArray[Any] | None = None, threads: int | None = None, dtype: DTypeLike = numpy.float64) -> NDArray[Any]:
         \doc
 
 cspace._core.RobotBase.gravity_torques$:
     def gravity_torques(self, q: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
+cspace._core.RobotBase.coriolis_matrix$:
+    def coriolis_matrix(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
+cspace._core.RobotBase.inverse_dynamics_derivatives$:
+    def inverse_dynamics_derivatives(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        \doc
+
+cspace._core.RobotBase.forward_dynamics_derivatives$:
+    def forward_dynamics_derivatives(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        \doc
+
+cspace._core.RobotBase.regressor$:
+    def regressor(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
         \doc
 
 cspace._core.RobotBase._checked:
@@ -163,6 +179,7 @@ cspace._core.__suffix__:
     def _chain_misses(*arguments: Any) -> None: ...
     def _tree_rows(*arguments: Any) -> bool: ...
     def _dynamics_rows(*arguments: Any) -> bool: ...
+    def _float_dynamics_rows(*arguments: Any) -> bool: ...
     def _ik_build(*arguments: Any) -> None: ...
     def _ik_room(solver: Any) -> int: ...
     def _ik_answer(*arguments: Any) -> Any: ...

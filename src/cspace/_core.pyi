@@ -5,7 +5,7 @@ from typing import Annotated, Any, overload
 
 import numpy
 import numpy.typing
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 
 __version__: str
@@ -207,7 +207,7 @@ class RobotBase(KinematicsBase):
         names the errors.
         """
 
-    def inverse_dynamics(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+    def inverse_dynamics(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[Any] | None = None, threads: int | None = None, dtype: DTypeLike = numpy.float64) -> NDArray[Any]:
         """
         The joint torques and forces behind a motion (inverse dynamics).
 
@@ -216,9 +216,11 @@ class RobotBase(KinematicsBase):
         q (..., n): joint coordinates [rad or m]. qd, qdd (..., dof): velocities and accelerations; of a floating base
         [v; ω] and [v̇; ω̇] come first, of its origin in world axes. gravity (3,) [m/s²] in the axes of the base, of the
         world for a robot that is mounted. wrenches: frame → (..., 6), force and torque [N, N·m] of the world on the
-        robot at the origin of that frame, in the same axes, or with expressed_in="tip" in those of the frame. friction: with damping and dry friction of the joints;
-        their armature always counts. T_world_base (..., 4, 4): where the base is. out (..., dof): float64 array to
-        write into. threads: as in fk.
+        robot at the origin of that frame, in the same axes, or with expressed_in="tip" in those of the frame.
+        friction: with damping and dry friction of the joints; their armature always counts. T_world_base (..., 4, 4):
+        where the base is. out (..., dof): array of that dtype to write into. threads: as in fk. dtype: float32 computes
+        in single precision, twice as many rows at a time: arrays of float32 are taken as they are, the answer is one,
+        and errors are about 1e-6 of the largest torque; values of joints are then below 10,000.
 
         Returns tau (..., dof) [N·m or N]; of a floating base the wrench [f; n] at its origin, in world axes, comes
         first. Raises InputError for a wrong shape or NaN and where no link has a mass, UnknownNameError for an
@@ -227,14 +229,15 @@ class RobotBase(KinematicsBase):
         Luh, Walker and Paul 1980; Featherstone 2008, section 5.3.
         """
 
-    def forward_dynamics(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+    def forward_dynamics(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), wrenches: Any = None, expressed_in: str = "base", friction: bool = True, T_world_base: Any = None, out: NDArray[Any] | None = None, threads: int | None = None, dtype: DTypeLike = numpy.float64) -> NDArray[Any]:
         """
         The accelerations of the joints under given torques (forward dynamics).
 
         q̈ = M(q)⁻¹ (tau − C(q, q̇) q̇ − g(q) − friction + Σ Jᵀ w).
 
-        q, qd, gravity, wrenches, expressed_in, friction, T_world_base, threads: as in inverse_dynamics. tau (..., dof) [N·m or N]:
-        of a floating base the wrench [f; n] on it comes first. out (..., dof): float64 array to write into.
+        q, qd, gravity, wrenches, expressed_in, friction, T_world_base, threads: as in inverse_dynamics. tau (..., dof)
+        [N·m or N]: of a floating base the wrench [f; n] on it comes first. out (..., dof): array of that dtype to write
+        into. dtype: as in inverse_dynamics; errors of float32 grow with the condition of M.
 
         Returns qdd (..., dof) [rad/s² or m/s²]. Raises InputError for a wrong shape or NaN, and where a joint moves no
         inertia, which it names.
@@ -242,12 +245,12 @@ class RobotBase(KinematicsBase):
         Featherstone 2008, section 7.3.
         """
 
-    def mass_matrix(self, q: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+    def mass_matrix(self, q: ArrayLike, *, T_world_base: Any = None, out: NDArray[Any] | None = None, threads: int | None = None, dtype: DTypeLike = numpy.float64) -> NDArray[Any]:
         """
         The mass matrix M of the kinetic energy ½ q̇ᵀ M(q) q̇, with the armature of the joints.
 
         q (..., n): joint coordinates [rad or m]. T_world_base (..., 4, 4): where the base is. out (..., dof, dof):
-        float64 array to write into. threads: as in fk.
+        array of that dtype to write into. threads: as in fk. dtype: as in inverse_dynamics.
 
         Returns M (..., dof, dof), symmetric; the rows and columns of a floating base, [v; ω] of its origin in world
         axes, come first. Raises InputError for a wrong shape or NaN and where no link has a mass.
@@ -264,6 +267,65 @@ class RobotBase(KinematicsBase):
 
         Returns g (..., dof) [N·m or N]; of a floating base the wrench that holds it comes first. Raises InputError for
         a wrong shape or NaN and where no link has a mass.
+        """
+
+    def coriolis_matrix(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The Coriolis matrix C(q, q̇): C q̇ are the forces of velocities, and Ṁ = C + Cᵀ.
+
+        Of all matrices with these forces it is the one of Christoffel's symbols, so that Ṁ − 2 C is antisymmetric, as
+        control laws assume.
+
+        q (..., n) [rad or m], qd (..., dof) [rad/s or m/s]; of a floating base [v; ω] comes first. T_world_base
+        (..., 4, 4): where the base is. out (..., dof, dof): float64 array to write into. threads: as in fk.
+
+        Returns C (..., dof, dof). Raises InputError for a wrong shape or NaN and where no link has a mass.
+
+        Echeandia and Wensing 2021, algorithm 1.
+        """
+
+    def inverse_dynamics_derivatives(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """
+        ∂tau/∂q, ∂tau/∂q̇ and ∂tau/∂q̈ = M of inverse dynamics.
+
+        The position of a floating base is varied by a displacement [v; ω] in the axes of the world, its velocities and
+        accelerations in these axes kept. Dry friction counts as constant.
+
+        q (..., n) [rad or m], qd, qdd (..., dof), gravity (3,), friction, T_world_base (..., 4, 4), threads: as in
+        inverse_dynamics. out (..., 3, dof, dof): float64 array to write into; the answers are parts of it.
+
+        Returns dq, dqd and M, each (..., dof, dof): row i holds the derivatives of tau[i]. Raises InputError for a wrong
+        shape or NaN and where no link has a mass.
+
+        Carpentier and Mansard 2018; Singh, Russell and Wensing 2022.
+        """
+
+    def forward_dynamics_derivatives(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """
+        ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂tau = M⁻¹ of forward dynamics.
+
+        They are −M⁻¹ times those of inverse dynamics at the acceleration that tau causes.
+
+        q (..., n), qd, tau (..., dof), gravity, friction, T_world_base, threads: as in forward_dynamics. out (..., 3,
+        dof, dof): as in inverse_dynamics_derivatives.
+
+        Returns dq, dqd and M⁻¹, each (..., dof, dof). Raises InputError for a wrong shape or NaN, and where a joint moves
+        no inertia.
+        """
+
+    def regressor(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The matrix Y with tau = Y(q, q̇, q̈) π; see cspace.dynamics.parameters for π.
+
+        The columns do not depend on the masses of the robot, which may have none.
+
+        q (..., n) [rad or m], qd, qdd (..., dof), gravity (3,) [m/s²]. friction: with columns for damping and dry
+        friction. T_world_base (..., 4, 4): where the base is. out (..., dof, p): float64 array to write into. threads:
+        as in fk.
+
+        Returns Y (..., dof, p). Raises InputError for a wrong shape or NaN.
+
+        Atkeson, An and Hollerbach 1986.
         """
 
     @property
@@ -867,6 +929,7 @@ def _chain_rows(*arguments: Any) -> bool: ...
 def _chain_misses(*arguments: Any) -> None: ...
 def _tree_rows(*arguments: Any) -> bool: ...
 def _dynamics_rows(*arguments: Any) -> bool: ...
+def _float_dynamics_rows(*arguments: Any) -> bool: ...
 def _ik_build(*arguments: Any) -> None: ...
 def _ik_room(solver: Any) -> int: ...
 def _ik_answer(*arguments: Any) -> Any: ...

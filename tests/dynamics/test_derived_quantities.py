@@ -95,7 +95,9 @@ def test_derivatives_of_inverse_dynamics_are_its_slopes(robot, rng):
     np.testing.assert_allclose(dq, slope, atol=1e-7 * scale(slope))
     slope = differences(lambda d: robot.inverse_dynamics(q, qd + d, qdd, gravity=gravity), n)
     np.testing.assert_allclose(dqd, slope, atol=1e-7 * scale(slope))
-    np.testing.assert_array_equal(M, robot.mass_matrix(q))
+    own = robot.mass_matrix(q)
+    np.testing.assert_allclose(M, own, atol=1e-13 * scale(own))
+    np.testing.assert_array_equal(M, M.T)
 
 
 @pytest.mark.parametrize("robot", FREE, ids=free_ids)
@@ -110,16 +112,18 @@ def test_derivatives_of_a_floating_base(robot, rng):
         )
 
     none = np.zeros(robot.dof)
-    dq, dqd, _ = robot.inverse_dynamics_derivatives(
+    dq, dqd, M = robot.inverse_dynamics_derivatives(
         q, qd, qdd, gravity=gravity, T_world_base=T, friction=False
     )
+    own = robot.mass_matrix(q, T_world_base=T)
+    np.testing.assert_allclose(M, own, atol=1e-13 * scale(own))
     slope = differences(lambda d: torques(d, none), robot.dof)
     np.testing.assert_allclose(dq, slope, atol=1e-7 * scale(slope))
     slope = differences(lambda e: torques(none, e), robot.dof)
     np.testing.assert_allclose(dqd, slope, atol=1e-7 * scale(slope))
 
 
-@pytest.mark.parametrize("robot", [*TREES[:3], ARMS[0]], ids=lambda robot: robot.name)
+@pytest.mark.parametrize("robot", ROBOTS, ids=ids)
 def test_derivatives_of_forward_dynamics_are_its_slopes(robot, rng):
     q = random_q(robot, rng)
     qd, tau = rng.normal(size=(2, robot.dof))
@@ -133,7 +137,21 @@ def test_derivatives_of_forward_dynamics_are_its_slopes(robot, rng):
     np.testing.assert_allclose(dtau, slope, atol=1e-5 * scale(slope))
 
 
-@pytest.mark.parametrize("robot", [*ROBOTS[:2], FREE[0]], ids=lambda robot: robot.name)
+@pytest.mark.parametrize("robot", [*ROBOTS, *FREE], ids=lambda robot: robot.name)
+def test_derivatives_of_forward_dynamics_are_those_of_inverse_dynamics_through_the_mass_matrix(robot, rng):
+    q, placed = random_q(robot, rng), {"T_world_base": random_pose(rng)} if robot.floating else {}
+    qd, tau = rng.normal(size=(2, robot.dof))
+    qdd = robot.forward_dynamics(q, qd, tau, **placed)
+    dq, dqd, M = robot.inverse_dynamics_derivatives(q, qd, qdd, **placed)
+    forward = robot.forward_dynamics_derivatives(q, qd, tau, **placed)
+    weight = np.abs(forward[2]).max()
+    for found, expected in zip(forward, (-dq, -dqd, np.eye(robot.dof)), strict=True):
+        np.testing.assert_allclose(
+            M @ found, expected, atol=1e-12 * scale(expected) * max(1.0, weight * scale(M))
+        )
+
+
+@pytest.mark.parametrize("robot", [*ROBOTS[:2], TREES[1], FREE[0]], ids=lambda robot: robot.name)
 def test_rows_alone_and_among_others_agree(robot, rng):
     q, qd, qdd = random_q(robot, rng, 11), *rng.normal(size=(2, 11, robot.dof))
     for many, alone in (
@@ -144,5 +162,31 @@ def test_rows_alone_and_among_others_agree(robot, rng):
             robot.inverse_dynamics_derivatives(q, qd, qdd)[0],
             [robot.inverse_dynamics_derivatives(*row)[0] for row in zip(q, qd, qdd, strict=True)],
         ),
+        (
+            robot.forward_dynamics_derivatives(q, qd, qdd)[0],
+            [robot.forward_dynamics_derivatives(*row)[0] for row in zip(q, qd, qdd, strict=True)],
+        ),
+        (robot.regressor(q, qd, qdd), [robot.regressor(*row) for row in zip(q, qd, qdd, strict=True)]),
     ):
         np.testing.assert_allclose(many, alone, atol=1e-11 * scale(many))
+
+
+@pytest.mark.parametrize("robot", [TREES[0], FREE[1]], ids=lambda robot: robot.name)
+def test_matrices_are_written_into_an_array(robot, rng):
+    q, qd, qdd = random_q(robot, rng, 5), *rng.normal(size=(2, 5, robot.dof))
+    n, p = robot.dof, robot.regressor(q[0], qd[0], qdd[0]).shape[1]
+    for function, shape in (
+        (robot.inverse_dynamics_derivatives, (5, 3, n, n)),
+        (robot.forward_dynamics_derivatives, (5, 3, n, n)),
+        (robot.regressor, (5, n, p)),
+    ):
+        out = np.full(shape, np.nan)
+        for threads in (1, 2):
+            found = function(q, qd, qdd, out=out, threads=threads)
+            again = function(q, qd, qdd)
+            if isinstance(found, tuple):
+                np.testing.assert_array_equal(np.stack(again, axis=1), out)
+                assert all(np.shares_memory(part, out) for part in found)
+            else:
+                assert found is out
+                np.testing.assert_array_equal(again, out)

@@ -1,4 +1,4 @@
-// The first derivatives of inverse dynamics by positions and velocities, in closed form.
+// The first derivatives of inverse dynamics by positions, velocities and accelerations, in closed form.
 //
 // Carpentier and Mansard 2018; in the order of Singh, Russell and Wensing 2022 (Efficient analytical
 // derivatives of rigid-body dynamics using spatial vector algebra), where every entry is a product of a
@@ -16,27 +16,33 @@ struct Growth {
     Twist<V> axis, rate, bend;
 };
 
-// dq and dqd (columns, columns), row by row: the derivatives of tau by the positions and velocities of the
-// joints, and by a displacement of a floating base, [v; ω] in the axes of the world, that leaves its
+// dq and dqd (columns, columns), rows `stride` apart: the derivatives of tau by the positions and velocities
+// of the joints, and by a displacement of a floating base, [v; ω] in the axes of the world, that leaves its
 // velocities and accelerations in these axes as they are. base, change: its motion and the time derivative of
-// that, less gravity. links, whole: as of place_links with change.
+// that, less gravity. links, whole: as of place_links with change. M is the derivative by the
+// accelerations, the mass matrix.
 template <class V>
 CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& base, const Twist<V>& change,
                                       bool floating, bool rubs, const SpatialLink<V>* links,
-                                      const SpatialBody<V>& whole, V* dq, V* dqd) {
+                                      const SpatialBody<V>& whole, int stride, V* dq, V* dqd, V* M) {
     const int first = floating ? 6 : 0, columns = first + bodies.n_coordinates;
     const auto add = [&](V* matrix, int row, int column, V value) {
-        V& entry = matrix[row * columns + column];
+        V& entry = matrix[row * stride + column];
         entry = entry + value;
     };
-    const auto growth_of = [&](int k) -> Growth<V> {
-        const int parent = bodies.links[k].parent;
-        const SpatialLink<V>& state = links[k];
-        return {state.axis, state.axis_rate,
-                cross_motion(parent < 0 ? change : links[parent].change, state.axis) +
-                    cross_motion(parent < 0 ? base : links[parent].motion, state.axis_rate)};
+    const auto add_rows = [&](V* matrix, int column, const Wrench<V>& wrench) {
+        const V rows[6] = {wrench.f.x, wrench.f.y, wrench.f.z, wrench.n.x, wrench.n.y, wrench.n.z};
+        for (int i = 0; i < 6; ++i) add(matrix, i, column, rows[i]);
     };
-    for (int i = 0; i < columns * columns; ++i) dq[i] = dqd[i] = fill<V>(0.0);
+    const auto growth_of = [&](int k) -> Growth<V> {
+        return {links[k].axis, links[k].axis_rate, links[k].axis_bend};
+    };
+    for (int i = 0; i < columns; ++i) {
+        for (int j = 0; j < columns; ++j) {
+            const int k = i * stride + j;
+            dq[k] = dqd[k] = M[k] = fill<V>(0.0);
+        }
+    }
     for (int k = 0; k < bodies.n_links; ++k) {
         const Link& link = bodies.links[k];
         const SpatialLink<V>& state = links[k];
@@ -56,6 +62,7 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
         add(dq, column, column, square * power(own.axis, by_position));
         add(dqd, column, column, square * power(own.axis, by_velocity));
         if (rubs) add(dqd, column, column, fill<V>(square * link.damping));
+        add(M, column, column, square * (power(own.axis, unit) + link.armature));
         for (int i = link.parent; i >= 0; i = bodies.links[i].parent) {
             const Link& before = bodies.links[i];
             const Growth<V> other = growth_of(i);
@@ -65,14 +72,14 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
             add(dqd, row, column, ratio * power(other.axis, by_velocity));
             add(dq, column, row, ratio * (dot(turning, other.rate.w) + power(other.bend, unit)));
             add(dqd, column, row, ratio * (dot(turning, other.axis.w) + 2.0 * power(other.rate, unit)));
+            const V inertia = ratio * power(other.axis, unit);
+            add(M, row, column, inertia);
+            add(M, column, row, inertia);
         }
         if (!floating) continue;
-        const Wrench<V> at_base[2] = {scale(link.ratio, by_position), scale(link.ratio, by_velocity)};
-        for (int which = 0; which < 2; ++which) {
-            const Vec3<V>&f = at_base[which].f, &n = at_base[which].n;
-            const V rows[6] = {f.x, f.y, f.z, n.x, n.y, n.z};
-            for (int i = 0; i < 6; ++i) add(which ? dqd : dq, i, column, rows[i]);
-        }
+        add_rows(dq, column, scale(link.ratio, by_position));
+        add_rows(dqd, column, scale(link.ratio, by_velocity));
+        add_rows(M, column, scale(link.ratio, unit));
     }
     if (!floating) return;
     // Turning the base by e and all motion and gravity with it changes no joint force and turns the wrench on
@@ -95,13 +102,10 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
         const Wrench<V> velocity = wrench_of(faster),
                         undoing = wrench_of(undone) + momentum_of(mass, whole, lost);
         const Vec3<V> f = cross(e, whole.wrench.f) - undoing.f, n = cross(e, whole.wrench.n) - undoing.n;
-        const V positions[6] = {f.x, f.y, f.z, n.x, n.y, n.z};
-        const V velocities[6] = {velocity.f.x, velocity.f.y, velocity.f.z,
-                                 velocity.n.x, velocity.n.y, velocity.n.z};
-        for (int i = 0; i < 6; ++i) {
-            add(dq, i, 3 + j, positions[i]);
-            add(dqd, i, 3 + j, velocities[i]);
-        }
+        add_rows(dq, 3 + j, Wrench<V>{f, n});
+        add_rows(dqd, 3 + j, velocity);
+        add_rows(M, j, momentum_of(mass, whole, Twist<V>{e, none}));
+        add_rows(M, 3 + j, momentum_of(mass, whole, Twist<V>{none, e}));
         for (int k = 0; k < bodies.n_links; ++k) {
             const Link& link = bodies.links[k];
             const SpatialLink<V>& state = links[k];
@@ -114,6 +118,8 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
             add(dq, first + link.coordinate, 3 + j, -link.ratio * (force_of(undone) + power(lost, push)));
         }
     }
+    for (int i = 0; i < 6; ++i)
+        for (int j = 6; j < columns; ++j) M[j * stride + i] = M[i * stride + j];
 }
 
 }  // namespace cspace::dynamics::inline CSPACE_ISA

@@ -32,14 +32,19 @@ struct LinkResponse {
 
 namespace cspace::dynamics::inline CSPACE_ISA {
 
+template <class V>
+inline constexpr scalar_of<V> singular_inertia =
+    std::is_same_v<scalar_of<V>, float> ? tolerance::singular_inertia_of_floats : tolerance::singular_inertia;
+
 // The response of a rigid body that turns at w.
 template <class V>
-CSPACE_INLINE Articulated<V> rigid_response(const Moments<double>& body, const Vec3<V>& w) {
+CSPACE_INLINE Articulated<V> rigid_response(const MomentsOf<V>& body, const Vec3<V>& w) {
     const V zero = fill<V>(0.0), m = fill<V>(body.mass);
     const Vec3<V> h = fill3<V>(body.first);
-    const Symmetric3<double>& S = body.second;
+    const Symmetric3<scalar_of<V>>& S = body.second;
     const Mat3<V> K = acceleration_gradient(w, {zero, zero, zero});
-    return {fill_symmetric<V>({S.yy + S.zz, -S.xy, -S.xz, S.xx + S.zz, -S.yz, S.xx + S.yy}),
+    return {fill_symmetric<V>(
+                Symmetric3<scalar_of<V>>{S.yy + S.zz, -S.xy, -S.xz, S.xx + S.zz, -S.yz, S.xx + S.yy}),
             {m, zero, zero, m, zero, m},
             {{{zero, -h.z, h.y}, {h.z, zero, -h.x}, {-h.y, h.x, zero}}},
             {K * h, torque_of_gradient(K, S)}};
@@ -93,7 +98,8 @@ CSPACE_INLINE void shift_response(Articulated<V>& body, const Vec3<V>& t) {
 // What the parent of a link feels, in the frame of the link, since its joint gives way to the force tau.
 // Fills U, the inertia and u. regular: becomes false where the joint moves no inertia.
 template <class V>
-CSPACE_INLINE Articulated<V> give_way(const Link& link, LinkResponse<V>& state, V tau, mask_of<V>& regular) {
+CSPACE_INLINE Articulated<V> give_way(const LinkOf<V>& link, LinkResponse<V>& state, V tau,
+                                      mask_of<V>& regular) {
     const Articulated<V>& body = state.body;
     const Vec3<V> last_of_B = link.prismatic ? column(body.B, 2) : row(body.B, 2);
     if (link.prismatic)
@@ -102,7 +108,7 @@ CSPACE_INLINE Articulated<V> give_way(const Link& link, LinkResponse<V>& state, 
         state.U = {last_of_B, {body.A.xz, body.A.yz, body.A.zz}};
     const V inertia = (link.prismatic ? state.U.f.z : state.U.n.z) + link.armature;
     const Symmetric3<V>& resists = link.prismatic ? body.C : body.A;
-    regular = regular && inertia > tolerance::singular_inertia * (resists.xx + resists.yy + resists.zz);
+    regular = regular && inertia > singular_inertia<V> * (resists.xx + resists.yy + resists.zz);
     state.inverse_inertia = 1.0 / inertia;
     state.u = tau - (link.prismatic ? body.bias.f.z : body.bias.n.z);
     const Vec3<V> f = state.inverse_inertia * state.U.f, n = state.inverse_inertia * state.U.n;
@@ -116,17 +122,18 @@ CSPACE_INLINE Articulated<V> give_way(const Link& link, LinkResponse<V>& state, 
     return left;
 }
 
-// The first half: what the base feels of all links, where it turns at w in its axes. tau (n_coordinates,).
+// The first half: what the base feels of all links, where it turns at w in its axes. tau (n_coordinates,),
+// applied: see applied_wrenches.hpp.
 // Every coordinate must move one joint. regular: false in the lanes where a joint moves no inertia.
 template <class V>
-CSPACE_INLINE Articulated<V> articulate(const Multibody& bodies, const Vec3<V>& base_w, const V* q,
+CSPACE_INLINE Articulated<V> articulate(const MultibodyOf<V>& bodies, const Vec3<V>& base_w, const V* q,
                                         const V* qd, const V* tau, bool rubs, LinkResponse<V>* links,
-                                        mask_of<V>& regular) {
+                                        mask_of<V>& regular, const AppliedWrenches<V>& applied = {}) {
     const V zero = fill<V>(0.0);
-    regular = zero == zero;
+    regular = zero == 0.0;
     turn_links(bodies, q, links);
     for (int k = 0; k < bodies.n_links; ++k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         LinkResponse<V>& state = links[k];
         const Vec3<V>& before = link.parent < 0 ? base_w : links[link.parent].w;
         const V rate = link.ratio * qd[link.coordinate];
@@ -142,9 +149,12 @@ CSPACE_INLINE Articulated<V> articulate(const Multibody& bodies, const Vec3<V>& 
             state.w.z = state.w.z + rate;
         state.body = rigid_response(link.body, state.w);
     }
+    apply_wrenches(bodies, applied, links,
+                   [](LinkResponse<V>& state) -> Wrench<V>& { return state.body.bias; });
     Articulated<V> base = rigid_response(bodies.base, base_w);
+    apply_to_base(applied, base.bias);
     for (int k = bodies.n_links - 1; k >= 0; --k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         LinkResponse<V>& state = links[k];
         // At the joint itself forces are those at the coordinate divided by the ratio.
         const int j = link.coordinate;
@@ -159,10 +169,10 @@ CSPACE_INLINE Articulated<V> articulate(const Multibody& bodies, const Vec3<V>& 
 
 // The second half: qdd (n_coordinates,) from the acceleration of the base, less gravity, in its axes.
 template <class V>
-CSPACE_INLINE void accelerate(const Multibody& bodies, const Vec3<V>& base_a, const Vec3<V>& base_wd,
+CSPACE_INLINE void accelerate(const MultibodyOf<V>& bodies, const Vec3<V>& base_a, const Vec3<V>& base_wd,
                               LinkResponse<V>* links, V* qdd) {
     for (int k = 0; k < bodies.n_links; ++k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         LinkResponse<V>& state = links[k];
         Vec3<V> wd = link.parent < 0 ? base_wd : links[link.parent].motion.wd;
         Vec3<V> a = (link.parent < 0 ? base_a : links[link.parent].motion.a) + cross(wd, state.t);

@@ -6,14 +6,9 @@
 // Paul 1980).
 #pragma once
 
-#include "cspace/dynamics/link_axes.hpp"
+#include "cspace/dynamics/applied_wrenches.hpp"
 
 namespace cspace::dynamics {
-// A force and a torque about the origin of a frame, in its axes.
-template <class V>
-struct Wrench {
-    Vec3<V> f, n;
-};
 // How a frame moves: angular velocity, angular acceleration and the acceleration of its origin, less gravity.
 template <class V>
 struct Motion {
@@ -53,19 +48,19 @@ CSPACE_INLINE Vec3<V> torque_of_gradient(const Mat3<V>& K, const Symmetric3<S>& 
 
 // The wrench that moves a body.
 template <class V>
-CSPACE_INLINE Wrench<V> body_wrench(const Moments<double>& body, const Motion<V>& motion, const Mat3<V>& K) {
+CSPACE_INLINE Wrench<V> body_wrench(const MomentsOf<V>& body, const Motion<V>& motion, const Mat3<V>& K) {
     const Vec3<V> h = fill3<V>(body.first);
     return {body.mass * motion.a + K * h, cross(h, motion.a) + torque_of_gradient(K, body.second)};
 }
 // The same for a body that does not turn.
 template <class V>
-CSPACE_INLINE Wrench<V> body_wrench(const Moments<double>& body, const Vec3<V>& a) {
+CSPACE_INLINE Wrench<V> body_wrench(const MomentsOf<V>& body, const Vec3<V>& a) {
     return {body.mass * a, cross(fill3<V>(body.first), a)};
 }
 
 // Adds what a link feels at its origin to what its parent feels.
 template <class V>
-CSPACE_INLINE void hand_down(const Link& link, const LinkMotion<V>& state, Wrench<V>& parent) {
+CSPACE_INLINE void hand_down(const LinkOf<V>& link, const LinkMotion<V>& state, Wrench<V>& parent) {
     Wrench<V> wrench = state.wrench;
     to_parent(link, state.turn, wrench.f, wrench.n);
     parent.f = parent.f + wrench.f;
@@ -74,7 +69,7 @@ CSPACE_INLINE void hand_down(const Link& link, const LinkMotion<V>& state, Wrenc
 
 // What a joint itself opposes to its motion, at its coordinate. rubs: with damping and dry friction.
 template <class V>
-CSPACE_INLINE V joint_resistance(const Link& link, V qd, V qdd, bool rubs) {
+CSPACE_INLINE V joint_resistance(const LinkOf<V>& link, V qd, V qdd, bool rubs) {
     V force = (link.ratio * link.ratio * link.armature) * qdd;
     if (!rubs) return force;
     force = force + (link.ratio * link.ratio * link.damping) * qd;
@@ -86,15 +81,16 @@ CSPACE_INLINE V joint_resistance(const Link& link, V qd, V qdd, bool rubs) {
 
 // The torques (n_coordinates,) that accelerate the joints by qdd (null: zero) and carry the weight of the
 // robot. base: how the base moves, in its axes, with a less gravity. Returns the wrench on the base, at its
-// origin, in its axes.
+// origin, in its axes. applied: see applied_wrenches.hpp.
 template <class V>
-CSPACE_INLINE Wrench<V> inverse_dynamics(const Multibody& bodies, const Motion<V>& base, const V* q,
-                                         const V* qd, const V* qdd, bool rubs, LinkMotion<V>* links, V* tau) {
+CSPACE_INLINE Wrench<V> inverse_dynamics(const MultibodyOf<V>& bodies, const Motion<V>& base, const V* q,
+                                         const V* qd, const V* qdd, bool rubs, LinkMotion<V>* links, V* tau,
+                                         const AppliedWrenches<V>& applied = {}) {
     const V zero = fill<V>(0.0);
     turn_links(bodies, q, links);
     const Mat3<V> base_K = acceleration_gradient(base.w, base.wd);
     for (int k = 0; k < bodies.n_links; ++k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         const bool first = link.parent < 0;
         const Motion<V>& before = first ? base : links[link.parent].motion;
         const Mat3<V>& K_before = first ? base_K : links[link.parent].K;
@@ -114,10 +110,12 @@ CSPACE_INLINE Wrench<V> inverse_dynamics(const Multibody& bodies, const Motion<V
         state.K = acceleration_gradient(w, wd);
         state.wrench = body_wrench(link.body, state.motion, state.K);
     }
+    apply_wrenches(bodies, applied, links, [](LinkMotion<V>& state) -> Wrench<V>& { return state.wrench; });
     for (int j = 0; j < bodies.n_coordinates; ++j) tau[j] = zero;
     Wrench<V> on_base = body_wrench(bodies.base, base, base_K);
+    apply_to_base(applied, on_base);
     for (int k = bodies.n_links - 1; k >= 0; --k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         const LinkMotion<V>& state = links[k];
         const V force = link.prismatic ? state.wrench.f.z : state.wrench.n.z;
         const int j = link.coordinate;
@@ -130,11 +128,11 @@ CSPACE_INLINE Wrench<V> inverse_dynamics(const Multibody& bodies, const Motion<V
 // The torques (n_coordinates,) that hold the weight of the robot at rest. lift: minus gravity, in the axes of
 // the base. Returns the wrench on the base.
 template <class V>
-CSPACE_INLINE Wrench<V> gravity_torques(const Multibody& bodies, const Vec3<V>& lift, const V* q,
+CSPACE_INLINE Wrench<V> gravity_torques(const MultibodyOf<V>& bodies, const Vec3<V>& lift, const V* q,
                                         LinkMotion<V>* links, V* tau) {
     turn_links(bodies, q, links);
     for (int k = 0; k < bodies.n_links; ++k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         LinkMotion<V>& state = links[k];
         state.t = link_origin(link, q);
         state.motion.a = link.parent < 0 ? lift : links[link.parent].motion.a;
@@ -144,7 +142,7 @@ CSPACE_INLINE Wrench<V> gravity_torques(const Multibody& bodies, const Vec3<V>& 
     for (int j = 0; j < bodies.n_coordinates; ++j) tau[j] = fill<V>(0.0);
     Wrench<V> on_base = body_wrench(bodies.base, lift);
     for (int k = bodies.n_links - 1; k >= 0; --k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         const LinkMotion<V>& state = links[k];
         V& force = tau[link.coordinate];
         force = force + link.ratio * (link.prismatic ? state.wrench.f.z : state.wrench.n.z);

@@ -27,7 +27,8 @@ CSPACE_INLINE void turn_pair(V& x, V& y, const Turn<S>& by) {
 }
 template <class S>
 CSPACE_INLINE Turn<S> twice(const Turn<S>& turn) {
-    return {2.0 * (turn.s * turn.c), turn.c * turn.c - turn.s * turn.s};
+    const S half = turn.s * turn.c;
+    return {half + half, turn.c * turn.c - turn.s * turn.s};
 }
 template <class S>
 CSPACE_INLINE Turn<S> back(const Turn<S>& turn) {
@@ -69,17 +70,17 @@ CSPACE_INLINE void turn_z(Mat3<V>& A, const Turn<S>& by) {
     turn_pair(m[2][0], m[2][1], by);
 }
 // About x.
-template <class V>
-CSPACE_INLINE void turn_x(Vec3<V>& a, const Turn<double>& by) {
+template <class V, class S>
+CSPACE_INLINE void turn_x(Vec3<V>& a, const Turn<S>& by) {
     turn_pair(a.y, a.z, by);
 }
-template <class V>
-CSPACE_INLINE void turn_x(Symmetric3<V>& A, const Turn<double>& by) {
+template <class V, class S>
+CSPACE_INLINE void turn_x(Symmetric3<V>& A, const Turn<S>& by) {
     turn_block(A.yy, A.yz, A.zz, by);
     turn_pair(A.xy, A.xz, by);
 }
-template <class V>
-CSPACE_INLINE void turn_x(Mat3<V>& A, const Turn<double>& by) {
+template <class V, class S>
+CSPACE_INLINE void turn_x(Mat3<V>& A, const Turn<S>& by) {
     auto& m = A.m;
     turn_block(m[1][1], m[1][2], m[2][1], m[2][2], by);
     turn_pair(m[0][1], m[0][2], by);
@@ -119,8 +120,8 @@ CSPACE_INLINE void half_turn_x(Mat3<V>& A) {
 
 // Vectors from the axes of the parent into those of the link. turn: by the variable angle of the link.
 template <class V, class... Vectors>
-CSPACE_INLINE void to_link(const Link& link, const Turn<V>& turn, Vectors&... a) {
-    if (link.turned) (turn_z(a, Turn<double>{-link.sin_phi, link.cos_phi}), ...);
+CSPACE_INLINE void to_link(const LinkOf<V>& link, const Turn<V>& turn, Vectors&... a) {
+    if (link.turned) (turn_z(a, Turn<scalar_of<V>>{-link.sin_phi, link.cos_phi}), ...);
     switch (link.tilt) {
         case model::Tilt::none:
             break;
@@ -131,13 +132,13 @@ CSPACE_INLINE void to_link(const Link& link, const Turn<V>& turn, Vectors&... a)
             (half_turn_x(a), ...);
             break;
         case model::Tilt::any:
-            (turn_x(a, Turn<double>{-link.sin_alpha, link.cos_alpha}), ...);
+            (turn_x(a, Turn<scalar_of<V>>{-link.sin_alpha, link.cos_alpha}), ...);
     }
     (turn_z(a, back(turn)), ...);
 }
 // Vectors and matrices from the axes of the link into those of the parent.
 template <class V, class... Tensors>
-CSPACE_INLINE void to_parent(const Link& link, const Turn<V>& turn, Tensors&... a) {
+CSPACE_INLINE void to_parent(const LinkOf<V>& link, const Turn<V>& turn, Tensors&... a) {
     (turn_z(a, turn), ...);
     switch (link.tilt) {
         case model::Tilt::none:
@@ -149,27 +150,27 @@ CSPACE_INLINE void to_parent(const Link& link, const Turn<V>& turn, Tensors&... 
             (half_turn_x(a), ...);
             break;
         case model::Tilt::any:
-            (turn_x(a, Turn<double>{link.sin_alpha, link.cos_alpha}), ...);
+            (turn_x(a, Turn<scalar_of<V>>{link.sin_alpha, link.cos_alpha}), ...);
     }
-    if (link.turned) (turn_z(a, Turn<double>{link.sin_phi, link.cos_phi}), ...);
+    if (link.turned) (turn_z(a, Turn<scalar_of<V>>{link.sin_phi, link.cos_phi}), ...);
 }
 
 // The origin of the link in the axes of the parent, and the value by which its joint slides.
 template <class V>
-CSPACE_INLINE Vec3<V> link_origin(const Link& link, const V* q) {
+CSPACE_INLINE Vec3<V> link_origin(const LinkOf<V>& link, const V* q) {
     if (!link.prismatic) return fill3<V>(link.t);
     const V value = link.slide * q[link.coordinate] + link.z;
     return {link.t.x + value * link.d.x, link.t.y + value * link.d.y, link.t.z + value * link.d.z};
 }
 // The turn of each link, into its state. One configuration alone fills the lanes with its links.
 template <class V, class State>
-CSPACE_INLINE void turn_links(const Multibody& bodies, const V* q, State* links) {
+CSPACE_INLINE void turn_links(const MultibodyOf<V>& bodies, const V* q, State* links) {
     if constexpr (Lanes<V>::count == 1) {
         for (int k = 0; k < bodies.n_links; k += 4) {
             auto angles = fill<Pack<4>>(0.0);
             const int count = bodies.n_links - k < 4 ? bodies.n_links - k : 4;
             for (int i = 0; i < count; ++i) {
-                const Link& link = bodies.links[k + i];
+                const LinkOf<V>& link = bodies.links[k + i];
                 set_lane(angles, i, link.turn * q[link.coordinate] + link.angle);
             }
             Pack<4> sines, cosines;
@@ -178,7 +179,7 @@ CSPACE_INLINE void turn_links(const Multibody& bodies, const V* q, State* links)
         }
     } else {
         for (int k = 0; k < bodies.n_links; ++k) {
-            const Link& link = bodies.links[k];
+            const LinkOf<V>& link = bodies.links[k];
             sincos(link.turn * q[link.coordinate] + link.angle, links[k].turn.s, links[k].turn.c);
         }
     }

@@ -56,6 +56,22 @@ inline Link make_link(const model::Joint& joint, const model::Body& body, double
     return link;
 }
 
+// The same in floats.
+inline Vec3<float> to_floats(const Vec3d& a) { return {float(a.x), float(a.y), float(a.z)}; }
+inline Moments<float> to_floats(const Moments<double>& m) {
+    const Symmetric3<double>& S = m.second;
+    return {float(m.mass),
+            to_floats(m.first),
+            {float(S.xx), float(S.xy), float(S.xz), float(S.yy), float(S.yz), float(S.zz)}};
+}
+inline BasicLink<float> to_floats(const Link& a) {
+    return {a.parent,         a.coordinate,      a.prismatic,           a.turned,           a.tilt,
+            float(a.ratio),   float(a.turn),     float(a.angle),        float(a.slide),     float(a.z),
+            float(a.cos_phi), float(a.sin_phi),  float(a.cos_alpha),    float(a.sin_alpha), to_floats(a.t),
+            to_floats(a.d),   to_floats(a.body), float(a.carried_mass), float(a.armature),  float(a.damping),
+            float(a.friction)};
+}
+
 }  // namespace cspace::dynamics::inline CSPACE_ISA
 
 namespace cspace::dynamics {
@@ -63,10 +79,9 @@ namespace cspace::dynamics {
 // The owner of the links of a robot; built once, then only read. Not for kernels.
 class Links {
   public:
-    explicit Links(const model::Tree& tree) : view_{} {
-        const std::size_t n = std::size_t(tree.n_joints);
+    explicit Links(const model::Tree& tree) : view_{}, turns_(std::size_t(tree.n_joints), 0.0) {
+        const std::size_t n = turns_.size();
         // Each frame is turned so that the first rotation to the first link that it carries vanishes.
-        std::vector<double> turns(n, 0.0);
         std::vector<bool> carries(n, false);
         std::vector<int> movers(std::size_t(tree.n_coordinates), 0);
         for (std::size_t k = 0; k < n; ++k) {
@@ -74,22 +89,54 @@ class Links {
             view_.shares = ++movers[std::size_t(joint.coordinate)] > 1 || view_.shares;
             if (joint.parent < 0 || carries[std::size_t(joint.parent)]) continue;
             carries[std::size_t(joint.parent)] = true;
-            turns[std::size_t(joint.parent)] = model::turn_tilt_turn(joint.T_parent_joint.R).first;
+            turns_[std::size_t(joint.parent)] = model::turn_tilt_turn(joint.T_parent_joint.R).first;
         }
         for (std::size_t k = 0; k < n; ++k) {
             const model::Joint& joint = tree.joints[k];
-            links_.push_back(make_link(joint, tree.bodies[k + 1],
-                                       joint.parent < 0 ? 0.0 : turns[std::size_t(joint.parent)], turns[k]));
+            links_.push_back(make_link(joint, tree.bodies[k + 1], turn_of(joint.parent), turns_[k]));
+            float_links_.push_back(to_floats(links_.back()));
         }
         view_ = {
             links_.data(), tree.n_joints, tree.n_coordinates, view_.shares, moments_of(tree.bodies[0], 0.0),
             tree.mass};
+        float_view_ = {float_links_.data(), tree.n_joints,         tree.n_coordinates,
+                       view_.shares,        to_floats(view_.base), float(tree.mass)};
+        find_body_frames(tree);
     }
     const Multibody& view() const { return view_; }
+    const BasicMultibody<float>& float_view() const { return float_view_; }
+
+    // A frame of the tree in the axes of its link.
+    Posed place(const model::Frame& frame) const {
+        const double c = std::cos(turn_of(frame.joint)), s = std::sin(turn_of(frame.joint));
+        const Mat3d turn = {{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
+        return {turn * frame.T_joint_frame.R, turn * frame.T_joint_frame.t};
+    }
+    // The first frame on the base and on each link in the axes of the latter, of a link without frames its
+    // own as the tree has it: the frames of the parameters of bodies.
+    const std::vector<Posed>& body_frames() const { return body_frames_; }
+
+    // The links from the base to one of them.
+    std::vector<int> path_to(int link) const {
+        std::vector<int> path;
+        for (; link >= 0; link = links_[std::size_t(link)].parent) path.insert(path.begin(), link);
+        return path;
+    }
 
   private:
+    double turn_of(int joint) const { return joint < 0 ? 0.0 : turns_[std::size_t(joint)]; }
+    void find_body_frames(const model::Tree& tree) {
+        for (int k = -1; k < tree.n_joints; ++k) body_frames_.push_back(place({identity_pose(), k}));
+        for (int i = tree.n_frames; i-- > 0;)
+            body_frames_[std::size_t(tree.frames[i].joint + 1)] = place(tree.frames[i]);
+    }
+
     std::vector<Link> links_;
+    std::vector<BasicLink<float>> float_links_;
     Multibody view_;
+    BasicMultibody<float> float_view_;
+    std::vector<double> turns_;
+    std::vector<Posed> body_frames_;
 };
 
 }  // namespace cspace::dynamics

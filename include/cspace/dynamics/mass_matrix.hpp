@@ -31,18 +31,18 @@ CSPACE_INLINE void shift_moments(const M& mass, Vec3<V>& first, Symmetric3<V>& s
 
 // The first and second moments of all that each joint moves, in the axes of its link.
 template <class V>
-CSPACE_INLINE void compose_links(const Multibody& bodies, const V* q, LinkComposite<V>* links,
+CSPACE_INLINE void compose_links(const MultibodyOf<V>& bodies, const V* q, LinkComposite<V>* links,
                                  Moments<V>& base) {
     turn_links(bodies, q, links);
     base = {fill<V>(bodies.mass), fill3<V>(bodies.base.first), fill_symmetric<V>(bodies.base.second)};
     for (int k = 0; k < bodies.n_links; ++k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         links[k].t = link_origin(link, q);
         links[k].first = fill3<V>(link.body.first);
         links[k].second = fill_symmetric<V>(link.body.second);
     }
     for (int k = bodies.n_links - 1; k >= 0; --k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         Vec3<V> first = links[k].first;
         Symmetric3<V> second = links[k].second;
         to_parent(link, links[k].turn, first, second);
@@ -56,7 +56,7 @@ CSPACE_INLINE void compose_links(const Multibody& bodies, const V* q, LinkCompos
 
 // The wrench that accelerates all that a joint moves by one along the joint.
 template <class V>
-CSPACE_INLINE Wrench<V> unit_wrench(const Link& link, const LinkComposite<V>& all) {
+CSPACE_INLINE Wrench<V> unit_wrench(const LinkOf<V>& link, const LinkComposite<V>& all) {
     const V zero = fill<V>(0.0);
     const Vec3<V>& h = all.first;
     const Symmetric3<V>& S = all.second;
@@ -66,7 +66,7 @@ CSPACE_INLINE Wrench<V> unit_wrench(const Link& link, const LinkComposite<V>& al
 
 // Adds an entry for two joints, at their coordinates: twice where they share one.
 template <class V>
-CSPACE_INLINE void add_entry(V* M, int columns, int first, const Link& a, const Link& b, V value) {
+CSPACE_INLINE void add_entry(V* M, int columns, int first, const LinkOf<V>& a, const LinkOf<V>& b, V value) {
     value = (a.ratio * b.ratio) * value;
     V& entry = M[(first + a.coordinate) * columns + first + b.coordinate];
     entry = entry + value;
@@ -78,14 +78,14 @@ CSPACE_INLINE void add_entry(V* M, int columns, int first, const Link& a, const 
 // base and 0 otherwise. R: the axes of the base in those of the world. At a floating base M holds for its
 // [v; ω] in world axes.
 template <class V>
-CSPACE_INLINE void mass_matrix(const Multibody& bodies, const V* q, const Mat3<V>& R, bool floating,
+CSPACE_INLINE void mass_matrix(const MultibodyOf<V>& bodies, const V* q, const Mat3<V>& R, bool floating,
                                LinkComposite<V>* links, V* M) {
     const int first = floating ? 6 : 0, columns = first + bodies.n_coordinates;
     Moments<V> whole;
     compose_links(bodies, q, links, whole);
     for (int i = 0; i < columns * columns; ++i) M[i] = fill<V>(0.0);
     for (int k = bodies.n_links - 1; k >= 0; --k) {
-        const Link& link = bodies.links[k];
+        const LinkOf<V>& link = bodies.links[k];
         Wrench<V> wrench = unit_wrench(link, links[k]);
         V& own = M[(first + link.coordinate) * (columns + 1)];
         const V inertia = link.prismatic ? wrench.f.z : wrench.n.z;
@@ -95,7 +95,7 @@ CSPACE_INLINE void mass_matrix(const Multibody& bodies, const V* q, const Mat3<V
             wrench.n = wrench.n + cross(links[j].t, wrench.f);
             j = bodies.links[j].parent;
             if (j < 0) break;
-            const Link& before = bodies.links[j];
+            const LinkOf<V>& before = bodies.links[j];
             add_entry(M, columns, first, before, link, before.prismatic ? wrench.f.z : wrench.n.z);
         }
         if (!floating) continue;

@@ -19,29 +19,43 @@ struct Moments {
     Vec3<V> first;
     Symmetric3<V> second;
 };
+// The parameters of a body in a regressor: mass, first moments, and its inertia row by row.
+inline constexpr int body_parameters = 10;
 
-struct Link {
+template <class S>
+struct BasicLink {
     int parent;              // the link that carries it, smaller than its own number; -1: the base
     int coordinate;          // which entry of q moves it
     bool prismatic, turned;  // turned: φ is not zero
     model::Tilt tilt;
-    double ratio;                        // velocity of the joint per velocity of its coordinate
-    double turn, angle;                  // turn is 0 for a prismatic joint
-    double slide, z;                     // both are 0 for a revolute joint
-    double cos_phi, sin_phi;             // φ
-    double cos_alpha, sin_alpha;         // α, whose sine is not negative
-    Vec3d t, d;                          // in the axes of the parent
-    Moments<double> body;                // in its own axes
-    double carried_mass;                 // of all that the joint moves [kg]
-    double armature, damping, friction;  // of the joint
+    S ratio;                        // velocity of the joint per velocity of its coordinate
+    S turn, angle;                  // turn is 0 for a prismatic joint
+    S slide, z;                     // both are 0 for a revolute joint
+    S cos_phi, sin_phi;             // φ
+    S cos_alpha, sin_alpha;         // α, whose sine is not negative
+    Vec3<S> t, d;                   // in the axes of the parent
+    Moments<S> body;                // in its own axes
+    S carried_mass;                 // of all that the joint moves [kg]
+    S armature, damping, friction;  // of the joint
 };
 
-struct Multibody {
-    const Link* links;
+template <class S>
+struct BasicMultibody {
+    const BasicLink<S>* links;
     int n_links, n_coordinates;
-    bool shares;           // a coordinate moves several joints
-    Moments<double> base;  // what is fixed to the base, in its axes
-    double mass;
+    bool shares;      // a coordinate moves several joints
+    Moments<S> base;  // what is fixed to the base, in its axes
+    S mass;
 };
+
+using Link = BasicLink<double>;
+using Multibody = BasicMultibody<double>;
+// The numbers that lanes of V are computed with.
+template <class V>
+using LinkOf = BasicLink<scalar_of<V>>;
+template <class V>
+using MultibodyOf = BasicMultibody<scalar_of<V>>;
+template <class V>
+using MomentsOf = Moments<scalar_of<V>>;
 
 }  // namespace cspace::dynamics

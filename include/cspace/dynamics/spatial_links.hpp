@@ -25,6 +25,7 @@ struct SpatialLink {
     Turn<V> turn;
     kinematics::FrameAxes<V> frame;
     Twist<V> axis, axis_rate;  // the motion per unit velocity of the joint, and its time derivative
+    Twist<V> axis_bend;        // what of the second time derivative a change of the joint itself brings about
     Twist<V> motion, change;   // of the link, and its time derivative less gravity
     SpatialBody<V> all;        // that the joint moves
 };
@@ -179,8 +180,9 @@ CSPACE_INLINE SpatialBody<V> place_links(const Multibody& bodies, const Mat3<V>&
         state.motion = carried + scale(rate, state.axis);
         if (change) {
             const V growth = qdd ? link.ratio * qdd[link.coordinate] : zero;
-            state.change = (parent ? parent->change : *change) + scale(growth, state.axis) +
-                           scale(rate, state.axis_rate);
+            const Twist<V>& changed = parent ? parent->change : *change;
+            state.axis_bend = cross_motion(changed, state.axis) + cross_motion(carried, state.axis_rate);
+            state.change = changed + scale(growth, state.axis) + scale(rate, state.axis_rate);
         }
         state.all = place_body(link.body, state.frame, state.motion, change ? &state.change : nullptr);
     }

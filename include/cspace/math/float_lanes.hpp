@@ -109,12 +109,11 @@ CSPACE_INLINE FloatRegister<N> shift_bits_left(FloatRegister<N> a) {
 template <int N>
 CSPACE_INLINE FloatRegister<N> select(MaskRegister<N> m, FloatRegister<N> yes, FloatRegister<N> no) {
 #if defined(CSPACE_X86_REGISTERS) && defined(__AVX__)
-    return {_mm256_blendv_ps(no.v, yes.v, (__m256)m.m)};
-#else
+    if constexpr (N == 8) return {_mm256_blendv_ps(no.v, yes.v, (__m256)m.m)};
+#endif
     using Bits [[maybe_unused]] = decltype(m.m);
     CSPACE_EACH_FLOAT(FloatRegister, v, (m.m & (Bits)yes.v) | (~m.m & (Bits)no.v),
                       m.m[i] ? yes.v[i] : no.v[i]);
-#endif
 }
 // min and max return b where either is NaN.
 #if defined(CSPACE_X86_REGISTERS) && defined(__AVX__)
@@ -203,6 +202,18 @@ CSPACE_INLINE Floats fill_floats(float x) {
     const Floats r = {{x, x, x, x, x, x, x, x}};
 #endif
     return r;
+}
+
+// The same for a register of any width.
+template <class F>
+CSPACE_INLINE F fill_floats(float x) {
+    if constexpr (std::is_same_v<F, Floats>) {
+        return fill_floats(x);
+    } else {
+        F r;
+        for (std::size_t i = 0; i < sizeof(F) / sizeof(float); ++i) r.v[i] = x;
+        return r;
+    }
 }
 
 // --- what follows

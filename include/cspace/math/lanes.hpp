@@ -13,38 +13,49 @@
 
 namespace cspace {
 
-// What a kernel needs to know of its scalar: how many lanes, and what a comparison yields.
+// What a kernel needs to know of its scalar: how many lanes, of which numbers, and what a comparison yields.
 template <class V>
 struct Lanes;
 template <>
 struct Lanes<double> {
     static constexpr int count = 1;
+    using scalar = double;
     using mask = bool;
 };
 template <int N>
 struct Lanes<Pack<N>> {
     static constexpr int count = N;
+    using scalar = double;
     using mask = Mask<N>;
 };
 template <class V>
 using mask_of = typename Lanes<V>::mask;
+template <class V>
+using scalar_of = typename Lanes<V>::scalar;
 
 }  // namespace cspace
 
 namespace cspace::inline CSPACE_ISA {
 
 // --- filling and reading lanes -------------------------------------------------------------------------
+// GCC broadcasts a vector made of one number; of a loop over eight lanes it makes eight instructions.
+template <class V, class S, int... lanes>
+CSPACE_INLINE V repeat(S x, std::integer_sequence<int, lanes...>) {
+#if CSPACE_VECTOR_EXTENSIONS
+    return {typename V::Raw{((void)lanes, x)...}};
+#else
+    return {{((void)lanes, x)...}};
+#endif
+}
 template <class V>
 CSPACE_INLINE V fill(double x) {
     if constexpr (Lanes<V>::count == 1) {
         return x;
-    } else if constexpr (is_split<Lanes<V>::count>) {
+    } else if constexpr (std::is_same_v<V, Pack<Lanes<V>::count>> && is_split<Lanes<V>::count>) {
         const auto half = fill<Pack<Lanes<V>::count / 2>>(x);
         return {half, half};
     } else {
-        V r;
-        for (int i = 0; i < Lanes<V>::count; ++i) r.v[i] = x;
-        return r;
+        return repeat<V>(scalar_of<V>(x), std::make_integer_sequence<int, Lanes<V>::count>());
     }
 }
 CSPACE_INLINE double lane(double x, int) { return x; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 
 #include "cspace/math/lanes.hpp"
 
@@ -11,13 +12,13 @@ namespace cspace::inline CSPACE_ISA {
 // ------------------------------------------------
 template <class V>
 CSPACE_INLINE V load(const double* values) {
-    V v{};
-    for (int k = 0; k < Lanes<V>::count; ++k) set_lane(v, k, values[k]);
+    V v;
+    std::memcpy(&v, values, sizeof v);
     return v;
 }
 template <class V>
 CSPACE_INLINE void store(double* values, V v) {
-    for (int k = 0; k < Lanes<V>::count; ++k) values[k] = lane(v, k);
+    std::memcpy(values, &v, sizeof v);
 }
 // The first `count` lanes alone; when loading, the others repeat the last.
 template <class V>

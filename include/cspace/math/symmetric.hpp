@@ -23,9 +23,9 @@ template <class V>
 CSPACE_INLINE Symmetric3<V> operator+(const Symmetric3<V>& A, const Symmetric3<V>& B) {
     return {A.xx + B.xx, A.xy + B.xy, A.xz + B.xz, A.yy + B.yy, A.yz + B.yz, A.zz + B.zz};
 }
-template <class V>
-CSPACE_INLINE Symmetric3<V> fill_symmetric(const Symmetric3<double>& S) {
-    return {fill<V>(S.xx), fill<V>(S.xy), fill<V>(S.xz), fill<V>(S.yy), fill<V>(S.yz), fill<V>(S.zz)};
+template <class V, class S>
+CSPACE_INLINE Symmetric3<V> fill_symmetric(const Symmetric3<S>& A) {
+    return {fill<V>(A.xx), fill<V>(A.xy), fill<V>(A.xz), fill<V>(A.yy), fill<V>(A.yz), fill<V>(A.zz)};
 }
 // The symmetric part of a matrix that is symmetric but for rounding: its upper triangle.
 template <class V>

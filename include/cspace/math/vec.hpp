@@ -97,12 +97,12 @@ template <class V>
 CSPACE_INLINE Pose<V> inverse(const Pose<V>& T) {
     return {transpose(T.R), -transpose_times(T.R, T.t)};
 }
-template <class V>
-CSPACE_INLINE Vec3<V> fill3(const Vec3<double>& a) {
+template <class V, class S>
+CSPACE_INLINE Vec3<V> fill3(const Vec3<S>& a) {
     return {fill<V>(a.x), fill<V>(a.y), fill<V>(a.z)};
 }
-template <class V>
-CSPACE_INLINE Mat3<V> fill33(const Mat3<double>& R) {
+template <class V, class S>
+CSPACE_INLINE Mat3<V> fill33(const Mat3<S>& R) {
     return from_columns(fill3<V>(column(R, 0)), fill3<V>(column(R, 1)), fill3<V>(column(R, 2)));
 }
 template <class V>

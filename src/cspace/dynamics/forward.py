@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, DTypeLike
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array
+from cspace.dynamics.float_rows import is_single, output_in, pushes_in, refuse_unfit, rows_in
 from cspace.dynamics.mass_matrix import mass_matrix
-from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, run_rows, torques_of_wrenches
+from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, push_rows, run_rows
 from cspace.errors import InputError
-from cspace.kinematics.batch import Batch, check_output, refuse_infinite
+from cspace.kinematics.batch import Batch, refuse_infinite
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
@@ -29,31 +30,34 @@ def forward_dynamics(
     T_world_base: PoseLike | None = None,
     out: Array | None = None,
     threads: int | None = None,
+    dtype: DTypeLike = np.float64,
 ) -> Array:
     """The accelerations of the joints under given torques; see Robot.forward_dynamics.
 
     q (..., n) [rad or m], qd, tau (..., dof), gravity (3,) [m/s²], wrenches: frame → (..., 6), expressed_in:
-    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof).
+    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof). dtype:
+    float64, or float32 to compute in single precision.
     Returns qdd (..., dof) [rad/s² or m/s²].
     Raises InputError for a wrong shape or NaN, and where a joint moves no inertia, UnknownNameError for an
     unknown frame.
     """
-    pull = torques_of_wrenches(robot, q, wrenches, expressed_in, T_world_base)
-    forces = tau if pull is None else as_floats(tau, "tau") + pull
-    batch = dynamic_rows(robot, q, qd=qd, tau=forces, T_world_base=T_world_base, threads=threads)
-    qdd = check_output(out, (*batch.shape, robot.dof))
-    down = check_gravity(gravity)
-    if not run_rows(robot, "forward_dynamics", batch, batch.tau, qdd, down, friction):
+    single = is_single(dtype)
+    batch = rows_in(single, robot, q, qd=qd, tau=tau, T_world_base=T_world_base, threads=threads)
+    batch, pushes = push_rows(robot, batch, wrenches, expressed_in)
+    qdd = output_in(single, out, (*batch.shape, robot.dof))
+    down, applied = check_gravity(gravity), pushes_in(single, pushes)
+    if not run_rows(robot, "forward_dynamics", batch, batch.tau, qdd, down, friction, applied):
+        refuse_unfit(batch)
         refuse_infinite(batch)
-        raise _singular_error(robot, batch)
+        raise singular_error(robot, batch)
     return qdd
 
 
-def _singular_error(robot: KinematicModel, batch: Batch) -> InputError:
+def singular_error(robot: KinematicModel, batch: Batch) -> InputError:
     """Names the joint that moves least in the first configuration where the mass matrix is singular."""
     row = _first_singular(robot, batch)
     q = batch.q[row]
-    M = mass_matrix(robot, q)
+    M = mass_matrix(robot, q.astype(np.float64))
     size = np.sqrt(np.maximum(np.diag(M), np.finfo(float).tiny))
     weakest = np.linalg.eigh(M / np.outer(size, size))[1][:, 0] / size
     names = [*("vx", "vy", "vz", "ωx", "ωy", "ωz")[: 6 if robot.floating else 0], *robot.joint_names]
@@ -78,7 +82,7 @@ def _first_singular(robot: KinematicModel, batch: Batch) -> int:
 
 
 def _is_regular(robot: KinematicModel, batch: Batch, begin: int, end: int) -> bool:
-    rest = np.zeros((end - begin, robot.dof))
+    rest = np.zeros((end - begin, robot.dof), batch.q.dtype)
     base = batch.T_world_base
     part = replace(
         batch,

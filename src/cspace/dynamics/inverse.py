@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, DTypeLike
 
 from cspace.arrays import Array
-from cspace.dynamics.rows import (
-    EARTH,
-    Wrenches,
-    check_gravity,
-    dynamic_rows,
-    fill_rows,
-    run_rows,
-    torques_of_wrenches,
-)
-from cspace.kinematics.batch import check_output, refuse_infinite
+from cspace.dynamics.float_rows import is_single, output_in, pushes_in, refuse_unfit, rows_in
+from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, fill_rows, push_rows, run_rows
+from cspace.kinematics.batch import refuse_infinite
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
@@ -33,24 +26,25 @@ def inverse_dynamics(
     T_world_base: PoseLike | None = None,
     out: Array | None = None,
     threads: int | None = None,
+    dtype: DTypeLike = np.float64,
 ) -> Array:
     """The joint torques and forces behind a motion; see Robot.inverse_dynamics.
 
     q (..., n) [rad or m], qd, qdd (..., dof), gravity (3,) [m/s²], wrenches: frame → (..., 6), expressed_in:
-    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof).
+    their axes, "base" or "tip" (those of the frame). T_world_base (..., 4, 4), out (..., dof). dtype:
+    float64, or float32 to compute in single precision.
     Returns tau (..., dof) [N·m or N].
     Raises InputError for a wrong shape or NaN and where no link has a mass, UnknownNameError for an unknown
     frame.
     """
-    pull = torques_of_wrenches(robot, q, wrenches, expressed_in, T_world_base)
-    batch = dynamic_rows(robot, q, qd=qd, qdd=qdd, T_world_base=T_world_base, threads=threads)
-    shape = batch.shape if pull is None else np.broadcast_shapes(batch.shape, pull.shape[:-1])
-    tau = check_output(out, (*shape, robot.dof))
-    own = tau if shape == batch.shape else np.empty((*batch.shape, robot.dof))
-    if not run_rows(robot, "inverse_dynamics", batch, batch.qdd, own, check_gravity(gravity), friction):
+    single = is_single(dtype)
+    batch = rows_in(single, robot, q, qd=qd, qdd=qdd, T_world_base=T_world_base, threads=threads)
+    batch, pushes = push_rows(robot, batch, wrenches, expressed_in)
+    tau = output_in(single, out, (*batch.shape, robot.dof))
+    down, applied = check_gravity(gravity), pushes_in(single, pushes)
+    if not run_rows(robot, "inverse_dynamics", batch, batch.qdd, tau, down, friction, applied):
+        refuse_unfit(batch)
         refuse_infinite(batch)
-    if pull is not None:
-        np.subtract(own, pull, out=tau)
     return tau
 
 

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, one_array
+from cspace.arrays import Array, as_floats, leading_axes, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import jacobian
-from cspace.kinematics.batch import Batch, check_output, check_robot, refuse_infinite, rows_of
+from cspace.kinematics.batch import (
+    Batch,
+    check_choice,
+    check_output,
+    check_robot,
+    frame_number,
+    refuse_infinite,
+    rows_of,
+)
 from cspace.kinematics.kinematic_model import KinematicModel
 
 EARTH: Final = (0.0, 0.0, -9.81)
@@ -22,6 +31,19 @@ NO_GRAVITY: Final = np.zeros(3)
 
 Wrenches = Mapping[str, ArrayLike]
 """Frame → (..., 6): force and torque [N, N·m] of the world on the robot at the origin of that frame."""
+
+AXES: Final = ("base", "tip")
+"""In which axes wrenches may be."""
+
+
+@dataclass(frozen=True, eq=False)
+class Push:
+    """A wrench as the compiled loops take it: the number of its frame, whether it is in the axes of that
+    frame, and its numbers (rows or 1, 6)."""
+
+    frame: int
+    in_tip: bool
+    wrench: Array
 
 
 def dynamic_rows(robot: KinematicModel, q: ArrayLike, **arguments: Any) -> Batch:
@@ -48,12 +70,19 @@ def run_rows(
     result: Array,
     gravity: Array,
     friction: bool,
+    pushes: Sequence[Push] = (),
 ) -> bool:
-    """Fill in the result, which may be one of the arguments; see _core._dynamics_rows."""
-    given = (batch.q, batch.qd, force, batch.T_world_base, gravity)
-    is_shared = any(array is not None and np.may_share_memory(array, result) for array in given)
+    """Fill in the result, which may be one of the arguments; see _core._dynamics_rows.
+
+    The numbers are floats where those of the result are.
+    """
+    given = (batch.q, batch.qd, force, batch.T_world_base)
+    arrays = [array for array in given if array is not None] + [push.wrench for push in pushes]
+    is_shared = any(np.may_share_memory(array, result) for array in arrays)
     to = np.empty_like(result) if is_shared else result
-    is_done = _core._dynamics_rows(robot, what, *given, friction, to, batch.threads)
+    run = _core._float_dynamics_rows if result.dtype == np.float32 else _core._dynamics_rows
+    applied = [(push.frame, push.in_tip, push.wrench) for push in pushes]
+    is_done = run(robot, what, *given, gravity, friction, to, batch.threads, applied)
     if is_shared:
         result[...] = to
     return is_done
@@ -76,6 +105,55 @@ def fill_rows(
     return result
 
 
+def push_rows(
+    robot: KinematicModel, batch: Batch, wrenches: Wrenches | None, expressed_in: str
+) -> tuple[Batch, list[Push]]:
+    """Wrenches as the compiled loops take them, and the batch with as many rows as these have.
+
+    Raises InputTypeError for what is not a mapping, InputError for a wrong shape or NaN, UnknownNameError for
+    an unknown frame or axes.
+    """
+    check_mapping(wrenches)
+    if not wrenches:
+        return batch, []
+    in_tip = check_choice(expressed_in, "expressed_in", AXES) == "tip"
+    given = {
+        frame: (frame_number(robot, frame), as_floats(wrench, f"wrench at {frame!r}", last=(6,)))
+        for frame, wrench in wrenches.items()
+    }
+    leads = {f"wrench at {frame!r}": w.shape[:-1] for frame, (_, w) in given.items()}
+    shape = leading_axes(q=batch.shape, **leads)
+    pushes = []
+    for number, w in given.values():
+        rows = w if w.ndim == 1 else np.broadcast_to(w, (*shape, 6))
+        pushes.append(Push(number, in_tip, np.ascontiguousarray(rows.reshape(-1, 6))))
+    return repeat_rows(batch, shape), pushes
+
+
+def repeat_rows(batch: Batch, shape: tuple[int, ...]) -> Batch:
+    """The batch with its leading axes broadcast to a shape."""
+    if shape == batch.shape:
+        return batch
+    rows: dict[str, Array] = {}
+    for name in ("q", "qd", "qdd", "tau", "T_world_base"):
+        array = getattr(batch, name)
+        if array is None or (name == "T_world_base" and len(array) == 1):
+            continue
+        last = array.shape[1:]
+        wide = np.broadcast_to(array.reshape(*batch.shape, *last), (*shape, *last))
+        rows[name] = np.ascontiguousarray(wide.reshape(-1, *last))
+    return replace(batch, shape=shape, **rows)  # type: ignore[arg-type]
+
+
+def check_mapping(wrenches: object) -> None:
+    """Raise InputTypeError for wrenches that are not a mapping."""
+    if wrenches is not None and not isinstance(wrenches, Mapping):
+        raise InputTypeError(
+            f"wrenches is a {type(wrenches).__name__}, expected a dict of frame → (..., 6), such as"
+            ' {"tool0": [0, 0, -10, 0, 0, 0]}'
+        )
+
+
 def torques_of_wrenches(
     robot: KinematicModel, q: ArrayLike, wrenches: Wrenches | None, expressed_in: str, T_world_base: Any
 ) -> Array | None:
@@ -86,11 +164,7 @@ def torques_of_wrenches(
     """
     if wrenches is None:
         return None
-    if not isinstance(wrenches, Mapping):
-        raise InputTypeError(
-            f"wrenches is a {type(wrenches).__name__}, expected a dict of frame → (..., 6), such as"
-            ' {"tool0": [0, 0, -10, 0, 0, 0]}'
-        )
+    check_mapping(wrenches)
     total: Array | None = None
     for frame, wrench in wrenches.items():
         w = as_floats(wrench, f"wrench at {frame!r}", last=(6,))

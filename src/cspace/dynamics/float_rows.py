@@ -1,0 +1,101 @@
+"""Batches in single precision: twice as many rows in a register, half as many digits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Final, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, as_floats
+from cspace.buffer_pool import pooled_array
+from cspace.dynamics.rows import Push, dynamic_rows
+from cspace.errors import InputError, InputTypeError
+from cspace.kinematics.batch import Batch, broadcast_rows, check_output, thread_count
+from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.spatial import as_pose
+
+LARGEST_ANGLE: Final = 1e4
+"""Values of joints that are computed in floats are below this [rad or m]; see float_trig.hpp."""
+
+
+def is_single(dtype: npt.DTypeLike) -> bool:
+    """Whether a call is to be computed in floats. Raises InputError unless dtype is float64 or float32."""
+    try:
+        kind = np.dtype(dtype)
+    except TypeError:
+        kind = None
+    if kind not in (np.float64, np.float32):
+        raise InputError(f"dtype is {dtype!r}, expected np.float64 or np.float32")
+    return kind == np.float32
+
+
+def rows_in(
+    single: bool, robot: KinematicModel, q: Any, *, T_world_base: Any = None, threads: Any = None, **rest: Any
+) -> Batch:
+    """dynamic_rows, in floats if `single`; arrays of floats are then taken as they are."""
+    if not single:
+        return dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads, **rest)
+    arrays = {"q": q, **{name: value for name, value in rest.items() if value is not None}}
+    sizes = {name: len(robot.joint_names) if name == "q" else robot.dof for name in arrays}
+    is_ready = robot.mass > 0.0
+    for name, value in arrays.items():
+        is_ready = (
+            is_ready
+            and isinstance(value, np.ndarray)
+            and value.dtype == np.float32
+            and value.ndim > 0
+            and value.shape[-1] == sizes[name]
+            and value.flags.aligned
+        )
+    if not is_ready:
+        batch = dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads, **rest)
+        names = ("q", "qd", "qdd", "tau", "T_world_base")
+        rows = {name: to_floats(getattr(batch, name)) for name in names}
+        return replace(batch, **rows)
+    given = {name: (value, 1) for name, value in arrays.items()}
+    if T_world_base is not None:
+        given["T_world_base"] = (to_floats(as_pose(T_world_base, "T_world_base")), 2)
+    shape, rows = broadcast_rows(given, shared=("T_world_base",))
+    return Batch(shape=shape, threads=thread_count(threads, shape), **rows)
+
+
+def pushes_in(single: bool, pushes: Sequence[Push]) -> Sequence[Push]:
+    """Wrenches, in floats if `single`."""
+    return [replace(push, wrench=to_floats(push.wrench)) for push in pushes] if single else pushes
+
+
+def to_floats(array: Array | None) -> Any:
+    """The array in single precision."""
+    return None if array is None else array.astype(np.float32)
+
+
+def output_in(single: bool, out: Any, shape: tuple[int, ...]) -> Array:
+    """The array to write into, of floats if `single`: a new one, or the caller's if it fits.
+
+    Raises InputTypeError unless out is a contiguous array of that type, InputError for another shape.
+    """
+    if not single:
+        return check_output(out, shape)
+    if out is None:
+        size = int(np.prod(shape))
+        return cast("Array", pooled_array(((size + 1) // 2,)).view(np.float32)[:size].reshape(shape))
+    if not isinstance(out, np.ndarray) or out.dtype != np.float32:
+        kind = f"an array of {out.dtype}" if isinstance(out, np.ndarray) else type(out).__name__
+        raise InputTypeError(f"out must be a float32 array to write into, got {kind}")
+    if out.shape != shape:
+        raise InputError(f"out has shape {out.shape}, expected {shape}")
+    if not (out.flags.c_contiguous and out.flags.writeable and out.flags.aligned):
+        raise InputError(f"out must be C-contiguous and writeable, such as np.empty({shape}, np.float32)")
+    return cast("Array", out)
+
+
+def refuse_unfit(batch: Batch) -> None:
+    """Raise the InputError for the first value in floats that is not finite, or of a joint too large."""
+    for name in ("q", "qd", "qdd", "tau"):
+        array = getattr(batch, name)
+        if array is not None and array.dtype == np.float32:
+            largest = LARGEST_ANGLE if name == "q" else None
+            as_floats(array.reshape((*batch.shape, array.shape[1])), name, largest=largest)
