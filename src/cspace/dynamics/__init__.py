@@ -17,6 +17,7 @@ from cspace.dynamics.loop_dynamics import (
     loop_velocities,
     loop_wrenches,
 )
+from cspace.dynamics.loop_simulation import simulate_loops
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.momentum import (
     centroidal_momentum,
@@ -65,5 +66,6 @@ __all__ = [
     "potential_energy",
     "regressor",
     "simulate",
+    "simulate_loops",
     "with_parameters",
 ]

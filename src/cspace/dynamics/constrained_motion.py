@@ -59,15 +59,15 @@ class AllowedMotions:
         return result
 
 
-def find_allowed_motions(constraints: LoopConstraints, at: Placement, rank: int | None = None) -> AllowedMotions:
-    """The motions that closed loops allow at a placement. rank: no more independent rows than this count."""
+def find_allowed_motions(constraints: LoopConstraints, at: Placement, rank: Array | None = None) -> AllowedMotions:
+    """The motions that closed loops allow at a placement. rank (...): no more rows are independent."""
     K = find_scaled_jacobian(constraints, at)
     U, s, Vt = np.linalg.svd(K)
     n, m = K.shape[-1], s.shape[-1]
     tolerance = find_rank_tolerance(constraints, at)[..., None]
     kept = s > tolerance * s[..., :1]
     if rank is not None:
-        kept[..., rank:] = False
+        kept &= np.arange(m) < rank[..., None]
     free = np.ones((*K.shape[:-2], n), dtype=bool)
     free[..., :m] = ~kept
     return AllowedMotions(

@@ -218,13 +218,13 @@ def project_state(
     q: Array,
     qd: Array,
     M: Array,
-    rank: int | None = None,
+    rank: Array | None = None,
 ) -> tuple[Array, Array]:
     """The state nearest to one (..., n), (..., dof) whose loops are closed and stay closed.
 
     Nearest in the metric of the kinetic energy, M (..., dof, dof), so that the motion changes as little as
     possible: q ← q − M⁻¹ Kᵀ (K M⁻¹ Kᵀ)⁺ φ until φ is at rounding, and q̇ likewise. The pose of a floating base
-    stays. rank: of K, so that rows which depend on others are not taken for independent while the loops are open.
+    stays. rank (...): of K, so that rows which depend on others are not taken for independent while the loops are open.
     """
     robot, n = constraints.robot, len(constraints.robot.joint_names)
     at = constraints.place(q)
@@ -253,12 +253,13 @@ def check_state(constraints: LoopConstraints, q: ArrayLike, **arguments: Any) ->
         raise InputTypeError(f"the first argument must be LoopConstraints, got {type(constraints).__name__}")
     batch = dynamic_rows(constraints.robot, q, **arguments)
     refuse_infinite(batch)
-    open_rows = np.flatnonzero(~(constraints.miss(batch.q) <= LOOP_OPEN * constraints.length))
+    miss = constraints.find_miss(constraints.place(batch.q))
+    open_rows = np.flatnonzero(~(miss <= LOOP_OPEN * constraints.length))
     if open_rows.size:
         row = int(open_rows[0])
         at = "" if not batch.shape else f" in row {row}"
         raise InputError(
-            f"loop {constraints.name_open_loop(batch.q[row])!r} is open by {constraints.miss(batch.q[row]):.3g} m"
+            f"loop {constraints.name_open_loop(batch.q[row])!r} is open by {miss[row]:.3g} m"
             f" at q{at}; close_loops finds a configuration near it that is closed"
         )
     return batch

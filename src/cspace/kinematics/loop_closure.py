@@ -247,11 +247,11 @@ def try_step(
     constraints: LoopConstraints, q: Array, numbers: Numbers, passive: Numbers, target: Array, unit: Array
 ) -> Array | None:
     """The configuration with driven coordinates at a target, or None if it is too far for one step."""
-    at = constraints.place(q)
+    at = constraints.place(q[None])
     J, _ = select_columns(constraints, at, passive)
     driven, _ = select_columns(constraints, at, numbers)
     change = (target - q[numbers]) / unit[numbers]
-    tangent = -solve_least(J, driven @ change, np.asarray(find_rank_tolerance(constraints, at)))
+    tangent = -solve_least(J, driven @ change, find_rank_tolerance(constraints, at))[0]
     size = max(np.abs(tangent).max(initial=0.0), np.abs(change).max(initial=0.0))
     if size > LONGEST_STRIDE:
         return None
@@ -259,7 +259,7 @@ def try_step(
     ahead[numbers] = target
     ahead[passive] += tangent * unit[passive]
     found = polish_rows(constraints, ahead[None], passive)[0]
-    if not constraints.miss(found) <= LOOP_CLOSED * constraints.length:
+    if not constraints.find_miss(constraints.place(found[None]))[0] <= LOOP_CLOSED * constraints.length:
         return None
     correction = np.abs((found - ahead) / unit).max()
     return found if correction <= MOST_CORRECTION * size + LOOP_CLOSED else None
@@ -348,10 +348,10 @@ def count_left(constraints: LoopConstraints, q: Array, passive: Numbers) -> int:
     """How many independent velocities the passive coordinates have while the others stand still."""
     if passive.size == 0:
         return 0
-    at = constraints.place(q)
+    at = constraints.place(q[None])
     J, _ = select_columns(constraints, at, passive)
-    largest = np.linalg.norm(find_scaled_jacobian(constraints, at), 2)
-    sigma = np.linalg.svd(J, compute_uv=False)
+    largest = np.linalg.norm(find_scaled_jacobian(constraints, at)[0], 2)
+    sigma = np.linalg.svd(J[0], compute_uv=False)
     return int(passive.size - np.sum(sigma > LOOP_SINGULAR * largest))
 
 

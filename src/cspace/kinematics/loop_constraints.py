@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.batch import check_robot, refuse_infinite, rows_of
-from cspace.kinematics.forward import forward_kinematics_all
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.loop_rows import find_frames, make_rows
 from cspace.model import Loop
@@ -135,7 +135,8 @@ class LoopConstraints:
         q (..., n) [rad or m]. Returns φ (..., rows) [m, and sines of angles].
         Raises InputError for a wrong shape or NaN.
         """
-        return self.find_residual(self.place(q))
+        lead, at = self._place_checked(q)
+        return self.find_residual(at).reshape((*lead, len(self.rows)))
 
     def jacobian(self, q: ArrayLike) -> Array:
         """K, the derivative of φ: φ̇ = K q̇.
@@ -143,7 +144,8 @@ class LoopConstraints:
         q (..., n) [rad or m]. Returns K (..., rows, dof); the columns of a floating base are zero.
         Raises InputError for a wrong shape or NaN.
         """
-        return self.find_jacobian(self.place(q))
+        lead, at = self._place_checked(q)
+        return self.find_jacobian(at).reshape((*lead, len(self.rows), self.robot.dof))
 
     def bias(self, q: ArrayLike, qd: ArrayLike) -> Array:
         """k = K̇ q̇, the part of φ̈ = K q̈ + k that velocities cause.
@@ -161,24 +163,33 @@ class LoopConstraints:
 
         q (..., n) [rad or m]. Returns (...) [m]. Raises InputError for a wrong shape or NaN.
         """
-        return self.find_miss(self.place(q))
+        lead, at = self._place_checked(q)
+        return self.find_miss(at).reshape(lead)
+
+    def _place_checked(self, q: ArrayLike) -> tuple[tuple[int, ...], Placement]:
+        """The leading axes of q (..., n) and its placement, as rows. Raises InputError for a wrong shape or NaN."""
+        batch = rows_of(self.robot, q)
+        refuse_infinite(batch)
+        return batch.shape, self.place(batch.q)
 
     def name_open_loop(self, q: Array) -> str:
         """The name of the loop that is open farthest at one configuration q (n,)."""
-        placement = self.place(q)
+        at = self.place(q[None])
         worst = np.zeros(len(self.loops))
-        np.maximum.at(worst, self._layout.loop, np.abs(self.find_residual(placement) * self.scale))
-        worst[self._find_turned_over(placement)] = np.inf
+        np.maximum.at(worst, self._layout.loop, np.abs(self.find_residual(at)[0] * self.scale))
+        worst[self._find_turned_over(at)[0]] = np.inf
         return self.loops[int(np.argmax(worst))].name
 
-    def place(self, q: ArrayLike) -> Placement:
-        """Where the frames of the loops and the axes of the joints are at q (..., n)."""
-        base = np.eye(4) if self.robot.floating else None
-        T = forward_kinematics_all(self.robot, q, T_world_base=base)
+    def place(self, q: Array) -> Placement:
+        """Where the frames of the loops and the axes of the joints are at rows q (m, n), which are not checked."""
+        T = np.empty((len(q), len(self.robot.frames), 4, 4))
+        base = np.eye(4)[None] if self.robot.floating else None
+        if not _core._tree_rows(self.robot, np.ascontiguousarray(q), base, T, None, None, 1 if len(q) == 1 else 0):
+            T.fill(np.nan)
         ends = T[..., self._frames, :, :] @ self._ends
         R, p = ends[..., :3, :3], ends[..., :3, 3]
         if self._joint_frames is None:
-            axes, points = self._walk_joints(np.asarray(q, dtype=np.float64))
+            axes, points = self._walk_joints(q)
         else:
             carried = T[..., self._joint_frames, :3, :]
             axes = (carried[..., :3] @ self._joint_axes[..., None])[..., 0]
@@ -251,18 +262,14 @@ class LoopConstraints:
 
     def find_bias(self, at: Placement, qd: Array) -> Array:
         """k (..., r) at a placement, with velocities qd (..., dof)."""
-        v, w, a, alpha = self._find_body_motions(at, qd)
-        first, second = self._bodies[:, 0], self._bodies[:, 1]
-        w_A, w_B = w[..., first, :], w[..., second, :]
-        turn_A, turn_B = skew(w_A), skew(w_B)
-        K_A = skew(alpha[..., first, :]) + turn_A @ turn_A
-        K_B = skew(alpha[..., second, :]) + turn_B @ turn_B
-        velocity = [v[..., i, :] + cross(w[..., i, :], p) for i, p in ((first, at.p_A), (second, at.p_B))]
-        rates = [
-            a[..., i, :] + cross(alpha[..., i, :], p) + cross(w[..., i, :], u)
-            for i, p, u in zip((first, second), (at.p_A, at.p_B), velocity, strict=True)
-        ]
-        dp, dv, da = at.p_B - at.p_A, velocity[1] - velocity[0], rates[1] - rates[0]
+        v, w, a, alpha = (each[..., self._bodies.T, :] for each in self._find_body_motions(at, qd))
+        p = np.stack([at.p_A, at.p_B], axis=-3)  # (..., 2, loops, 3) as all of these
+        turns = skew(w)
+        K = skew(alpha) + turns @ turns
+        (turn_A, turn_B), (K_A, K_B) = (np.moveaxis(each, -4, 0) for each in (turns, K))
+        velocity = v + cross(w, p)
+        rate = a + cross(alpha, p) + cross(w, velocity)
+        dp, dv, da = (each[..., 1, :, :] - each[..., 0, :, :] for each in (p, velocity, rate))
         back, to_A = turn_A.swapaxes(-1, -2), at.R_A.swapaxes(-1, -2)
         d_rate = (to_A @ (back @ dp[..., None] + dv[..., None]))[..., 0]
         d_bend = K_A.swapaxes(-1, -2) @ dp[..., None] + 2.0 * back @ dv[..., None] + da[..., None]
@@ -273,8 +280,8 @@ class LoopConstraints:
         k = k + np.einsum("rij,...rij->...r", rows.C, D_bend[..., rows.loop, :, :])
         if rows.rods.size:
             loop = rows.loop[rows.rods]
-            d, rate, bend = at.d[..., loop, :], d_rate[..., loop, :], d_bend[..., loop, :]
-            k[..., rows.rods] = ((rate * rate).sum(axis=-1) + (d * bend).sum(axis=-1)) / rows.lengths
+            d, speed, bend = at.d[..., loop, :], d_rate[..., loop, :], d_bend[..., loop, :]
+            k[..., rows.rods] = ((speed * speed).sum(axis=-1) + (d * bend).sum(axis=-1)) / rows.lengths
         return k
 
     def _find_body_motions(self, at: Placement, qd: Array) -> tuple[Array, Array, Array, Array]:
@@ -289,8 +296,8 @@ class LoopConstraints:
         s_v = np.where(turns, cross(at.points, at.axes), at.axes) * rates
         w, v = self._carries @ s_w, self._carries @ s_v
         w_joint, v_joint = w[..., 1:, :], v[..., 1:, :]
-        alpha = self._carries @ cross(w_joint, s_w)
-        a = self._carries @ (cross(w_joint, s_v) + cross(v_joint, s_w))
+        bends = cross(np.stack([w_joint, w_joint, v_joint]), np.stack([s_w, s_v, s_w]))
+        alpha, a = self._carries @ bends[0], self._carries @ (bends[1] + bends[2])
         # The classical acceleration of a point p is a + alpha × p + w × (velocity of p).
         return v, w, a, alpha
 

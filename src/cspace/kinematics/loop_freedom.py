@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, one_array
 from cspace.kinematics.loop_constraints import LoopConstraints, Placement
 from cspace.tables import count_things, one_line
-from cspace.tolerances import ALIKE_ROWS, LOOP_RANK, LOOP_RANK_SLACK
+from cspace.tolerances import ALIKE_ROWS, FARTHEST, LOOP_RANK, LOOP_RANK_SLACK
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,8 +41,8 @@ def loop_freedom(constraints: LoopConstraints, q: ArrayLike) -> LoopFreedom:
     q (n,) [rad or m]: one configuration, with closed loops. Raises InputError for a wrong shape or NaN.
     """
     n = len(constraints.robot.joint_names)
-    at = constraints.place(one_array(q, "q", (n,)))
-    K, tolerance = find_scaled_jacobian(constraints, at), find_rank_tolerance(constraints, at)
+    at = constraints.place(one_array(q, "q", (n,), largest=FARTHEST)[None])
+    K, tolerance = find_scaled_jacobian(constraints, at)[0], find_rank_tolerance(constraints, at)[0]
     kept = find_independent_rows(K, float(tolerance))
     dependent = [name for r, name in enumerate(constraints.rows) if r not in set(kept)]
     return LoopFreedom(constraints.robot.dof - len(kept), len(kept), len(constraints.rows), tuple(dependent))

@@ -36,7 +36,7 @@ def close_rows(constraints: LoopConstraints, q: Array, passive: Array) -> tuple[
     """
     q = reduce_residuals(constraints, q.copy(), passive)
     q = polish_rows(constraints, q, passive)
-    return q, constraints.miss(q)
+    return q, constraints.find_miss(constraints.place(q))
 
 
 def reduce_residuals(constraints: LoopConstraints, q: Array, passive: Array) -> Array:
@@ -62,7 +62,7 @@ def reduce_residuals(constraints: LoopConstraints, q: Array, passive: Array) -> 
         step = shorten_steps(-np.linalg.solve(H, slope[..., None])[..., 0])
         tried = q[active]
         tried[:, passive] += step * unit
-        after = np.linalg.norm(constraints.residual(tried) * constraints.scale, axis=-1)
+        after = np.linalg.norm(constraints.find_residual(constraints.place(tried)) * constraints.scale, axis=-1)
         better = after < size
         q[active[better]] = tried[better]
         damping[active] = np.where(better, damping[active] * LESS, damping[active] * MORE)

@@ -152,24 +152,15 @@ class Mechanism:
         control: Callable[..., ArrayLike] | None = None,
         duration: float,
         dt: float,
-        method: str = "rk4",
         **options: Any,
     ) -> Simulation:
-        """The motion from a state q (..., n), qd (..., dof) on; see Robot.simulate for the arguments.
+        """The motion from a state q (..., n), qd (..., dof) on, with loops that stay closed to rounding.
 
-        The state is projected to closed loops at the start and after every step, along motions of least kinetic
-        energy. method: "rk4" or "adaptive".
+        options: gravity, wrenches, expressed_in, friction, friction_speed, T_world_base, every, time_limit,
+        threads. See dynamics.simulate_loops, which also names the errors.
         """
-        return dynamics.simulate(
-            self.robot,
-            q,
-            qd,
-            control=control,
-            duration=duration,
-            dt=dt,
-            method=method,
-            loops=self.constraints,
-            **options,
+        return dynamics.simulate_loops(
+            self.constraints, q, qd, control=control, duration=duration, dt=dt, **options
         )
 
     def configuration(self, values: Mapping[str, ArrayLike]) -> Array:
