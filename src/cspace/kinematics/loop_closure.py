@@ -28,6 +28,9 @@ MOST_STARTS: Final = 1_000_000
 PROBE: Final = 0.01
 """How far driven coordinates are moved [rad, sizes of the mechanism] to see whether others move with them."""
 
+RETURNED: Final = 0.1
+"""Share of this move within which a probe came back to where it was."""
+
 LONGEST_STRIDE: Final = 0.1
 """Of a predictor [rad, sizes of the mechanism]."""
 
@@ -336,11 +339,9 @@ def is_stuck(constraints: LoopConstraints, q: Array, numbers: Numbers, passive: 
     moved += PROBE * unit[passive] * np.random.default_rng(0).normal(size=moved.shape)
     probes[:, passive] = moved
     probes, gaps = close_rows(constraints, probes, passive)
-    beside = [
-        count_left(constraints, each, passive)
-        for each, gap in zip(probes, gaps, strict=True)
-        if gap <= LOOP_CLOSED * constraints.length
-    ]
+    away = np.abs((probes - q) / unit).max(axis=1)  # nowhere: the configuration is an isolated point
+    counts = (gaps <= LOOP_CLOSED * constraints.length) & (away > RETURNED * PROBE)
+    beside = [count_left(constraints, each, passive) for each in probes[counts]]
     return min(beside, default=0) < left
 
 

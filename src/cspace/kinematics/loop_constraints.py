@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array
+from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.batch import check_robot, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -308,15 +308,16 @@ class LoopConstraints:
         origin of the loop's frame in the child, in axes of the base; the parent feels the opposite wrench at this
         point. Raises InputError for a wrong shape or NaN.
         """
-        at = self.place(q)
+        lead, at = self._place_checked(q)
         P, g = self._find_row_vectors(at)
-        f = np.asarray(multipliers, dtype=np.float64)[..., None]
+        f = as_floats(multipliers, "multipliers", last=(len(self.rows),))
+        f = np.broadcast_to(f, (*lead, len(self.rows))).reshape(-1, len(self.rows), 1)
         wrench = np.concatenate([P * f, g * f], axis=-1)
         by_loop = np.zeros((*wrench.shape[:-2], len(self.loops), 6))
         for r, loop in enumerate(self._layout.loop):
             by_loop[..., loop, :] += wrench[..., r, :]
         parts = by_loop.reshape((*by_loop.shape[:-1], 2, 3)) @ at.R_A.swapaxes(-1, -2)
-        return parts.reshape(by_loop.shape)
+        return parts.reshape((*lead, len(self.loops), 6))
 
     def __repr__(self) -> str:
         return f"<LoopConstraints of {self.robot.name}: {len(self.loops)} loops, {len(self.rows)} rows>"
