@@ -1,4 +1,5 @@
-"""A four-bar over a full turn of its crank: both assembly modes, the dead points of the rocker, and the torque that it takes."""
+"""A four-bar over a full turn of its crank: both assembly modes, the dead points of the rocker, and the
+torque that it takes."""
 
 import sys
 from pathlib import Path
@@ -31,7 +32,8 @@ regular = np.abs(qd[:, 2]) > 0.05
 rocker = np.full(361, np.nan)
 rocker[regular] = linkage.inverse_dynamics(motion.q[regular], qd[regular], qdd[regular], ["rocker"])[:, 2]
 assert np.allclose((crank * qd[:, 0])[regular], (rocker * qd[:, 2])[regular])  # both do the same work
-print(f"torques: at the crank up to {np.abs(crank).max():.1f} N·m, at the rocker {np.nanmax(np.abs(rocker)):.0f} N·m")
+largest = [np.nanmax(np.abs(tau)) for tau in (crank, rocker)]
+print(f"torques: at the crank up to {largest[0]:.1f} N·m, at the rocker {largest[1]:.0f} N·m")
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
 cs.plot.mechanism(linkage, motion.q[::45], ax=left, title="a full turn")

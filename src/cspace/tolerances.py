@@ -560,8 +560,8 @@ LOOP_PROJECTED: Final = 2e-14
 """Size of this residual at which a projection ends: a few roundings of the poses."""
 
 LOOP_OPEN: Final = 1e-6
-"""Size of this residual above which forces are not computed: configurations typed with seven digits pass, and a
-pin that far off is an error."""
+"""Size of this residual above which forces are not computed: configurations typed with seven digits pass, and
+a pin that far off is an error."""
 
 LOOP_RANK: Final = 1e-9
 """Singular value of the Jacobian of closed loops, relative to the largest, up to which a row follows from the
@@ -575,7 +575,8 @@ LOOP_SINGULAR: Final = 1e-6
 which they are stuck: at a dead point they are known to the square root of the rounding."""
 
 LOOP_MOTION: Final = 1e-6
-"""Share of a velocity or acceleration by which it may tear loops apart: those typed with seven digits pass."""
+"""Share of a velocity or acceleration by which it may tear loops apart: those typed with seven digits
+pass."""
 
 ALIKE_ROWS: Final = 1e-6
 """Relative difference of lengths below which the first of two rows is taken as independent: rounding does not

@@ -5,7 +5,7 @@ import pytest
 
 from cspace import dynamics
 from cspace.errors import InputError, InputTypeError, UnknownNameError
-from cspace.kinematics import LoopConstraints, find_assembly_modes, follow_loops
+from cspace.kinematics import LoopConstraints, find_assembly_modes
 from cspace.mechanisms import Delta, FourBar, SliderCrank, Stewart
 from cspace.model import Loop
 from cspace.robot import Robot
@@ -30,14 +30,24 @@ def delta(rng):
 
 def stewart(rng):
     mechanism = Stewart.of_radii(0.5, 0.3, 0.6)
-    pose = dict(zip("x y z rx ry rz".split(), rng.uniform(-0.1, 0.1, 6) + [0, 0, 0.65, 0, 0, 0], strict=True))
+    pose = dict(
+        zip(
+            ["x", "y", "z", "rx", "ry", "rz"],
+            rng.uniform(-0.1, 0.1, 6) + np.array([0, 0, 0.65, 0, 0, 0]),
+            strict=True,
+        )
+    )
     return mechanism.constraints, mechanism.assembly_modes(pose).q[0], [f"length_{i + 1}" for i in range(6)]
 
 
 def overconstrained(rng):
     robot = bennett()
     constraints = LoopConstraints(robot, robot.description.loops)
-    return constraints, find_assembly_modes(constraints, {"pin_0": rng.uniform(0.5, 1.2)}, starts=60).q[0], ["pin_0"]
+    return (
+        constraints,
+        find_assembly_modes(constraints, {"pin_0": rng.uniform(0.5, 1.2)}, starts=60).q[0],
+        ["pin_0"],
+    )
 
 
 CASES = [four_bar, slider_crank, delta, stewart, overconstrained]
@@ -45,7 +55,9 @@ case = pytest.mark.parametrize("make", CASES, ids=lambda make: make.__name__)
 
 
 def motion(constraints, q, driven, rng):
-    qd = dynamics.loop_velocities(constraints, q, dict(zip(driven, rng.normal(size=len(driven)), strict=True)))
+    qd = dynamics.loop_velocities(
+        constraints, q, dict(zip(driven, rng.normal(size=len(driven)), strict=True))
+    )
     rates = dict(zip(driven, rng.normal(size=len(driven)), strict=True))
     return qd, dynamics.loop_accelerations(constraints, q, qd, rates)
 
@@ -96,7 +108,9 @@ def test_forward_dynamics_obeys_the_principle_of_least_constraint(make):
     torques = robot.inverse_dynamics(q, qd, qdd) - tau  # those of the loops: no work in allowed motions
     for _ in range(5):
         other, _ = motion(constraints, q, driven, rng)
-        assert torques @ other == pytest.approx(0, abs=1e-9 * np.abs(torques).max() * np.abs(other).max() * 30)
+        assert torques @ other == pytest.approx(
+            0, abs=1e-9 * np.abs(torques).max() * np.abs(other).max() * 30
+        )
 
 
 def test_a_slider_crank_against_its_single_equation_of_motion():
@@ -193,7 +207,9 @@ def test_more_drives_than_freedoms_share_the_work():
 def test_at_a_dead_point_nothing_can_be_driven_there():
     linkage = FourBar(1.0, 0.3, 0.9, 0.7)
     for q in linkage.dead_points("rocker"):
-        with pytest.raises(InputError, match="driven joint 'rocker' does not determine the motion of four_bar"):
+        with pytest.raises(
+            InputError, match="driven joint 'rocker' does not determine the motion of four_bar"
+        ):
             linkage.velocities(q, {"rocker": 1.0})
         qd = linkage.velocities(q, {"crank": 1.0})
         assert abs(qd[2]) < 1e-9

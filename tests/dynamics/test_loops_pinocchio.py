@@ -27,7 +27,8 @@ def solve_theirs(model, loops, q, qd, tau):
     for loop in loops:
         frames = [model.frames[model.getFrameId(name)] for name in (loop.parent, loop.child)]
         places = [
-            frame.placement * pin.SE3(T) for frame, T in zip(frames, (loop.origin, loop.child_origin), strict=True)
+            frame.placement * pin.SE3(T)
+            for frame, T in zip(frames, (loop.origin, loop.child_origin), strict=True)
         ]
         kind = kinds.CONTACT_3D if loop.type == "spherical" else kinds.CONTACT_6D
         joints = [frame.parentJoint for frame in frames]

@@ -7,7 +7,17 @@ from cspace.robot import Robot
 from cspace.spatial.poses import invert_pose
 from model.random_robots import random_pose
 
-TYPES = ("spherical", "revolute", "continuous", "prismatic", "universal", "cylindrical", "planar", "fixed", "distance")
+TYPES = (
+    "spherical",
+    "revolute",
+    "continuous",
+    "prismatic",
+    "universal",
+    "cylindrical",
+    "planar",
+    "fixed",
+    "distance",
+)
 ROWS = dict(zip(TYPES, (3, 5, 5, 5, 4, 4, 3, 6, 1), strict=True))
 
 
@@ -30,7 +40,9 @@ def random_tree(rng, n=8, *, planar=False, mimic=True):
         links.append(Link(child, random_mass(rng)))
         kind = "planar" if planar and i == 3 else "prismatic" if i % 3 == 2 else "revolute"
         follows = Mimic("joint_0", 0.7, 0.1) if mimic and i == 4 else None
-        joints.append(Joint(f"joint_{i}", kind, parent, child, random_pose(rng), rng.normal(size=3), mimic=follows))
+        joints.append(
+            Joint(f"joint_{i}", kind, parent, child, random_pose(rng), rng.normal(size=3), mimic=follows)
+        )
     return Description("tree", tuple(links), tuple(joints))
 
 
@@ -74,8 +86,6 @@ def bennett(a=1.0, b=0.7, alpha=0.9, masses=None):
         T[:3, :3], T[0, 3] = [[1, 0, 0], [0, c, -s], [0, s, c]], length
         ends.append(T)
     names = [link.name for link in links]
-    joints = [
-        Joint(f"pin_{i}", "continuous", names[i], names[i + 1], ends[i], (0, 0, 1)) for i in range(3)
-    ]
+    joints = [Joint(f"pin_{i}", "continuous", names[i], names[i + 1], ends[i], (0, 0, 1)) for i in range(3)]
     loop = Loop("pin_3", "revolute", "bar_2", "ground", ends[3], axis=(0, 0, 1))
     return Robot(Description("bennett", tuple(links), tuple(joints), (loop,)))

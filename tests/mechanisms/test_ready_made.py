@@ -103,7 +103,8 @@ def test_grashofs_law(lengths, kind):
     assert linkage.kind == kind
     turns = np.linspace(-np.pi, np.pi, 360)
     full = {
-        name: all(linkage.assembly_modes({name: turn}) for turn in turns) for name in ("crank", "rocker", "coupler")
+        name: all(linkage.assembly_modes({name: turn}) for turn in turns)
+        for name in ("crank", "rocker", "coupler")
     }
     expected = {
         "crank-rocker": {"crank", "coupler"},
@@ -141,7 +142,9 @@ def test_a_four_bar_over_a_full_turn():
 @pytest.mark.parametrize("seed", range(6))
 def test_deltas(seed):
     rng = np.random.default_rng(seed)
-    robot = Delta(rng.uniform(0.15, 0.3), rng.uniform(0.03, 0.1), rng.uniform(0.2, 0.4), rng.uniform(0.5, 0.9))
+    robot = Delta(
+        rng.uniform(0.15, 0.3), rng.uniform(0.03, 0.1), rng.uniform(0.2, 0.4), rng.uniform(0.5, 0.9)
+    )
     place = {"x": rng.uniform(-0.1, 0.1), "y": rng.uniform(-0.1, 0.1), "z": -0.6}
     inverse = robot.assembly_modes(place)
     assert inverse.complete
@@ -183,7 +186,7 @@ def test_stewart_platforms(seed):
     rng = np.random.default_rng(seed)
     base, top = rng.normal(size=(2, 6, 3)) * [0.5, 0.5, 0.05]
     platform = Stewart(base, 0.6 * top, 0.8)
-    T = pose(rng.uniform(-0.1, 0.1, 3) + [0, 0, 0.8], rpy=rng.uniform(-0.3, 0.3, 3))
+    T = pose(rng.uniform(-0.1, 0.1, 3) + np.array([0, 0, 0.8]), rpy=rng.uniform(-0.3, 0.3, 3))
     inverse = platform.assembly_modes(platform.pose_coordinates(T))
     assert inverse.complete
     assert len(inverse) == 1

@@ -1,7 +1,7 @@
 """Motions that constraints allow: those of least kinetic energy among the solutions of K x = b.
 
-With an orthonormal basis G of the null space of K and a solution x_p of least length, x = x_p + G y, where
-Gᵀ M G y = Gᵀ (p − M x_p) makes ½ xᵀ M x − pᵀ x least (Gauss's principle). The rank of K is that of its singular
+With an orthonormal basis G of the null space of K and a solution x_p of least length, x = x_p + G y, where Gᵀ
+M G y = Gᵀ (p − M x_p) makes ½ xᵀ M x − pᵀ x least (Gauss's principle). The rank of K is that of its singular
 values, so dependent rows do no harm, and M itself may be singular as long as every motion that is allowed has
 kinetic energy.
 """
@@ -45,7 +45,8 @@ class AllowedMotions:
         return result
 
     def solve_multipliers(self, force: Array) -> Array:
-        """The λ (..., r) of least scaled length with Kᵀ λ = force (..., n), which must have no part along G."""
+        """The λ (..., r) of least scaled length with Kᵀ λ = force (..., n), which must have no part along
+        G."""
         m = self.s.shape[-1]
         kept = self.s > 0.0
         weights = np.einsum("...ji,...j->...i", self.V[..., :m], force * self.unit)
@@ -59,7 +60,9 @@ class AllowedMotions:
         return result
 
 
-def find_allowed_motions(constraints: LoopConstraints, at: Placement, rank: Array | None = None) -> AllowedMotions:
+def find_allowed_motions(
+    constraints: LoopConstraints, at: Placement, rank: Array | None = None
+) -> AllowedMotions:
     """The motions that closed loops allow at a placement. rank (...): no more rows are independent."""
     K = find_scaled_jacobian(constraints, at)
     U, s, Vt = np.linalg.svd(K)
@@ -71,7 +74,12 @@ def find_allowed_motions(constraints: LoopConstraints, at: Placement, rank: Arra
     free = np.ones((*K.shape[:-2], n), dtype=bool)
     free[..., :m] = ~kept
     return AllowedMotions(
-        U[..., :m], np.where(kept, s, 0.0), Vt.swapaxes(-1, -2), free, constraints.scale, find_column_scale(constraints)
+        U[..., :m],
+        np.where(kept, s, 0.0),
+        Vt.swapaxes(-1, -2),
+        free,
+        constraints.scale,
+        find_column_scale(constraints),
     )
 
 
@@ -99,7 +107,8 @@ def solve_least_energy(allowed: AllowedMotions, M: Array, b: Array, p: Array | N
         is_regular = False
     if not is_regular:
         raise InputError(
-            f"a motion that the loops of {name} allow moves no inertia; give its links a mass or a joint an armature"
+            f"a motion that the loops of {name} allow moves no inertia; give its links a mass or a joint an"
+            " armature"
         )
     y = np.linalg.solve(H, np.einsum("...ij,...i->...j", G, pull)[..., None])
     result: Array = x + (G @ y)[..., 0]

@@ -1,4 +1,5 @@
-"""Dynamics of robots with closed loops: accelerations, driven torques, forces in the loops, and projection."""
+"""Dynamics of robots with closed loops: accelerations, driven torques, forces in the loops, and
+projection."""
 
 from __future__ import annotations
 
@@ -44,17 +45,20 @@ def constrained_forward_dynamics(
     M q̈ + h = τ + Kᵀ λ with K q̈ + k = 0. The acceleration is unique also where rows of K depend on each other
     (Udwadia and Kalaba 1992).
 
-    q (..., n) [rad or m]: with closed loops. qd, tau (..., dof), gravity (3,), wrenches, expressed_in, friction,
-    T_world_base (..., 4, 4), threads: as in forward_dynamics. Returns qdd (..., dof).
-    Raises InputError for a wrong shape or NaN, open loops, and where a motion that the loops allow moves no
-    inertia; UnknownNameError for an unknown frame.
+    q (..., n) [rad or m]: with closed loops. qd, tau (..., dof), gravity (3,), wrenches, expressed_in,
+    friction, T_world_base (..., 4, 4), threads: as in forward_dynamics. Returns qdd (..., dof). Raises
+    InputError for a wrong shape or NaN, open loops, and where a motion that the loops allow moves no inertia;
+    UnknownNameError for an unknown frame.
     """
     acts = {"gravity": gravity, "wrenches": wrenches, "expressed_in": expressed_in, "friction": friction}
     batch = check_state(constraints, q, qd=qd, tau=tau, T_world_base=T_world_base, threads=threads)
     at = constraints.place(batch.q)
     allowed = find_allowed_motions(constraints, at)
-    assert batch.qd is not None and batch.tau is not None
-    qdd = accelerate(constraints, at, allowed, batch.q, batch.qd, batch.tau, acts, batch.T_world_base, threads)
+    assert batch.qd is not None
+    assert batch.tau is not None
+    qdd = accelerate(
+        constraints, at, allowed, batch.q, batch.qd, batch.tau, acts, batch.T_world_base, threads
+    )
     return qdd.reshape((*batch.shape, constraints.robot.dof))
 
 
@@ -92,21 +96,22 @@ def constrained_inverse_dynamics(
 ) -> Array:
     """The torques of driven joints behind a motion of a robot with closed loops.
 
-    With a basis G of the motions that the loops allow the torques of the tree do the same work as those of the
-    driven joints: G_dᵀ τ = Gᵀ τ_tree. More driven joints than degrees of freedom share the work with the least
-    sum of squares.
+    With a basis G of the motions that the loops allow the torques of the tree do the same work as those of
+    the driven joints: G_dᵀ τ = Gᵀ τ_tree. More driven joints than degrees of freedom share the work with the
+    least sum of squares.
 
     q (..., n) [rad or m]: with closed loops. qd, qdd (..., dof): a motion that keeps them closed, as
-    loop_velocities and loop_accelerations return. driven: names of joints. gravity (3,), wrenches, expressed_in,
-    friction, T_world_base (..., 4, 4), threads: as in inverse_dynamics.
-    Returns tau (..., dof), zero but for the driven joints.
-    Raises InputError for a wrong shape or NaN, open loops, a motion that tears them apart, and where the driven
-    joints do not determine the motion, as at a dead point; UnknownNameError for an unknown joint or frame.
+    loop_velocities and loop_accelerations return. driven: names of joints. gravity (3,), wrenches,
+    expressed_in, friction, T_world_base (..., 4, 4), threads: as in inverse_dynamics. Returns tau (..., dof),
+    zero but for the driven joints. Raises InputError for a wrong shape or NaN, open loops, a motion that
+    tears them apart, and where the driven joints do not determine the motion, as at a dead point;
+    UnknownNameError for an unknown joint or frame.
     """
     robot = constraints.robot
     acts = {"gravity": gravity, "wrenches": wrenches, "expressed_in": expressed_in, "friction": friction}
     batch = check_state(constraints, q, qd=qd, qdd=qdd, T_world_base=T_world_base, threads=threads)
-    assert batch.qd is not None and batch.qdd is not None
+    assert batch.qd is not None
+    assert batch.qdd is not None
     numbers = number_driven(constraints, driven)
     at = constraints.place(batch.q)
     check_motion(constraints, at, batch.qd, batch.qdd)
@@ -144,14 +149,16 @@ def loop_wrenches(
     least sum of squares, with lengths in units of the size of the mechanism.
 
     q (..., n), qd, qdd, tau (..., dof): a motion and its torques, from constrained_forward_dynamics or
-    constrained_inverse_dynamics; gravity (3,) and all else as there.
-    Returns (..., loops, 6): force and torque [N, N·m] at the origin of the loop's frame in the child, in axes of
-    the base. Raises InputError for a wrong shape or NaN, and open loops.
+    constrained_inverse_dynamics; gravity (3,) and all else as there. Returns (..., loops, 6): force and
+    torque [N, N·m] at the origin of the loop's frame in the child, in axes of the base. Raises InputError for
+    a wrong shape or NaN, and open loops.
     """
     robot = constraints.robot
     acts = {"gravity": gravity, "wrenches": wrenches, "expressed_in": expressed_in, "friction": friction}
     batch = check_state(constraints, q, qd=qd, qdd=qdd, tau=tau, T_world_base=T_world_base, threads=threads)
-    assert batch.qd is not None and batch.qdd is not None and batch.tau is not None
+    assert batch.qd is not None
+    assert batch.qdd is not None
+    assert batch.tau is not None
     tree = inverse_dynamics(
         robot, batch.q, batch.qd, batch.qdd, T_world_base=batch.T_world_base, threads=threads, **acts
     )
@@ -194,7 +201,8 @@ def find_rates(constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike | None,
     given = np.zeros((*values.shape[:-1], robot.dof))
     given[..., numbers] = values
     batch = check_state(constraints, q, qd=np.zeros(robot.dof) if qd is None else qd, qdd=given)
-    assert batch.qd is not None and batch.qdd is not None
+    assert batch.qd is not None
+    assert batch.qdd is not None
     at = constraints.place(batch.q)
     allowed = find_allowed_motions(constraints, at)
     check_driving(constraints, allowed, numbers, list(driven), batch)
@@ -202,10 +210,14 @@ def find_rates(constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike | None,
     G = allowed.find_basis()
     unit = allowed.unit[numbers]
     lacks = (batch.qdd - x)[..., numbers] / unit
-    y = np.einsum("...ij,...j->...i", np.linalg.pinv(G[..., numbers, :] / unit[:, None], rcond=LOOP_RANK), lacks)
+    y = np.einsum(
+        "...ij,...j->...i", np.linalg.pinv(G[..., numbers, :] / unit[:, None], rcond=LOOP_RANK), lacks
+    )
     x = x + np.einsum("...ij,...j->...i", G, y)
     off = np.abs((x - batch.qdd)[..., numbers] / unit).max(axis=-1, initial=0.0)
-    if (off > LOOP_MOTION * np.maximum(np.abs(x / allowed.unit).max(axis=-1, initial=0.0), LOOP_MOTION)).any():
+    if (
+        off > LOOP_MOTION * np.maximum(np.abs(x / allowed.unit).max(axis=-1, initial=0.0), LOOP_MOTION)
+    ).any():
         raise InputError(
             f"the loops of {robot.name} do not allow these rates of {join_words(list(driven))} together;"
             " drive as many joints as there are degrees of freedom"
@@ -219,12 +231,14 @@ def project_state(
     qd: Array,
     M: Array,
     rank: Array | None = None,
-) -> tuple[Array, Array]:
-    """The state nearest to one (..., n), (..., dof) whose loops are closed and stay closed.
+) -> tuple[Array, Array, Placement]:
+    """The state nearest to one (rows, n), (rows, dof) whose loops are closed and stay closed, and its
+    placement.
 
-    Nearest in the metric of the kinetic energy, M (..., dof, dof), so that the motion changes as little as
-    possible: q ← q − M⁻¹ Kᵀ (K M⁻¹ Kᵀ)⁺ φ until φ is at rounding, and q̇ likewise. The pose of a floating base
-    stays. rank (...): of K, so that rows which depend on others are not taken for independent while the loops are open.
+    Nearest in the metric of the kinetic energy, M (rows, dof, dof), so that the motion changes as little as
+    possible: q ← q − M⁻¹ Kᵀ (K M⁻¹ Kᵀ)⁺ φ until φ is at rounding, and q̇ likewise. The pose of a floating
+    base stays. rank (rows,): of K, so that rows which depend on others are not taken for independent while
+    the loops are open.
     """
     robot, n = constraints.robot, len(constraints.robot.joint_names)
     at = constraints.place(q)
@@ -244,7 +258,7 @@ def project_state(
         q, at, phi, size = tried, after, phi_after, size_after
     allowed = find_allowed_motions(constraints, at, rank)
     speed = np.einsum("...ij,...j->...i", constraints.find_jacobian(at), qd)
-    return q, qd + solve_least_energy(allowed, M, -speed, None, robot.name)
+    return q, qd + solve_least_energy(allowed, M, -speed, None, robot.name), at
 
 
 def check_state(constraints: LoopConstraints, q: ArrayLike, **arguments: Any) -> Batch:
@@ -275,11 +289,14 @@ def check_motion(constraints: LoopConstraints, at: Placement, qd: Array, qdd: Ar
         if bad.any():
             row = constraints.rows[int(np.argwhere(bad)[0][-1])]
             rate = "velocities" if word == "qd" else "accelerations"
-            raise InputError(f"{word} tears a loop apart (row {row!r}); loop_{rate} finds those that keep it closed")
+            raise InputError(
+                f"{word} tears a loop apart (row {row!r}); loop_{rate} finds those that keep it closed"
+            )
 
 
 def number_driven(constraints: LoopConstraints, driven: Any) -> Array:
-    """The numbers of driven joints among the velocities. Raises InputError for none, InputTypeError for text."""
+    """The numbers of driven joints among the velocities. Raises InputError for none, InputTypeError for
+    text."""
     if isinstance(driven, str) or not isinstance(driven, Sequence):
         raise InputTypeError(f"driven is {driven!r}, expected a list of joint names")
     if not driven:
@@ -302,6 +319,6 @@ def check_driving(
         one = len(driven) == 1
         raise InputError(
             f"driven {'joint' if one else 'joints'} {join_words([repr(name) for name in driven])}"
-            f" {'does' if one else 'do'} not determine the motion of {constraints.robot.name}{where}, which has"
-            f" {int(dof[row])} degrees of freedom there: a dead point, or too few driven joints"
+            f" {'does' if one else 'do'} not determine the motion of {constraints.robot.name}{where}, which"
+            f" has {int(dof[row])} degrees of freedom there: a dead point, or too few driven joints"
         )

@@ -23,6 +23,7 @@ from cspace.dynamics.simulation import Simulation
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import LoopConstraints
 from cspace.kinematics.batch import check_choice
+from cspace.kinematics.loop_constraints import Placement
 from cspace.spatial import left_jacobian_inv_so3
 from cspace.spatial.checks import PoseLike
 from cspace.tolerances import FARTHEST, LOOP_CLOSED, WHOLE_STEP
@@ -41,7 +42,8 @@ STAGES: Final = ((0.0, 1 / 6), (0.5, 1 / 3), (0.5, 1 / 3), (1.0, 1 / 6))
 
 @dataclass(frozen=True, eq=False)
 class LoopTask:
-    """What acts on a mechanism, checked. rank (rows,): of K at closed loops, the largest so far, see settle."""
+    """What acts on a mechanism, checked. rank (rows,): of K at closed loops, the largest so far, see
+    settle."""
 
     loops: LoopConstraints
     acts: dict[str, Any]
@@ -92,7 +94,8 @@ class LoopTask:
             return None
         full = {frame: as_floats(w, f"wrench at {frame!r}", last=(6,)) for frame, w in wrenches.items()}
         return {
-            frame: w if w.ndim == 1 else np.broadcast_to(w, (*self.lead, 6)).reshape(-1, 6) for frame, w in full.items()
+            frame: w if w.ndim == 1 else np.broadcast_to(w, (*self.lead, 6)).reshape(-1, 6)
+            for frame, w in full.items()
         }
 
     def accelerations(self, state: State, tau: Array, wrenches: Wrenches | None) -> Array:
@@ -108,22 +111,23 @@ class LoopTask:
         """The nearest state whose loops are closed and stay closed; NaN in rows that cannot be closed.
 
         Between steps dependent rows of K are not quite dependent, so no more rows count than at closed loops
-        before. A motion that began at a singular configuration, with a lower rank, gets to its full rank here.
+        before. A motion that began at a singular configuration, with a lower rank, gets to its full rank
+        here.
         """
         M = mass_matrix(self.loops.robot, state.q, T_world_base=state.T_world_base, threads=self.threads)
-        q, qd = project_state(self.loops, state.q, state.qd, M, self.rank)
+        q, qd, at = project_state(self.loops, state.q, state.qd, M, self.rank)
         limit = LOOP_CLOSED * self.loops.length
-        miss = self.loops.find_miss(self.loops.place(q))
+        miss = self.loops.find_miss(at)
         if not (miss <= limit).all():
-            q, qd = project_state(self.loops, state.q, state.qd, M)
-            miss = self.loops.find_miss(self.loops.place(q))
-        self.remember_rank(q)
+            q, qd, at = project_state(self.loops, state.q, state.qd, M)
+            miss = self.loops.find_miss(at)
+        self.remember_rank(at)
         open_rows = ~(miss <= limit)[:, None]
         return State(np.where(open_rows, np.nan, q), np.where(open_rows, np.nan, qd), state.T_world_base)
 
-    def remember_rank(self, q: Array) -> None:
+    def remember_rank(self, at: Placement) -> None:
         """Count the independent rows at closed loops."""
-        allowed = find_allowed_motions(self.loops, self.loops.place(q))
+        allowed = find_allowed_motions(self.loops, at)
         np.maximum(self.rank, (allowed.s > 0.0).sum(axis=-1), out=self.rank)
 
     def step(self, state: State, tau: Array, wrenches: Wrenches | None, h: float) -> State:
@@ -183,7 +187,9 @@ def simulate_loops(
         for name, value in (("duration", duration), ("dt", dt))
     )
     if length / step > MOST_STEPS:
-        raise InputError(f"dt is {step:g} s; {length:g} s then take {length / step:.3g} steps, of {MOST_STEPS:g}")
+        raise InputError(
+            f"dt is {step:g} s; {length:g} s then take {length / step:.3g} steps, of {MOST_STEPS:g}"
+        )
     stride, steps = whole_number(every, "every", 1, MOST_STEPS), max(1, math.ceil(length / step - WHOLE_STEP))
     late = math.inf if time_limit is None else perf_counter() + positive_number(time_limit, "time_limit")
     batch = check_state(constraints, q, qd=qd, T_world_base=T_world_base, threads=threads)
@@ -200,7 +206,7 @@ def simulate_loops(
     speed = positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]")
     rank = np.zeros(len(batch.q), dtype=np.intp)
     task = LoopTask(constraints, acts, control, wrenches, damping, dry, speed, threads, batch.shape, rank)
-    task.remember_rank(batch.q)
+    task.remember_rank(constraints.place(batch.q))
     start = task.settle(State(batch.q, batch.qd, pose))
     numbers = (steps / stride + 2) * start.qd.size * (16.0 if robot.floating else 4.0)
     with guard_memory("duration / dt", f"{steps} steps", numbers, "record fewer states (every=)"):
@@ -281,9 +287,7 @@ def make_answer(
 ) -> Simulation:
     """The answer of what was recorded."""
     robot = task.loops.robot
-    q, qd, tau = (
-        np.stack(each, axis=1) for each in ([s.q for s in states], [s.qd for s in states], torques)
-    )
+    q, qd, tau = (np.stack(each, axis=1) for each in ([s.q for s in states], [s.qd for s in states], torques))
     moves = [s.T_world_base for s in states if s.T_world_base is not None]
     T = np.stack(moves, axis=1) if robot.floating else None
     place = T if T is not None else (moves[0][:, None] if moves else None)

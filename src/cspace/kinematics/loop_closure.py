@@ -1,4 +1,5 @@
-"""Configurations of closed loops for given values of some coordinates: one, all that are found, or a motion."""
+"""Configurations of closed loops for given values of some coordinates: one, all that are found, or a
+motion."""
 
 from __future__ import annotations
 
@@ -45,10 +46,10 @@ LONGER: Final = 2.0
 class LoopClosure:
     """Configurations with closed loops; falsy if one could not be closed.
 
-    q (..., n) [rad or m]: the nearest found where a loop stays open. closed (...), singular (...): whether all
-    loops are closed; whether the driven coordinates do not determine the velocities of the others there, as at a
-    dead point. gap (...) [m]: how far the loops stay open, angles in the unit of lengths. reason: "closed",
-    "singular: …" or "impossible: …", of the first configuration that is not closed, or singular.
+    q (..., n) [rad or m]: the nearest found where a loop stays open. closed (...), singular (...): whether
+    all loops are closed; whether the driven coordinates do not determine the velocities of the others there,
+    as at a dead point. gap (...) [m]: how far the loops stay open, angles in the unit of lengths. reason:
+    "closed", "singular: …" or "impossible: …", of the first configuration that is not closed, or singular.
     """
 
     q: Array
@@ -68,8 +69,8 @@ class LoopClosure:
 class AssemblyModes:
     """The configurations of a mechanism for given driven coordinates; falsy if there is none.
 
-    q (k, n) [rad or m]. complete: whether no others exist, which a closed form knows and a search does not. gap
-    [m]: what is missing, zero if there is any. reason: "found", or what is impossible.
+    q (k, n) [rad or m]. complete: whether no others exist, which a closed form knows and a search does not.
+    gap [m]: what is missing, zero if there is any. reason: "found", or what is impossible.
     """
 
     q: Array
@@ -121,8 +122,8 @@ def close_loops(
 ) -> LoopClosure:
     """Configurations whose loops are closed, with the driven coordinates at given values.
 
-    Newton's method, damped, from `near`. Where it ends at open loops it goes on from random configurations and
-    takes the closed one nearest to `near`. Limits of joints do not count, except for these draws.
+    Newton's method, damped, from `near`. Where it ends at open loops it goes on from random configurations
+    and takes the closed one nearest to `near`. Limits of joints do not count, except for these draws.
 
     driven: coordinate → values (...) [rad or m]; without any the loops are closed near `near`. near (..., n):
     seeds, zero if None. starts: how many random ones. rng: as everywhere.
@@ -168,17 +169,20 @@ def find_assembly_modes(
     starts: int = 200,
     rng: int | np.random.Generator | None = 0,
 ) -> AssemblyModes:
-    """The configurations of a mechanism that Newton's method finds from many random ones; never called complete.
+    """The configurations of a mechanism that Newton's method finds from many random ones; never called
+    complete.
 
-    driven: coordinate → value [rad or m]. starts: how many are drawn between the limits, prismatic joints without
-    limits within the size of the mechanism. Configurations that differ by multiples of 2π are one; they are
-    sorted by their coordinates.
+    driven: coordinate → value [rad or m]. starts: how many are drawn between the limits, prismatic joints
+    without limits within the size of the mechanism. Configurations that differ by multiples of 2π are one;
+    they are sorted by their coordinates.
 
     Raises as close_loops.
     """
     numbers, values, lead = check_driven(constraints, driven, None)
     if lead:
-        raise InputError(f"driven values have shape {lead}, expected one number each; assembly modes are of one position")
+        raise InputError(
+            f"driven values have shape {lead}, expected one number each; assembly modes are of one position"
+        )
     count, generator = whole_number(starts, "starts", 1, MOST_STARTS), as_generator(rng)
     n = len(constraints.robot.joint_names)
     seed = np.zeros(n)
@@ -188,15 +192,18 @@ def find_assembly_modes(
     closed = gap <= LOOP_CLOSED * constraints.length
     if not closed.any():
         best = int(gap.argmin())
-        return AssemblyModes(np.empty((0, n)), False, float(gap[best]), name_gap(constraints, q[best], gap[best]))
+        return AssemblyModes(
+            np.empty((0, n)), False, float(gap[best]), name_gap(constraints, q[best], gap[best])
+        )
     return AssemblyModes(pick_modes(constraints, q[closed], passive), False, 0.0, "found")
 
 
 def follow_loops(constraints: LoopConstraints, driven: Driven, start: ArrayLike) -> LoopMotion:
     """The motion of a mechanism while its driven coordinates go through given values.
 
-    A predictor along the tangent and Newton's corrector, with strides as long as the correction stays small, so
-    the motion stays on its branch. At a dead point, where the driven coordinates can go no further, it stops.
+    A predictor along the tangent and Newton's corrector, with strides as long as the correction stays small,
+    so the motion stays on its branch. At a dead point, where the driven coordinates can go no further, it
+    stops.
 
     driven: coordinate → values (k,) [rad or m], passed one after the other in straight lines. start (n,): a
     configuration near the first values, which is closed there.
@@ -206,12 +213,20 @@ def follow_loops(constraints: LoopConstraints, driven: Driven, start: ArrayLike)
     """
     numbers, values, lead = check_driven(constraints, driven, None)
     if len(lead) != 1 or lead[0] == 0 or numbers.size == 0:
-        raise InputError(f"driven values have shape {lead}, expected (k,): one value per configuration of the motion")
+        raise InputError(
+            f"driven values have shape {lead}, expected (k,): one value per configuration of the motion"
+        )
     n = len(constraints.robot.joint_names)
-    first = close_loops(constraints, {name: np.asarray(v)[0] if np.ndim(v) else v for name, v in driven.items()},
-                        near=as_floats(start, "start", last=(n,)), starts=0)
+    first = close_loops(
+        constraints,
+        {name: np.asarray(v)[0] if np.ndim(v) else v for name, v in driven.items()},
+        near=as_floats(start, "start", last=(n,)),
+        starts=0,
+    )
     if not first:
-        raise InputError(f"start cannot be closed at the first values of the driven coordinates: {first.reason}")
+        raise InputError(
+            f"start cannot be closed at the first values of the driven coordinates: {first.reason}"
+        )
     passive = np.setdiff1d(np.arange(n), numbers)
     q, rows, stride = first.q, [first.q], 1.0
     for goal in values[1:]:
@@ -225,7 +240,8 @@ def follow_loops(constraints: LoopConstraints, driven: Driven, start: ArrayLike)
 def step_towards(
     constraints: LoopConstraints, q: Array, numbers: Numbers, passive: Numbers, goal: Array, stride: float
 ) -> tuple[Array, bool, float]:
-    """Follow the loops until the driven coordinates are at their goal: where, whether it was reached, the stride.
+    """Follow the loops until the driven coordinates are at their goal: where, whether it was reached, the
+    stride.
 
     stride: the share of the way that the first step tries.
     """
@@ -293,8 +309,8 @@ def check_driven(
 
 
 def number_coordinates(constraints: LoopConstraints, names: Sequence[str]) -> Numbers:
-    """The numbers of coordinates by name. Raises UnknownNameError for an unknown one, InputError if one is named
-    twice."""
+    """The numbers of coordinates by name. Raises UnknownNameError for an unknown one, InputError if one is
+    named twice."""
     robot = constraints.robot
     for name in names:
         if name not in robot.joint_names:
@@ -307,16 +323,20 @@ def number_coordinates(constraints: LoopConstraints, names: Sequence[str]) -> Nu
 def draw_starts(
     constraints: LoopConstraints, seed: Array, passive: Numbers, count: int, rng: np.random.Generator
 ) -> Array:
-    """Random configurations (count, n) whose coordinates are those of the seed (n,), except for passive ones."""
+    """Random configurations (count, n) whose coordinates are those of the seed (n,), except for passive
+    ones."""
     robot = constraints.robot
-    drawn = random_configurations(robot.limits, robot.joint_types, count, rng=rng, reach=2.0 * constraints.length)
+    drawn = random_configurations(
+        robot.limits, robot.joint_types, count, rng=rng, reach=2.0 * constraints.length
+    )
     q = np.tile(seed, (count, 1))
     q[:, passive] = drawn[:, passive]
     return q
 
 
 def wrap_revolute(constraints: LoopConstraints, q: Array, seed: Array, passive: Numbers) -> Array:
-    """Configurations (m, n) whose passive revolute joints are moved by multiples of 2π towards a seed (n,)."""
+    """Configurations (m, n) whose passive revolute joints are moved by multiples of 2π towards a seed
+    (n,)."""
     types = constraints.robot.joint_types
     turns = np.array([i for i in passive if types[i] == "R"], dtype=np.intp)
     q = q.copy()

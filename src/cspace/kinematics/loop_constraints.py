@@ -24,8 +24,8 @@ from cspace.spatial.vectors import cross
 class Placement:
     """Where the frames of loops and the axes of joints are at configurations, in axes of the base.
 
-    R_A, R_B (..., loops, 3, 3), p_A, p_B (..., loops, 3): the frames of each loop in its parent and its child.
-    axes, points (..., joints, 3).
+    R_A, R_B (..., loops, 3, 3), p_A, p_B (..., loops, 3): the frames of each loop in its parent and its
+    child. axes, points (..., joints, 3).
     """
 
     R_A: Array
@@ -51,10 +51,10 @@ class Placement:
 class LoopConstraints:
     """The constraints φ(q) = 0 of the closed loops of a robot, with φ̇ = K q̇ and φ̈ = K q̈ + k.
 
-    robot: whose joints move the loops; they are those of a tree. loops: joints that close loops between links of
-    it, on both sides of which the tree goes on. rows: the name of each row of φ, "loop.x" and the like, in the
-    axes of the frame of the loop in its parent; where the loop has an axis it is z. length [m]: the size of the
-    mechanism, by which lengths are compared with angles.
+    robot: whose joints move the loops; they are those of a tree. loops: joints that close loops between links
+    of it, on both sides of which the tree goes on. rows: the name of each row of φ, "loop.x" and the like, in
+    the axes of the frame of the loop in its parent; where the loop has an axis it is z. length [m]: the size
+    of the mechanism, by which lengths are compared with angles.
 
     Raises InputError for a robot without loops, doubled names, a helical loop, a universal one without second
     axis and one between parts that do not move against each other; UnknownNameError for an unknown link.
@@ -74,14 +74,18 @@ class LoopConstraints:
         self._find_joints()
         joints = np.arange(assembly.n_joints)
         self._to_coordinates = np.zeros((assembly.n_joints, robot.dof))
-        self._to_coordinates[joints, assembly.coordinate + robot.dof - assembly.n_coordinates] = assembly.ratio
+        self._to_coordinates[joints, assembly.coordinate + robot.dof - assembly.n_coordinates] = (
+            assembly.ratio
+        )
         bodies = assembly.frame_joint[self._frames] + 1
         sides = self._carries[bodies]  # (loops, 2, joints)
         self._signs = sides[:, 1] - sides[:, 0]
         self._bodies = bodies
         still = [each.name for each, row in zip(self.loops, self._signs, strict=True) if not row.any()]
         if still:
-            raise InputError(f"loop {still[0]!r} is between parts of {robot.name} that do not move against each other")
+            raise InputError(
+                f"loop {still[0]!r} is between parts of {robot.name} that do not move against each other"
+            )
         self.length = self._find_length()
         self.scale = np.where(self._layout.angular, 1.0, 1.0 / self.length)
         """(r,): what makes a row of φ a number without unit."""
@@ -96,11 +100,13 @@ class LoopConstraints:
             names.add(loop.name)
             for end in (loop.parent, loop.child):
                 if end not in robot.frames:
-                    raise suggest("link", end, robot.frames, owner=f"{robot.name}, which loop {loop.name!r} ties")
+                    raise suggest(
+                        "link", end, robot.frames, owner=f"{robot.name}, which loop {loop.name!r} ties"
+                    )
         if not self.loops:
             raise InputError(
-                f"{robot.name} has no closed loops; give loops=, or describe them in its file ([[loops]] of TOML,"
-                " <connect> and <weld> of MJCF)"
+                f"{robot.name} has no closed loops; give loops=, or describe them in its file ([[loops]] of"
+                " TOML, <connect> and <weld> of MJCF)"
             )
 
     def _find_joints(self) -> None:
@@ -124,7 +130,9 @@ class LoopConstraints:
         assembly = self.robot._assembly
         sizes = [
             *np.linalg.norm(assembly.T_parent_joint[:, :3, 3], axis=1).tolist(),
-            *np.linalg.norm((assembly.T_joint_frame[self._frames] @ self._ends)[..., :3, 3], axis=-1).ravel().tolist(),
+            *np.linalg.norm((assembly.T_joint_frame[self._frames] @ self._ends)[..., :3, 3], axis=-1)
+            .ravel()
+            .tolist(),
             *self._layout.lengths.tolist(),
         ]
         return max(sizes) or 1.0
@@ -150,7 +158,8 @@ class LoopConstraints:
     def bias(self, q: ArrayLike, qd: ArrayLike) -> Array:
         """k = K̇ q̇, the part of φ̈ = K q̈ + k that velocities cause.
 
-        q (..., n) [rad or m], qd (..., dof). Returns k (..., rows). Raises InputError for a wrong shape or NaN.
+        q (..., n) [rad or m], qd (..., dof). Returns k (..., rows). Raises InputError for a wrong shape or
+        NaN.
         """
         batch = rows_of(self.robot, q, qd=qd)
         refuse_infinite(batch)
@@ -167,7 +176,8 @@ class LoopConstraints:
         return self.find_miss(at).reshape(lead)
 
     def _place_checked(self, q: ArrayLike) -> tuple[tuple[int, ...], Placement]:
-        """The leading axes of q (..., n) and its placement, as rows. Raises InputError for a wrong shape or NaN."""
+        """The leading axes of q (..., n) and its placement, as rows. Raises InputError for a wrong shape or
+        NaN."""
         batch = rows_of(self.robot, q)
         refuse_infinite(batch)
         return batch.shape, self.place(batch.q)
@@ -181,10 +191,13 @@ class LoopConstraints:
         return self.loops[int(np.argmax(worst))].name
 
     def place(self, q: Array) -> Placement:
-        """Where the frames of the loops and the axes of the joints are at rows q (m, n), which are not checked."""
+        """Where the frames of the loops and the axes of the joints are at rows q (m, n), which are not
+        checked."""
         T = np.empty((len(q), len(self.robot.frames), 4, 4))
         base = np.eye(4)[None] if self.robot.floating else None
-        if not _core._tree_rows(self.robot, np.ascontiguousarray(q), base, T, None, None, 1 if len(q) == 1 else 0):
+        if not _core._tree_rows(
+            self.robot, np.ascontiguousarray(q), base, T, None, None, 1 if len(q) == 1 else 0
+        ):
             T.fill(np.nan)
         ends = T[..., self._frames, :, :] @ self._ends
         R, p = ends[..., :3, :3], ends[..., :3, 3]
@@ -304,9 +317,9 @@ class LoopConstraints:
     def wrenches(self, q: ArrayLike, multipliers: ArrayLike) -> Array:
         """What each loop exerts on its child link under multipliers of the rows.
 
-        q (..., n) [rad or m], multipliers (..., rows). Returns (..., loops, 6): force and torque [N, N·m] at the
-        origin of the loop's frame in the child, in axes of the base; the parent feels the opposite wrench at this
-        point. Raises InputError for a wrong shape or NaN.
+        q (..., n) [rad or m], multipliers (..., rows). Returns (..., loops, 6): force and torque [N, N·m] at
+        the origin of the loop's frame in the child, in axes of the base; the parent feels the opposite wrench
+        at this point. Raises InputError for a wrong shape or NaN.
         """
         lead, at = self._place_checked(q)
         P, g = self._find_row_vectors(at)

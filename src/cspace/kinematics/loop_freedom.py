@@ -17,8 +17,8 @@ from cspace.tolerances import ALIKE_ROWS, FARTHEST, LOOP_RANK, LOOP_RANK_SLACK
 class LoopFreedom:
     """The freedom of a mechanism at a configuration.
 
-    dof: n − rank K, the independent velocities. rank: of K. rows: of K. dependent: the names of rows that follow
-    from the others, as a planar linkage in space has them; forces along them cannot be known.
+    dof: n − rank K, the independent velocities. rank: of K. rows: of K. dependent: the names of rows that
+    follow from the others, as a planar linkage in space has them; forces along them cannot be known.
     """
 
     dof: int
@@ -34,8 +34,8 @@ class LoopFreedom:
 def loop_freedom(constraints: LoopConstraints, q: ArrayLike) -> LoopFreedom:
     """The degrees of freedom at a configuration, n − rank K, and the rows of K that depend on others.
 
-    Unlike the formula of Grübler and Kutzbach (model.mobility) this counts what the geometry really leaves, also
-    where the axes of a loop are parallel or meet in a point, and the momentary freedom of a singular
+    Unlike the formula of Grübler and Kutzbach (model.mobility) this counts what the geometry really leaves,
+    also where the axes of a loop are parallel or meet in a point, and the momentary freedom of a singular
     configuration.
 
     q (n,) [rad or m]: one configuration, with closed loops. Raises InputError for a wrong shape or NaN.
@@ -64,7 +64,8 @@ def find_column_scale(constraints: LoopConstraints) -> Array:
 
 
 def find_rank_tolerance(constraints: LoopConstraints, at: Placement) -> Array:
-    """(...): the singular value of the scaled K, relative to the largest, up to which a row depends on others.
+    """(...): the singular value of the scaled K, relative to the largest, up to which a row depends on
+    others.
 
     Rows that depend on each other where the loops are closed do so less by as much as these are open.
     """

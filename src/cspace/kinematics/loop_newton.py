@@ -31,8 +31,8 @@ MOST_DAMPING: Final = 1e12
 def close_rows(constraints: LoopConstraints, q: Array, passive: Array) -> tuple[Array, Array]:
     """Configurations (m, n) near those given whose loops are closed, or nearly; the residuals (m,) [m].
 
-    passive (k,): the numbers of the coordinates that may move. The residual is infinite where a loop is closed
-    upside down.
+    passive (k,): the numbers of the coordinates that may move. The residual is infinite where a loop is
+    closed upside down.
     """
     q = reduce_residuals(constraints, q.copy(), passive)
     q = polish_rows(constraints, q, passive)
@@ -62,7 +62,9 @@ def reduce_residuals(constraints: LoopConstraints, q: Array, passive: Array) -> 
         step = shorten_steps(-np.linalg.solve(H, slope[..., None])[..., 0])
         tried = q[active]
         tried[:, passive] += step * unit
-        after = np.linalg.norm(constraints.find_residual(constraints.place(tried)) * constraints.scale, axis=-1)
+        after = np.linalg.norm(
+            constraints.find_residual(constraints.place(tried)) * constraints.scale, axis=-1
+        )
         better = after < size
         q[active[better]] = tried[better]
         damping[active] = np.where(better, damping[active] * LESS, damping[active] * MORE)

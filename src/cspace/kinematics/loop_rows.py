@@ -1,9 +1,9 @@
 """What a loop of each type forbids, as rows of numbers.
 
 With the frame A of the loop in its parent and B in its child, both with z along the axis if there is one, the
-relative place is d = R_Aᵀ (p_B − p_A) and the relative rotation D = R_Aᵀ R_B. A row of a loop is the sum P · d + Σ C ∘ D, or that
-of a rod (d · d − l²) / (2 l). Sines stand for angles, so rows are lengths [m] and angles [rad] where a loop is
-nearly closed.
+relative place is d = R_Aᵀ (p_B − p_A) and the relative rotation D = R_Aᵀ R_B. A row of a loop is the sum P ·
+d + Σ C ∘ D, or that of a rod (d · d − l²) / (2 l). Sines stand for angles, so rows are lengths [m] and angles
+[rad] where a loop is nearly closed.
 """
 
 from __future__ import annotations
@@ -75,9 +75,9 @@ WITHOUT_AXIS: Final = ("spherical", "fixed", "distance", "floating")
 class LoopRows:
     """The rows of all loops, one after the other.
 
-    names: "loop.row". loop (r,): of which loop a row is. P (r, 3), C (r, 3, 3): see above. rods: the numbers of
-    those rows that are rods. lengths (rods,) [m]. angular (r,): whether a row is an angle. upright (loops, 3,
-    3): U, and signed (loops,): whether there is one.
+    names: "loop.row". loop (r,): of which loop a row is. P (r, 3), C (r, 3, 3): see above. rods: the numbers
+    of those rows that are rods. lengths (rods,) [m]. angular (r,): whether a row is an angle. upright (loops,
+    3, 3): U, and signed (loops,): whether there is one.
     """
 
     names: tuple[str, ...]
@@ -99,7 +99,8 @@ def make_rows(loops: tuple[Loop, ...]) -> LoopRows:
             raise InputError(f"loop {loop.name!r} is {loop.type}; it has no pitch, so choose one of {known}")
         if loop.type == "universal" and loop.second_axis is None:
             raise InputError(
-                f"loop {loop.name!r} is universal; give second_axis=, the axis that is fixed to {loop.child!r}"
+                f"loop {loop.name!r} is universal; give second_axis=, the axis that is fixed to its child"
+                f" {loop.child!r}"
             )
     rows = [(i, row) for i, loop in enumerate(loops) for row in ROWS[loop.type]]
     numbers = np.array([i for i, _ in rows], dtype=np.intp)

@@ -9,7 +9,8 @@ from cspace.model import Inertial
 
 
 def make_rod(mass: float, length: float, axis: int = 0) -> Inertial:
-    """A thin uniform rod from the origin along an axis of its frame. mass [kg], length [m]; axis: its number."""
+    """A thin uniform rod from the origin along an axis of its frame. mass [kg], length [m]; axis: its
+    number."""
     direction = np.eye(3)[axis]
     across = np.eye(3) - np.outer(direction, direction)
     return Inertial(mass, 0.5 * length * direction, mass * length**2 / 12.0 * across)

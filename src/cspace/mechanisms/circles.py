@@ -10,10 +10,11 @@ from cspace.tolerances import LOOP_CLOSED
 
 
 def intersect_circles(first: Array, r: float, second: Array, s: float) -> tuple[Array, float]:
-    """The points (k, 2) of two circles, left of the line from the first centre (2,) to the second before right.
+    """The points (k, 2) of two circles, left of the line from the first centre (2,) to the second before
+    right.
 
-    Two points, one where they touch, or none; with the distance [m] that is then missing, zero otherwise. Equal
-    circles give one point, that along the x axis.
+    Two points, one where they touch, or none; with the distance [m] that is then missing, zero otherwise.
+    Equal circles give one point, that along the x axis.
     """
     across = second - first
     d, size = float(np.hypot(*across)), max(r, s)
@@ -34,9 +35,9 @@ def intersect_circles(first: Array, r: float, second: Array, s: float) -> tuple[
 def intersect_spheres(centers: Array, r: float) -> tuple[Array, float]:
     """The points (k, 3) of three spheres of one radius about centers (3, 3).
 
-    Two points, the one against the normal of the centres' plane (by the right hand) first; one where the centres
-    lie on a circle of this radius; or none, with the length [m] by which r is too small, infinite for centres in
-    line.
+    Two points, the one against the normal of the centres' plane (by the right hand) first; one where the
+    centres lie on a circle of this radius; or none, with the length [m] by which r is too small, infinite for
+    centres in line.
     """
     a, b, c = centers
     ab, ac = b - a, c - a

@@ -27,12 +27,14 @@ LEGS = 3
 class Delta(Mechanism):
     """A delta robot (Clavel 1988) with six rods, which hangs below its base.
 
-    Arm i turns about a horizontal axis at the angle i · 120° on a circle of base_radius, positive downwards. Two
-    parallel rods lead from its end to the platform, whose joints lie on a circle of platform_radius. Coordinates:
-    arm_1, arm_2, arm_3; the platform's x, y, z and its rotations rx, ry, rz, which the rods keep at zero.
+    Arm i turns about a horizontal axis at the angle i · 120° on a circle of base_radius, positive downwards.
+    Two parallel rods lead from its end to the platform, whose joints lie on a circle of platform_radius.
+    Coordinates: arm_1, arm_2, arm_3; the platform's x, y, z and its rotations rx, ry, rz, which the rods keep
+    at zero.
 
-    base_radius, platform_radius, arm, rod [m]. width [m]: between the rods of a pair. arm_density, rod_density
-    [kg/m]: of arms and rods; half of the mass of a rod counts at each of its ends. platform_mass [kg]: a disc.
+    base_radius, platform_radius, arm, rod [m]. width [m]: between the rods of a pair. arm_density,
+    rod_density [kg/m]: of arms and rods; half of the mass of a rod counts at each of its ends. platform_mass
+    [kg]: a disc.
 
     Raises InputError for lengths and masses that are not positive.
     """
@@ -50,7 +52,13 @@ class Delta(Mechanism):
         platform_mass: float = 0.5,
     ) -> None:
         sizes = check_lengths(
-            {"base_radius": base_radius, "platform_radius": platform_radius, "arm": arm, "rod": rod, "width": width}
+            {
+                "base_radius": base_radius,
+                "platform_radius": platform_radius,
+                "arm": arm,
+                "rod": rod,
+                "width": width,
+            }
         )
         loads = check_lengths(
             {"arm_density": arm_density, "rod_density": rod_density, "platform_mass": platform_mass}
@@ -70,20 +78,30 @@ class Delta(Mechanism):
             for name, turn in zip(ARMS, turns, strict=True)
         ]
         loops = [
-            Loop(f"rod_{i + 1}{'ab'[j]}", "distance", ARMS[i], "platform", ends[j], turns[i] @ points[j], length=rod)
+            Loop(
+                f"rod_{i + 1}{'ab'[j]}",
+                "distance",
+                ARMS[i],
+                "platform",
+                ends[j],
+                turns[i] @ points[j],
+                length=rod,
+            )
             for i, j in product(range(LEGS), range(2))
         ]
         all_links = (Link("base"), *(Link(name, upper) for name in ARMS), *links)
-        super().__init__(Robot(Description("delta", all_links, (*arms, *joints), tuple(loops)), floating=False))
+        super().__init__(
+            Robot(Description("delta", all_links, (*arms, *joints), tuple(loops)), floating=False)
+        )
 
     def assembly_modes(self, driven: Driven, *, starts: int = 200, rng: Seed = 0) -> AssemblyModes:
         """All configurations with parallel rods, in closed form.
 
         driven: {"x": …, "y": …, "z": …} [m] for inverse kinematics, up to eight configurations, that with all
-        elbows outwards first; or {"arm_1": …, "arm_2": …, "arm_3": …} [rad] for forward kinematics, up to two,
-        the lower one first. Returns AssemblyModes with q (k, 9). Rods that cross each other, which other
-        orientations of the platform would need, are left out. starts, rng: for other sets of driven coordinates,
-        as of Mechanism.assembly_modes.
+        elbows outwards first; or {"arm_1": …, "arm_2": …, "arm_3": …} [rad] for forward kinematics, up to
+        two, the lower one first. Returns AssemblyModes with q (k, 9). Rods that cross each other, which other
+        orientations of the platform would need, are left out. starts, rng: for other sets of driven
+        coordinates, as of Mechanism.assembly_modes.
         """
         q = self.configuration(driven)
         if set(driven) == set(PLATFORM[:3]):
@@ -121,7 +139,8 @@ class Delta(Mechanism):
 
 
 def find_arm_angles(v: Array, arm: float, rod: float) -> tuple[list[float], float]:
-    """The angles of an arm whose end is at the distance `rod` from a point, outwards first; what is missing [m].
+    """The angles of an arm whose end is at the distance `rod` from a point, outwards first; what is missing
+    [m].
 
     v (3,): the point seen from the axis of the arm: outwards, along the axis, up.
     """
@@ -132,7 +151,7 @@ def find_arm_angles(v: Array, arm: float, rod: float) -> tuple[list[float], floa
     if gap > LOOP_CLOSED * size:
         return [], gap
     middle = float(np.arctan2(-v[2], v[0]))
-    if A <= LOOP_CLOSED * size:  # every angle: one stands for all
+    if LOOP_CLOSED * size >= A:  # every angle: one stands for all
         return [0.0], 0.0
     spread = float(np.arccos(np.clip((v @ v + arm**2 - rod**2) / (2.0 * arm * A), -1.0, 1.0)))
     if gap >= -LOOP_CLOSED * size:

@@ -25,8 +25,8 @@ class FourBar(Mechanism):
     """A planar four-bar linkage in the vertical plane of x and z.
 
     The crank turns about the origin, the rocker about (ground, 0, 0), and the coupler is pinned to both.
-    Coordinates: crank and rocker, counterclockwise from x, and coupler, its angle from the crank. ground, crank,
-    coupler, rocker [m]: the distances between pins. density [kg/m]: of the links, thin uniform rods.
+    Coordinates: crank and rocker, counterclockwise from x, and coupler, its angle from the crank. ground,
+    crank, coupler, rocker [m]: the distances between pins. density [kg/m]: of the links, thin uniform rods.
 
     Raises InputError for lengths that are not positive.
     """
@@ -37,7 +37,9 @@ class FourBar(Mechanism):
         sizes = check_lengths({"ground": ground, "crank": crank, "coupler": coupler, "rocker": rocker})
         self.lengths = sizes
         rho = check_lengths({"density": density})["density"]
-        links = [Link(name, make_rod(rho * sizes[name], sizes[name])) for name in ("crank", "coupler", "rocker")]
+        links = [
+            Link(name, make_rod(rho * sizes[name], sizes[name])) for name in ("crank", "coupler", "rocker")
+        ]
         joints = (
             Joint("crank", "continuous", "ground", "crank", axis=OUT_OF_PLANE),
             Joint("coupler", "continuous", "crank", "coupler", _along_x(sizes["crank"]), OUT_OF_PLANE),
@@ -64,8 +66,8 @@ class FourBar(Mechanism):
     def assembly_modes(self, driven: Driven, *, starts: int = 200, rng: Seed = 0) -> AssemblyModes:
         """Both configurations for one driven coordinate, in closed form: where two circles meet.
 
-        driven: "crank", "coupler" or "rocker" → angle [rad]. Returns AssemblyModes with q (2, 3), one at a dead
-        point. starts, rng: for other sets of driven coordinates, as of Mechanism.assembly_modes.
+        driven: "crank", "coupler" or "rocker" → angle [rad]. Returns AssemblyModes with q (2, 3), one at a
+        dead point. starts, rng: for other sets of driven coordinates, as of Mechanism.assembly_modes.
         """
         if len(driven) != 1 or next(iter(driven)) not in self.joint_names:
             return super().assembly_modes(driven, starts=starts, rng=rng)

@@ -28,9 +28,9 @@ class Mechanism:
     The robot is the tree that remains when each loop is cut at one joint; its coordinates are those of the
     mechanism, and the loops say which of their values go together.
 
-    robot: the tree, whose fk, jacobian and other functions work as ever. loops: model.Loop objects in addition to
-    those of the robot's description. constraints: their equations φ(q) = 0, a kinematics.LoopConstraints.
-    joint_names: the n coordinates of a configuration, in order.
+    robot: the tree, whose fk, jacobian and other functions work as ever. loops: model.Loop objects in
+    addition to those of the robot's description. constraints: their equations φ(q) = 0, a
+    kinematics.LoopConstraints. joint_names: the n coordinates of a configuration, in order.
 
     Raises InputError where there are no loops, and for loops that cannot be (see LoopConstraints);
     UnknownNameError for an unknown link.
@@ -93,9 +93,9 @@ class Mechanism:
     def assembly_modes(self, driven: Driven, *, starts: int = 200, rng: Seed = 0) -> AssemblyModes:
         """All configurations that are found for given driven coordinates.
 
-        driven: coordinate → value. starts, rng: of the search; a mechanism with a closed form needs none and says
-        that its answer is complete. Returns AssemblyModes with q (k, n).
-        Raises as kinematics.find_assembly_modes.
+        driven: coordinate → value. starts, rng: of the search; a mechanism with a closed form needs none and
+        says that its answer is complete. Returns AssemblyModes with q (k, n). Raises as
+        kinematics.find_assembly_modes.
         """
         return kinematics.find_assembly_modes(self.constraints, driven, starts=starts, rng=rng)
 
@@ -105,8 +105,8 @@ class Mechanism:
         return kinematics.follow_loops(self.constraints, driven, start)
 
     def velocities(self, q: ArrayLike, driven: Driven) -> Array:
-        """The velocities (..., dof) of all joints at q (..., n) when the driven ones move at given rates (...);
-        see dynamics.loop_velocities."""
+        """The velocities (..., dof) of all joints at q (..., n) when the driven ones move at given rates
+        (...); see dynamics.loop_velocities."""
         return dynamics.loop_velocities(self.constraints, q, dict(driven))
 
     def accelerations(self, q: ArrayLike, qd: ArrayLike, driven: Driven) -> Array:
@@ -131,9 +131,11 @@ class Mechanism:
         """
         return dynamics.constrained_inverse_dynamics(self.constraints, q, qd, qdd, driven, **acts)
 
-    def loop_wrenches(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, tau: ArrayLike, **acts: Any) -> Array:
-        """What each loop exerts on its child link, (..., loops, 6), during a motion q (..., n), qd, qdd (..., dof)
-        under torques tau (..., dof); see dynamics.loop_wrenches."""
+    def loop_wrenches(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, tau: ArrayLike, **acts: Any
+    ) -> Array:
+        """What each loop exerts on its child link, (..., loops, 6), during a motion q (..., n), qd, qdd (...,
+        dof) under torques tau (..., dof); see dynamics.loop_wrenches."""
         return dynamics.loop_wrenches(self.constraints, q, qd, qdd, tau, **acts)
 
     def kinetic_energy(self, q: ArrayLike, qd: ArrayLike, **options: Any) -> Array:

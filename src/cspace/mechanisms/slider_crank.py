@@ -21,10 +21,10 @@ from cspace.tolerances import LOOP_CLOSED
 class SliderCrank(Mechanism):
     """A slider-crank in the vertical plane of x and z.
 
-    The crank turns about the origin, the slider moves along x at the height z = offset, and the rod is pinned to
-    both. Coordinates: crank, counterclockwise from x; rod, its angle from the crank; slider [m]. crank, rod [m]:
-    the distances between pins. offset [m]: of the line of the slider. density [kg/m]: of crank and rod, thin
-    uniform rods. slider_mass [kg].
+    The crank turns about the origin, the slider moves along x at the height z = offset, and the rod is pinned
+    to both. Coordinates: crank, counterclockwise from x; rod, its angle from the crank; slider [m]. crank,
+    rod [m]: the distances between pins. offset [m]: of the line of the slider. density [kg/m]: of crank and
+    rod, thin uniform rods. slider_mass [kg].
 
     Raises InputError for lengths and masses that are not positive.
     """
@@ -51,8 +51,9 @@ class SliderCrank(Mechanism):
     def assembly_modes(self, driven: Driven, *, starts: int = 200, rng: Seed = 0) -> AssemblyModes:
         """Both configurations for one driven coordinate, in closed form.
 
-        driven: "crank" or "rod" → angle [rad], or "slider" → position [m]. Returns AssemblyModes with q (2, 3),
-        one at a dead point. starts, rng: for other sets of driven coordinates, as of Mechanism.assembly_modes.
+        driven: "crank" or "rod" → angle [rad], or "slider" → position [m]. Returns AssemblyModes with q (2,
+        3), one at a dead point. starts, rng: for other sets of driven coordinates, as of
+        Mechanism.assembly_modes.
         """
         if len(driven) != 1 or next(iter(driven)) not in self.joint_names:
             return super().assembly_modes(driven, starts=starts, rng=rng)
@@ -92,7 +93,8 @@ class SliderCrank(Mechanism):
 
 
 def find_angles_at_height(reach: float, height: float) -> tuple[Array, float]:
-    """The angles (k,) at which an arm of a length [m] has its tip at a height, and the distance that is missing."""
+    """The angles (k,) at which an arm of a length [m] has its tip at a height, and the distance that is
+    missing."""
     gap = abs(height) - reach
     if gap > LOOP_CLOSED * max(reach, abs(height)):
         return np.empty(0), gap

@@ -25,13 +25,13 @@ LENGTHS = tuple(f"length_{i + 1}" for i in range(LEGS))
 class Stewart(Mechanism):
     """A Stewart platform (Gough 1956, Stewart 1965): six legs with a universal joint below and a ball above.
 
-    Coordinates: of leg i the two angles u_i, v_i of its universal joint and length_i [m], the distance between
-    its joints; and of the platform x, y, z and its rotations rx, ry, rz about its own axes, one after the other.
-    The driven joints are the lengths.
+    Coordinates: of leg i the two angles u_i, v_i of its universal joint and length_i [m], the distance
+    between its joints; and of the platform x, y, z and its rotations rx, ry, rz about its own axes, one after
+    the other. The driven joints are the lengths.
 
     base_points, platform_points (6, 3) [m]: the joints of the legs in the frames of base and platform. height
-    [m]: of the platform at home, where the legs have u = v = 0. leg_density [kg/m]: of the lower half of each leg
-    at home and of the upper one, thin uniform rods. platform_mass [kg]: a disc.
+    [m]: of the platform at home, where the legs have u = v = 0. leg_density [kg/m]: of the lower half of each
+    leg at home and of the upper one, thin uniform rods. platform_mass [kg]: a disc.
 
     Raises InputError for a wrong shape, NaN, lengths and masses that are not positive.
     """
@@ -46,7 +46,9 @@ class Stewart(Mechanism):
         platform_mass: float = 2.0,
     ) -> None:
         self.base_points = one_array(base_points, "base_points", (LEGS, 3), "the joint of each leg")
-        self.platform_points = one_array(platform_points, "platform_points", (LEGS, 3), "the joint of each leg")
+        self.platform_points = one_array(
+            platform_points, "platform_points", (LEGS, 3), "the joint of each leg"
+        )
         sizes = check_lengths({"height": height, "leg_density": leg_density, "platform_mass": platform_mass})
         self.home = np.array([0.0, 0.0, sizes["height"], 0.0, 0.0, 0.0])
         home_legs = self.platform_points + self.home[:3] - self.base_points
@@ -71,7 +73,13 @@ class Stewart(Mechanism):
                 Joint(LENGTHS[i], "prismatic", f"{name}_lower", f"{name}_upper", axis=np.eye(3)[2]),
             ]
         balls = [
-            Loop(f"ball_{i + 1}", "spherical", f"leg_{i + 1}_upper", "platform", child_origin=translation_by(point))
+            Loop(
+                f"ball_{i + 1}",
+                "spherical",
+                f"leg_{i + 1}_upper",
+                "platform",
+                child_origin=translation_by(point),
+            )
             for i, point in enumerate(self.platform_points)
         ]
         description = Description("stewart", (*leg_links, *links), (*leg_joints, *joints), tuple(balls))
@@ -88,21 +96,26 @@ class Stewart(Mechanism):
         base = np.radians([-10, 10, 110, 130, 230, 250])
         platform = np.radians([-50, 50, 70, 170, 190, 290])
         return cls(
-            _on_circle(radii["base_radius"], base), _on_circle(radii["platform_radius"], platform), height, **masses
+            _on_circle(radii["base_radius"], base),
+            _on_circle(radii["platform_radius"], platform),
+            height,
+            **masses,
         )
 
     def pose_coordinates(self, T_base_platform: PoseLike) -> dict[str, float]:
         """The coordinates x, y, z, rx, ry, rz of a pose (4, 4) of the platform, as driven coordinates."""
         T = one_pose(T_base_platform, "T_base_platform")
-        return dict(zip(PLATFORM, [*T[:3, 3].tolist(), *find_platform_angles(T[:3, :3]).tolist()], strict=True))
+        return dict(
+            zip(PLATFORM, [*T[:3, 3].tolist(), *find_platform_angles(T[:3, :3]).tolist()], strict=True)
+        )
 
     def assembly_modes(self, driven: Driven, *, starts: int = 200, rng: Seed = 0) -> AssemblyModes:
         """The configurations for a pose of the platform, or for lengths of the legs.
 
         driven: x, y, z, rx, ry, rz for inverse kinematics, which is one configuration, with legs of positive
-        lengths that are not turned around; or length_1 to length_6 for forward kinematics, of which there are up
-        to 40: those that are found from so many starts, never called complete. Returns AssemblyModes with q
-        (k, 24). Other sets of driven coordinates: as of Mechanism.assembly_modes.
+        lengths that are not turned around; or length_1 to length_6 for forward kinematics, of which there are
+        up to 40: those that are found from so many starts, never called complete. Returns AssemblyModes with
+        q (k, 24). Other sets of driven coordinates: as of Mechanism.assembly_modes.
         """
         if set(driven) == set(PLATFORM):
             q = self._complete(self.configuration(driven)[-6:])
@@ -124,7 +137,8 @@ class Stewart(Mechanism):
         return np.concatenate([legs, platform])
 
     def _find_platforms(self, driven: Driven, starts: int, rng: Seed) -> AssemblyModes:
-        """The configurations (k, 24) that are found for given lengths, with the platform alone on six rods."""
+        """The configurations (k, 24) that are found for given lengths, with the platform alone on six
+        rods."""
         n = len(self.joint_names)
         values = self.configuration(driven)[2 : 3 * LEGS : 3]
         lengths = check_lengths(dict(zip(LENGTHS, values.tolist(), strict=True)))

@@ -17,7 +17,15 @@ from cspace.tolerances import DRAWN_PLANE
 
 GROUND: Final = {"color": WALL, "linewidth": 1.5, "linestyle": (0, (4, 3)), "zorder": 1}
 RAIL: Final = {"color": WALL, "linewidth": 2.5, "zorder": 1}
-PIN: Final = {"marker": "o", "linestyle": "none", "mfc": "white", "mec": INK, "mew": 1.2, "ms": 5, "zorder": 5}
+PIN: Final = {
+    "marker": "o",
+    "linestyle": "none",
+    "mfc": "white",
+    "mec": INK,
+    "mew": 1.2,
+    "ms": 5,
+    "zorder": 5,
+}
 FADED: Final = 0.65
 """How much white the colours of further configurations have."""
 
@@ -92,7 +100,9 @@ def draw_parts(axes: Any, parts: Parts, columns: list[int], base: str, *, is_pal
 def find_parts(drawn: Mechanism, q: Array) -> Parts:
     """The parts of a mechanism at one configuration q (n,)."""
     robot = drawn.robot
-    frames = dict(zip(robot.frames, robot.fk_all(q, T_world_base=np.eye(4) if robot.floating else None), strict=True))
+    frames = dict(
+        zip(robot.frames, robot.fk_all(q, T_world_base=np.eye(4) if robot.floating else None), strict=True)
+    )
     description = robot.description
     solid = {link.name for link in description.links if link.inertial is not None} | {robot.base}
     ends: dict[str, list[Array]] = {name: [] for name in solid if name in frames}
@@ -118,11 +128,14 @@ def find_parts(drawn: Mechanism, q: Array) -> Parts:
         if loop.type == "distance":
             rods.append(np.array(tips))
     bars = {name: outline_bar(points) for name, points in ends.items() if len(points) > 1}
-    return Parts({name: bar for name, bar in bars.items() if len(bar) > 1}, rods, rails, np.array(pins).reshape(-1, 3))
+    return Parts(
+        {name: bar for name, bar in bars.items() if len(bar) > 1}, rods, rails, np.array(pins).reshape(-1, 3)
+    )
 
 
 def outline_bar(points: list[Array]) -> Array:
-    """A line (2, 3) through two points, or a closed polygon (m + 1, 3) through more, ordered around their middle."""
+    """A line (2, 3) through two points, or a closed polygon (m + 1, 3) through more, ordered around their
+    middle."""
     apart: list[Array] = []
     for point in points:
         if all(np.linalg.norm(point - other) > DRAWN_PLANE for other in apart):
