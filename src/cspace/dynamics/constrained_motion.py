@@ -11,13 +11,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.kinematics import LoopConstraints
+from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.loop_constraints import Placement
 from cspace.kinematics.loop_freedom import find_column_scale, find_rank_tolerance, find_scaled_jacobian
 from cspace.tolerances import MASSLESS_MOTION
+
+Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +35,7 @@ class AllowedMotions:
     U: Array
     s: Array
     V: Array
-    free: Array
+    free: Flags
     row_unit: Array
     unit: Array
 
@@ -61,7 +65,7 @@ class AllowedMotions:
 
 
 def find_allowed_motions(
-    constraints: LoopConstraints, at: Placement, rank: Array | None = None
+    constraints: LoopConstraints, at: Placement, rank: Numbers | None = None
 ) -> AllowedMotions:
     """The motions that closed loops allow at a placement. rank (...): no more rows are independent."""
     K = find_scaled_jacobian(constraints, at)

@@ -16,6 +16,7 @@ from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.rows import EARTH, Wrenches, dynamic_rows
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import LoopConstraints
+from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.batch import Batch, refuse_infinite
 from cspace.kinematics.loop_closure import number_coordinates
 from cspace.kinematics.loop_constraints import Placement
@@ -50,7 +51,7 @@ def constrained_forward_dynamics(
     InputError for a wrong shape or NaN, open loops, and where a motion that the loops allow moves no inertia;
     UnknownNameError for an unknown frame.
     """
-    acts = {"gravity": gravity, "wrenches": wrenches, "expressed_in": expressed_in, "friction": friction}
+    acts = pack_acts(gravity, wrenches, expressed_in, friction)
     batch = check_state(constraints, q, qd=qd, tau=tau, T_world_base=T_world_base, threads=threads)
     at = constraints.place(batch.q)
     allowed = find_allowed_motions(constraints, at)
@@ -108,7 +109,7 @@ def constrained_inverse_dynamics(
     UnknownNameError for an unknown joint or frame.
     """
     robot = constraints.robot
-    acts = {"gravity": gravity, "wrenches": wrenches, "expressed_in": expressed_in, "friction": friction}
+    acts = pack_acts(gravity, wrenches, expressed_in, friction)
     batch = check_state(constraints, q, qd=qd, qdd=qdd, T_world_base=T_world_base, threads=threads)
     assert batch.qd is not None
     assert batch.qdd is not None
@@ -154,7 +155,7 @@ def loop_wrenches(
     a wrong shape or NaN, and open loops.
     """
     robot = constraints.robot
-    acts = {"gravity": gravity, "wrenches": wrenches, "expressed_in": expressed_in, "friction": friction}
+    acts = pack_acts(gravity, wrenches, expressed_in, friction)
     batch = check_state(constraints, q, qd=qd, qdd=qdd, tau=tau, T_world_base=T_world_base, threads=threads)
     assert batch.qd is not None
     assert batch.qdd is not None
@@ -222,7 +223,8 @@ def find_rates(constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike | None,
             f"the loops of {robot.name} do not allow these rates of {join_words(list(driven))} together;"
             " drive as many joints as there are degrees of freedom"
         )
-    return x.reshape((*batch.shape, robot.dof))
+    result: Array = x.reshape((*batch.shape, robot.dof))
+    return result
 
 
 def project_state(
@@ -230,7 +232,7 @@ def project_state(
     q: Array,
     qd: Array,
     M: Array,
-    rank: Array | None = None,
+    rank: Numbers | None = None,
 ) -> tuple[Array, Array, Placement]:
     """The state nearest to one (rows, n), (rows, dof) whose loops are closed and stay closed, and its
     placement.
@@ -259,6 +261,13 @@ def project_state(
     allowed = find_allowed_motions(constraints, at, rank)
     speed = np.einsum("...ij,...j->...i", constraints.find_jacobian(at), qd)
     return q, qd + solve_least_energy(allowed, M, -speed, None, robot.name), at
+
+
+def pack_acts(
+    gravity: ArrayLike, wrenches: Wrenches | None, expressed_in: str, friction: bool
+) -> dict[str, Any]:
+    """What acts on a robot, as keywords of inverse_dynamics."""
+    return {"gravity": gravity, "wrenches": wrenches, "expressed_in": expressed_in, "friction": friction}
 
 
 def check_state(constraints: LoopConstraints, q: ArrayLike, **arguments: Any) -> Batch:
@@ -294,7 +303,7 @@ def check_motion(constraints: LoopConstraints, at: Placement, qd: Array, qdd: Ar
             )
 
 
-def number_driven(constraints: LoopConstraints, driven: Any) -> Array:
+def number_driven(constraints: LoopConstraints, driven: Any) -> Numbers:
     """The numbers of driven joints among the velocities. Raises InputError for none, InputTypeError for
     text."""
     if isinstance(driven, str) or not isinstance(driven, Sequence):
@@ -302,11 +311,16 @@ def number_driven(constraints: LoopConstraints, driven: Any) -> Array:
     if not driven:
         raise InputError(f"no driven joints; name some of {', '.join(constraints.robot.joint_names)}")
     robot = constraints.robot
-    return number_coordinates(constraints, list(driven)) + robot.dof - len(robot.joint_names)
+    numbers: Numbers = number_coordinates(constraints, list(driven)) + robot.dof - len(robot.joint_names)
+    return numbers
 
 
 def check_driving(
-    constraints: LoopConstraints, allowed: AllowedMotions, numbers: Array, driven: Sequence[str], batch: Batch
+    constraints: LoopConstraints,
+    allowed: AllowedMotions,
+    numbers: Numbers,
+    driven: Sequence[str],
+    batch: Batch,
 ) -> None:
     """Raise InputError where driven joints do not determine the motion."""
     G = allowed.V * allowed.free[..., None, :]

@@ -16,12 +16,13 @@ from cspace.dynamics.constrained_motion import find_allowed_motions
 from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.loop_dynamics import accelerate, check_state, project_state
 from cspace.dynamics.mass_matrix import mass_matrix
-from cspace.dynamics.mechanics import State, advance_state, find_resistances
+from cspace.dynamics.mechanics import Flags, State, advance_state, find_resistances
 from cspace.dynamics.momentum import kinetic_energy, potential_energy
 from cspace.dynamics.rows import EARTH, Wrenches, check_gravity
 from cspace.dynamics.simulation import Simulation
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import LoopConstraints
+from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.batch import check_choice
 from cspace.kinematics.loop_constraints import Placement
 from cspace.spatial import left_jacobian_inv_so3
@@ -54,7 +55,7 @@ class LoopTask:
     friction_speed: float
     threads: int | None
     lead: tuple[int, ...]
-    rank: Array
+    rank: Numbers
 
     def shape(self, rows: Array) -> Array:
         """Rows with the leading axes that the user gave."""
@@ -259,7 +260,7 @@ def settle_rows(task: LoopTask, before: State, after: State) -> State:
     return hide_rows(task.settle(after.with_rows(wild, before)), wild)
 
 
-def hide_rows(state: State, rows: Array) -> State:
+def hide_rows(state: State, rows: Flags) -> State:
     """The state with NaN in some rows."""
     if not rows.any():
         return state
@@ -282,7 +283,7 @@ def make_answer(
     states: list[State],
     torques: list[Array],
     stopped: Array,
-    ended: Array,
+    ended: Flags,
     reason: str,
 ) -> Simulation:
     """The answer of what was recorded."""
@@ -291,7 +292,7 @@ def make_answer(
     moves = [s.T_world_base for s in states if s.T_world_base is not None]
     T = np.stack(moves, axis=1) if robot.floating else None
     place = T if T is not None else (moves[0][:, None] if moves else None)
-    lost = ~np.isfinite(qd).all(axis=-1)[..., None]
+    lost = np.asarray(~np.isfinite(qd).all(axis=-1, keepdims=True))
     q_safe, qd_safe = (np.where(lost, 0.0, each) for each in (q, qd))
     energy = kinetic_energy(robot, q_safe, qd_safe, T_world_base=place, threads=task.threads)
     energy = energy + potential_energy(
@@ -300,7 +301,8 @@ def make_answer(
     energy = np.where(lost[..., 0], np.nan, energy)
     if T is not None:
         T = np.where(lost[..., None], np.nan, T)
-    q, qd, tau, energy, stopped, ended = (task.shape(each) for each in (q, qd, tau, energy, stopped, ended))
+    q, qd, tau, energy, stopped = (task.shape(each) for each in (q, qd, tau, energy, stopped))
+    ended = ended.reshape(task.lead)
     T = T if T is None else task.shape(T)
     truth, names = bool(ended.all()), tuple(robot.joint_names)
     return Simulation(robot.name, names, "rk4", times, q, qd, tau, energy, T, stopped, ended, reason, truth)

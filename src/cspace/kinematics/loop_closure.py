@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Array, as_floats, as_generator, leading_axes, whole_number
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.loop_constraints import LoopConstraints
 from cspace.kinematics.loop_freedom import find_column_scale, find_rank_tolerance, find_scaled_jacobian
 from cspace.kinematics.loop_newton import close_rows, polish_rows, select_columns, solve_least
@@ -20,7 +21,7 @@ from cspace.math.wrapping import wrap_near
 from cspace.tables import count_things, join_words, one_line, shown
 from cspace.tolerances import LOOP_CLOSED, LOOP_SINGULAR, SAME_MODE, SHORTEST_PART
 
-Numbers = NDArray[np.intp]
+Flags = NDArray[np.bool_]
 Driven = Mapping[str, ArrayLike]
 """Names of coordinates and their values."""
 
@@ -53,8 +54,8 @@ class LoopClosure:
     """
 
     q: Array
-    closed: NDArray[np.bool_]
-    singular: NDArray[np.bool_]
+    closed: Flags
+    singular: Flags
     gap: Array
     reason: str
 
@@ -404,7 +405,7 @@ def name_dead_point(constraints: LoopConstraints, q: Array, numbers: Numbers) ->
 
 
 def name_reason(
-    constraints: LoopConstraints, q: Array, closed: Array, singular: Array, gap: Array, lead: tuple[int, ...]
+    constraints: LoopConstraints, q: Array, closed: Flags, singular: Flags, gap: Array, lead: tuple[int, ...]
 ) -> str:
     """Why the first configuration is not closed, or that it is singular."""
     for rows in (np.flatnonzero(~closed), np.flatnonzero(singular)):

@@ -13,7 +13,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.batch import check_robot, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.kinematics.loop_rows import find_frames, make_rows
+from cspace.kinematics.loop_rows import Flags, find_frames, make_rows
 from cspace.model import Loop
 from cspace.spatial.poses import invert_pose
 from cspace.spatial.rotations import skew
@@ -235,10 +235,10 @@ class LoopConstraints:
             phi[..., rows.rods] = ((rods * rods).sum(axis=-1) - rows.lengths**2) / (2.0 * rows.lengths)
         return phi
 
-    def _find_turned_over(self, at: Placement) -> Array:
+    def _find_turned_over(self, at: Placement) -> Flags:
         """Which loops (..., loops) are nearer to a place upside down."""
         upright = np.einsum("lij,...lij->...l", self._layout.upright, at.D)
-        result: Array = self._layout.signed & (upright <= 0.0)
+        result: Flags = self._layout.signed & (upright <= 0.0)
         return result
 
     def find_miss(self, at: Placement) -> Array:

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.loop_constraints import LoopConstraints, Placement
 from cspace.kinematics.loop_freedom import find_column_scale, find_rank_tolerance, find_scaled_jacobian
 from cspace.tolerances import LOOP_CLOSED
@@ -28,7 +29,7 @@ MOST_DAMPING: Final = 1e12
 """Beyond it a step no longer changes a double."""
 
 
-def close_rows(constraints: LoopConstraints, q: Array, passive: Array) -> tuple[Array, Array]:
+def close_rows(constraints: LoopConstraints, q: Array, passive: Numbers) -> tuple[Array, Array]:
     """Configurations (m, n) near those given whose loops are closed, or nearly; the residuals (m,) [m].
 
     passive (k,): the numbers of the coordinates that may move. The residual is infinite where a loop is
@@ -39,7 +40,7 @@ def close_rows(constraints: LoopConstraints, q: Array, passive: Array) -> tuple[
     return q, constraints.find_miss(constraints.place(q))
 
 
-def reduce_residuals(constraints: LoopConstraints, q: Array, passive: Array) -> Array:
+def reduce_residuals(constraints: LoopConstraints, q: Array, passive: Numbers) -> Array:
     """The damped iteration of Levenberg and Marquardt on the rows (m, n) that are not yet closed."""
     if passive.size == 0:
         return q
@@ -71,7 +72,9 @@ def reduce_residuals(constraints: LoopConstraints, q: Array, passive: Array) -> 
     return q
 
 
-def polish_rows(constraints: LoopConstraints, q: Array, passive: Array, steps: int = MOST_POLISHES) -> Array:
+def polish_rows(
+    constraints: LoopConstraints, q: Array, passive: Numbers, steps: int = MOST_POLISHES
+) -> Array:
     """Undamped steps of least length, while they make the residual smaller."""
     if passive.size == 0 or len(q) == 0:
         return q
@@ -93,7 +96,7 @@ def polish_rows(constraints: LoopConstraints, q: Array, passive: Array, steps: i
     return q
 
 
-def select_columns(constraints: LoopConstraints, at: Placement, passive: Array) -> tuple[Array, Array]:
+def select_columns(constraints: LoopConstraints, at: Placement, passive: Numbers) -> tuple[Array, Array]:
     """The scaled columns of K (..., r, k) of coordinates, and their units (k,)."""
     columns = passive + constraints.robot.dof - len(constraints.robot.joint_names)
     return find_scaled_jacobian(constraints, at)[..., columns], find_column_scale(constraints)[columns]

@@ -12,12 +12,15 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Loop
 from cspace.spatial.vectors import frame_along
 
+Numbers = NDArray[np.intp]
+Flags = NDArray[np.bool_]
 Row = tuple[str, Array, Array]
 """The name of a row after that of its loop, P (3,) and C (3, 3)."""
 
@@ -81,14 +84,14 @@ class LoopRows:
     """
 
     names: tuple[str, ...]
-    loop: Array
+    loop: Numbers
     P: Array
     C: Array
-    rods: Array
+    rods: Numbers
     lengths: Array
-    angular: Array
+    angular: Flags
     upright: Array
-    signed: Array
+    signed: Flags
 
 
 def make_rows(loops: tuple[Loop, ...]) -> LoopRows:

@@ -74,7 +74,14 @@ class Delta(Mechanism):
         beam = make_rod(loads["arm_density"] * arm, arm)
         upper = Inertial(*lump_bodies([(beam, np.eye(4)), *((_point(half), end) for end in ends)]))
         arms = [
-            Joint(name, "continuous", "base", name, turn @ _place(sizes["base_radius"], 0.0), (0.0, 1.0, 0.0))
+            Joint(
+                name,
+                "continuous",
+                "base",
+                name,
+                turn @ _place(sizes["base_radius"], 0.0),
+                np.array([0.0, 1.0, 0.0]),
+            )
             for name, turn in zip(ARMS, turns, strict=True)
         ]
         loops = [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from cspace.arrays import Array
@@ -17,7 +19,7 @@ from cspace.robot import Robot
 from cspace.tables import shown
 from cspace.tolerances import LOOP_CLOSED
 
-OUT_OF_PLANE = (0.0, -1.0, 0.0)
+OUT_OF_PLANE: Final = np.array([0.0, -1.0, 0.0])
 """The axis about which angles are counterclockwise where x is to the right and z is up."""
 
 

@@ -42,7 +42,7 @@ class SliderCrank(Mechanism):
         joints = (
             Joint("crank", "continuous", "ground", "crank", axis=OUT_OF_PLANE),
             Joint("rod", "continuous", "crank", "rod", at_pin, OUT_OF_PLANE),
-            Joint("slider", "prismatic", "ground", "slider", line, (1.0, 0.0, 0.0)),
+            Joint("slider", "prismatic", "ground", "slider", line, np.array([1.0, 0.0, 0.0])),
         )
         end = translation_by(np.array([sizes["rod"], 0.0, 0.0]))
         pin = Loop("pin", "revolute", "rod", "slider", end, axis=OUT_OF_PLANE)

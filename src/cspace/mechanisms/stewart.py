@@ -150,7 +150,7 @@ class Stewart(Mechanism):
         kept: list[Array] = []
         poses: list[Array] = []
         for row in found.q:  # angles that mean the same pose are one
-            T = constraints.robot.fk(row, "platform")  # type: ignore[attr-defined]
+            T = constraints.robot.fk(row, "platform")
             if all(np.abs(T - other).max() > SAME_MODE * max(1.0, constraints.length) for other in poses):
                 poses.append(T)
                 angles = find_platform_angles(T[:3, :3])
