@@ -219,6 +219,29 @@ def test_a_stewart_platform_with_impossible_legs():
     np.testing.assert_allclose(home[1:18:3], 0, atol=1e-15)
 
 
+def test_a_continuum_is_not_called_complete():
+    """Links of equal lengths that fold onto each other leave a circle of configurations."""
+    rhombus = FourBar(1.0, 1.0, 0.5, 0.5)
+    folded = rhombus.assembly_modes({"crank": 0.0})
+    assert folded
+    assert not folded.complete
+    assert folded.reason.startswith("singular: infinitely many")
+    assert is_closed(rhombus, folded.q)
+    assert rhombus.assembly_modes({"crank": 0.1}).complete
+    engine = SliderCrank(0.5, 0.5)
+    assert not engine.assembly_modes({"slider": 0.0}).complete
+    assert not engine.assembly_modes({"rod": np.pi}).complete
+    assert engine.assembly_modes({"slider": 1.0}).complete  # a dead point is one configuration
+    delta = Delta(0.2, 0.2, 0.25, 0.6)
+    straight = delta.assembly_modes(dict.fromkeys(("arm_1", "arm_2", "arm_3"), np.pi / 2))
+    assert straight
+    assert not straight.complete
+    assert is_closed(delta, straight.q)
+    pair = delta.assembly_modes({"arm_1": np.pi / 2, "arm_2": np.pi / 2, "arm_3": 0.3})
+    assert not pair.complete
+    assert is_closed(delta, pair.q)
+
+
 def test_platform_angles():
     rng = np.random.default_rng(0)
     platform = Stewart.of_radii(0.5, 0.3, 0.6)

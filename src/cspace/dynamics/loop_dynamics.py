@@ -57,13 +57,13 @@ def constrained_forward_dynamics(
     allowed = find_allowed_motions(constraints, at)
     assert batch.qd is not None
     assert batch.tau is not None
-    qdd = accelerate(
+    qdd = solve_accelerations(
         constraints, at, allowed, batch.q, batch.qd, batch.tau, acts, batch.T_world_base, threads
     )
     return qdd.reshape((*batch.shape, constraints.robot.dof))
 
 
-def accelerate(
+def solve_accelerations(
     constraints: LoopConstraints,
     at: Placement,
     allowed: AllowedMotions,

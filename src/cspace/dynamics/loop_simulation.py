@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats, guard_memory, positive_number, whole_number
 from cspace.dynamics.constrained_motion import find_allowed_motions
 from cspace.dynamics.controllers import PD, ComputedTorque
-from cspace.dynamics.loop_dynamics import accelerate, check_state, project_state
+from cspace.dynamics.loop_dynamics import check_state, project_state, solve_accelerations
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.mechanics import Flags, State, advance_state, find_resistances
 from cspace.dynamics.momentum import kinetic_energy, potential_energy
@@ -106,7 +106,9 @@ class LoopTask:
         rubs = self.damping * state.qd + self.dry * np.tanh(state.qd / self.friction_speed)
         acts = {**self.acts, "wrenches": wrenches}
         pose = state.T_world_base
-        return accelerate(self.loops, at, allowed, state.q, state.qd, tau - rubs, acts, pose, self.threads)
+        return solve_accelerations(
+            self.loops, at, allowed, state.q, state.qd, tau - rubs, acts, pose, self.threads
+        )
 
     def settle(self, state: State) -> State:
         """The nearest state whose loops are closed and stay closed; NaN in rows that cannot be closed.

@@ -3,7 +3,7 @@ motion."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -283,6 +283,30 @@ def try_step(
         return None
     correction = np.abs((found - ahead) / unit).max()
     return found if correction <= MOST_CORRECTION * size + LOOP_CLOSED else None
+
+
+def list_modes(constraints: LoopConstraints, driven: Iterable[str], found: Array) -> AssemblyModes:
+    """All configurations (k, n) that a closed form gives, complete unless one is part of a continuum."""
+    numbers = number_coordinates(constraints, list(driven))
+    passive = np.setdiff1d(np.arange(found.shape[1]), numbers)
+    if any(is_in_continuum(constraints, q, passive) for q in found):
+        return AssemblyModes(
+            found, False, 0.0, "singular: infinitely many configurations, of which one is given"
+        )
+    return AssemblyModes(found, True, 0.0, "found")
+
+
+def is_in_continuum(constraints: LoopConstraints, q: Array, passive: Numbers) -> bool:
+    """Whether passive coordinates can leave a configuration (n,) while the others stand still."""
+    if count_left(constraints, q, passive) == 0:
+        return False
+    J, unit = select_columns(constraints, constraints.place(q[None]), passive)
+    along = np.linalg.svd(J[0])[2][-1] * unit
+    probes = np.repeat(q[None], 2, axis=0)
+    probes[:, passive] += PROBE * np.array([along, -along])
+    probes, gaps = close_rows(constraints, probes, passive)
+    away = np.abs((probes - q)[:, passive] / unit).max(axis=1)
+    return bool(((gaps <= LOOP_CLOSED * constraints.length) & (away > RETURNED * PROBE)).any())
 
 
 def check_driven(

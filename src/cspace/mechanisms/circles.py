@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.spatial.vectors import cross
+from cspace.spatial.vectors import cross, perpendicular
 from cspace.tolerances import LOOP_CLOSED
 
 
@@ -37,7 +37,7 @@ def intersect_spheres(centers: Array, r: float) -> tuple[Array, float]:
 
     Two points, the one against the normal of the centres' plane (by the right hand) first; one where the
     centres lie on a circle of this radius; or none, with the length [m] by which r is too small, infinite for
-    centres in line.
+    three centres in line. Where centres coincide, one of a continuum of points.
     """
     a, b, c = centers
     ab, ac = b - a, c - a
@@ -45,7 +45,7 @@ def intersect_spheres(centers: Array, r: float) -> tuple[Array, float]:
     area = float(normal @ normal)
     size = max(float(ab @ ab), float(ac @ ac), r * r)
     if area <= (LOOP_CLOSED * size) ** 2:
-        return np.empty((0, 3)), np.inf
+        return _intersect_in_line(centers, r)
     to_middle = (cross(normal, ab) * (ac @ ac) + cross(ac, normal) * (ab @ ab)) / (2.0 * area)
     radius = float(np.linalg.norm(to_middle))
     if radius - r > LOOP_CLOSED * np.sqrt(size):
@@ -55,3 +55,17 @@ def intersect_spheres(centers: Array, r: float) -> tuple[Array, float]:
     if radius - r >= -LOOP_CLOSED * np.sqrt(size):
         return middle[None], 0.0
     return np.array([middle - up, middle + up]), 0.0
+
+
+def _intersect_in_line(centers: Array, r: float) -> tuple[Array, float]:
+    """A point (1, 3) of spheres about centers (3, 3) in line, of which at least two must coincide."""
+    apart = np.linalg.norm(centers - np.roll(centers, -1, axis=0), axis=1)
+    if apart.min() > LOOP_CLOSED * max(r, float(apart.max())):
+        return np.empty((0, 3)), np.inf
+    first = int(apart.argmax())
+    half = 0.5 * (centers[(first + 1) % 3] - centers[first])
+    away = float(np.linalg.norm(half))
+    if away > r:
+        return np.empty((0, 3)), away - r
+    down = -perpendicular(half / away) if away > 0.0 else np.array([0.0, 0.0, -1.0])
+    return (centers[first] + half + np.sqrt((r - away) * (r + away)) * down)[None], 0.0

@@ -8,6 +8,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.kinematics import AssemblyModes
+from cspace.kinematics.loop_closure import list_modes
 from cspace.math.wrapping import wrap_angle
 from cspace.mechanisms.bodies import check_lengths, make_disc, make_rod
 from cspace.mechanisms.circles import intersect_spheres
@@ -129,7 +130,8 @@ class Delta(Mechanism):
                 reason = f"impossible: loop 'rod_{i + 1}a' stays open, {shown(gap)} m are missing"
                 return AssemblyModes(np.empty((0, q.size)), True, gap, reason)
             choices.append(angles)
-        return AssemblyModes(np.array([[*arms, *q[LEGS:]] for arms in product(*choices)]), True, 0.0, "found")
+        found = np.array([[*arms, *q[LEGS:]] for arms in product(*choices)])
+        return list_modes(self.constraints, PLATFORM, found)
 
     def _find_platforms(self, q: Array) -> AssemblyModes:
         """The configurations (k, 9) with the arms at their angles in q (9,)."""
@@ -142,7 +144,8 @@ class Delta(Mechanism):
             reason = f"impossible: the rods do not meet, {shown(gap)} m are missing"
             return AssemblyModes(np.empty((0, q.size)), True, gap, reason)
         points = points[np.argsort(points[:, 2], kind="stable")]
-        return AssemblyModes(np.array([[*q[:LEGS], *p, 0.0, 0.0, 0.0] for p in points]), True, 0.0, "found")
+        found = np.array([[*q[:LEGS], *p, 0.0, 0.0, 0.0] for p in points])
+        return list_modes(self.constraints, (*ARMS, *PLATFORM[LEGS:]), found)
 
 
 def find_arm_angles(v: Array, arm: float, rod: float) -> tuple[list[float], float]:

@@ -9,6 +9,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import suggest
 from cspace.kinematics import AssemblyModes
+from cspace.kinematics.loop_closure import list_modes
 from cspace.math.wrapping import wrap_angle
 from cspace.mechanisms.bodies import check_lengths, make_rod, rotate_vector
 from cspace.mechanisms.circles import intersect_circles
@@ -95,7 +96,7 @@ class FourBar(Mechanism):
             return AssemblyModes(np.empty((0, 3)), True, gap, reason)
         found = np.array([self._find_angles(a, b) for a, b in zip(A, B, strict=True)])
         found[:, self.joint_names.index(name)] = q[self.joint_names.index(name)]
-        return AssemblyModes(found, True, 0.0, "found")
+        return list_modes(self.constraints, driven, found)
 
     def _find_angles(self, A: Array, B: Array) -> Array:
         """The configuration (3,) with pins at A (2,) and B (2,)."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from cspace.arrays import Array, one_number
 from cspace.kinematics import AssemblyModes
+from cspace.kinematics.loop_closure import list_modes
 from cspace.math.wrapping import wrap_angle
 from cspace.mechanisms.bodies import check_lengths, make_rod, rotate_vector
 from cspace.mechanisms.circles import intersect_circles
@@ -82,7 +83,7 @@ class SliderCrank(Mechanism):
             slides = reach * np.cos(angles)
         found = np.array([self._complete(t, x) for t, x in zip(turns, slides, strict=True)])
         found[:, self.joint_names.index(name)] = q[self.joint_names.index(name)]
-        return AssemblyModes(found, True, 0.0, "found")
+        return list_modes(self.constraints, driven, found)
 
     def _complete(self, turn: float, slide: float) -> Array:
         """The configuration (3,) of a crank angle and a slider position that belong together."""
