@@ -1,5 +1,4 @@
-"""A four-bar over a full turn of its crank: both assembly modes, the dead points of the rocker, and the
-torque that it takes."""
+"""A four-bar over a full turn of its crank: assembly modes, dead points of its rocker, torques."""
 
 import sys
 from pathlib import Path

@@ -25,7 +25,8 @@ Flags = NDArray[np.bool_]
 Driven = Mapping[str, ArrayLike]
 """Names of coordinates and their values."""
 
-MOST_STARTS: Final = 1_000_000
+MOST_STARTS: Final = 100_000
+"""Of a search: more would take gigabytes at once."""
 
 PROBE: Final = 0.01
 """How far driven coordinates are moved [rad, sizes of the mechanism] to see whether others move with them."""
