@@ -14,6 +14,7 @@ if TYPE_CHECKING:
         ik,
         kinematics,
         maps,
+        mechanisms,
         model,
         navigation,
         planning,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
         subproblems,
     )
     from cspace.maps import OccupancyGrid, PolygonWorld
+    from cspace.mechanisms import Mechanism
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
     from cspace.plan_motion import plan, plan_many
@@ -57,6 +59,7 @@ logging.getLogger("cspace").addHandler(logging.NullHandler())
 __all__ = [
     "CspaceError",
     "Limits",
+    "Mechanism",
     "OccupancyGrid",
     "PolygonWorld",
     "Robot",
@@ -70,6 +73,7 @@ __all__ = [
     "kinematics",
     "load_robot",
     "maps",
+    "mechanisms",
     "model",
     "navigate",
     "navigation",
@@ -97,6 +101,7 @@ _LATER = {
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
     "Limits": "cspace.model",
+    "Mechanism": "cspace.mechanisms",
     "Mesh": "cspace.shapes",
     "OccupancyGrid": "cspace.maps",
     "PointCloud": "cspace.shapes",
@@ -116,6 +121,7 @@ _LATER = {
     "kinematics": "",
     "load_robot": "cspace.robots",
     "maps": "",
+    "mechanisms": "",
     "model": "",
     "navigate": "cspace.navigation",
     "navigation": "",

@@ -552,4 +552,42 @@ LOST_MOTION: Final = 1e-12
 """How much a unit wrench moves a frame, relative to that of the best one, that is nothing: rounding leaves
 1e-16, and of the root, as a singular value, 1e-6 is nearly singular."""
 
+LOOP_CLOSED: Final = 1e-12
+"""Size of the residual of closed loops, relative to the mechanism, up to which they are closed: a hundred
+products of poses leave 1e-14."""
+
+LOOP_PROJECTED: Final = 2e-14
+"""Size of this residual at which a projection ends: a few roundings of the poses."""
+
+LOOP_OPEN: Final = 1e-6
+"""Size of this residual above which forces are not computed: configurations typed with seven digits pass, and
+a pin that far off is an error."""
+
+LOOP_RANK: Final = 1e-9
+"""Singular value of the Jacobian of closed loops, relative to the largest, up to which a row follows from the
+others: closed loops leave 1e-12, and nearer to a singular configuration the forces are meaningless."""
+
+LOOP_RANK_SLACK: Final = 100.0
+"""How much the rows of open loops differ from dependent ones, relative to their residual."""
+
+LOOP_SINGULAR: Final = 1e-6
+"""Singular value of the columns that follow the driven ones, relative to the largest of the Jacobian, up to
+which they are stuck: at a dead point they are known to the square root of the rounding."""
+
+LOOP_MOTION: Final = 1e-6
+"""Share of a velocity or acceleration by which it may tear loops apart: those typed with seven digits
+pass."""
+
+ALIKE_ROWS: Final = 1e-6
+"""Relative difference of lengths below which the first of two rows is taken as independent: rounding does not
+choose the names of dependent rows."""
+
+SAME_MODE: Final = 1e-6
+"""Largest difference of joints [rad, or m relative to the mechanism] of two configurations that are one
+assembly mode: at a double one they are known to 1e-8."""
+
+SHORTEST_PART: Final = 1e-9
+"""Shortest part of a step along the motion of a mechanism: there joints move a million times as fast as the
+driven ones, which is the neighbourhood of a dead point."""
+
 __all__ = [name for name in globals() if name.isupper()]

@@ -17,6 +17,7 @@ ROOMS = {
     "robots": "robots",
     "kinematics": "kinematics",
     "dynamics": "dynamics",
+    "mechanisms": "closed-loops",
     "ik": "ik",
     "plot": "plot",
     "maps": "maps",

@@ -19,7 +19,7 @@ PYTHON_ALONE = {"ik/explain", "ik/goals", "model/mjcf", "planning/joint_space"}
 those of collision."""
 NO_ROOM = {"module", "bindings", "arrays", "numpy_api", "dispatch", "once"}
 """What all bindings or all kernels share."""
-PAGES = {"model": "robots", "plan_motion": "planning"}
+PAGES = {"model": "robots", "plan_motion": "planning", "mechanisms": "closed-loops"}
 """Pages that speak of two rooms."""
 NO_PAGE = {"math", "search"}
 """What the rooms above are made of."""

@@ -25,7 +25,7 @@ TIERS: list[set[str]] = [
     {"ik", "planning", "trajectory", "navigation", "localization"},
     {"export", "move"},
     {"robot"},
-    {"robots", "reach", "plan_motion"},
+    {"robots", "reach", "plan_motion", "mechanisms"},
     {"plot", "lab"},
     {"cli"},
     {"cspace", "__main__"},

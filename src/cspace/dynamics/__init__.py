@@ -10,6 +10,14 @@ from cspace.dynamics.identify import Identification, identify
 from cspace.dynamics.inertia_checks import InertiaFault
 from cspace.dynamics.inertia_report import InertiaReport, inertia_report
 from cspace.dynamics.inverse import gravity_torques, inverse_dynamics
+from cspace.dynamics.loop_dynamics import (
+    constrained_forward_dynamics,
+    constrained_inverse_dynamics,
+    loop_accelerations,
+    loop_velocities,
+    loop_wrenches,
+)
+from cspace.dynamics.loop_simulation import simulate_loops
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.momentum import (
     centroidal_momentum,
@@ -36,6 +44,8 @@ __all__ = [
     "base_parameters",
     "centroidal_momentum",
     "centroidal_momentum_matrix",
+    "constrained_forward_dynamics",
+    "constrained_inverse_dynamics",
     "coriolis_matrix",
     "exciting_trajectory",
     "forward_dynamics",
@@ -46,6 +56,9 @@ __all__ = [
     "inverse_dynamics",
     "inverse_dynamics_derivatives",
     "kinetic_energy",
+    "loop_accelerations",
+    "loop_velocities",
+    "loop_wrenches",
     "mass_matrix",
     "operational_space",
     "parameter_names",
@@ -53,5 +66,6 @@ __all__ = [
     "potential_energy",
     "regressor",
     "simulate",
+    "simulate_loops",
     "with_parameters",
 ]

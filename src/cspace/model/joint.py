@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, suggest
 from cspace.model.values import (
     IDENTITY,
@@ -33,9 +33,10 @@ FREEDOMS: Final[dict[str, int]] = {
     "cylindrical": 2,
     "planar": 3,
     "spherical": 3,
+    "distance": 5,
     "floating": 6,
 }
-"""How many independent motions each kind of joint allows."""
+"""How many independent motions each kind of joint allows; "distance" is a rod with a ball at each end."""
 
 JOINT_TYPES: Final = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 """The joint types of a tree; loops may be closed by any of FREEDOMS."""
@@ -151,7 +152,12 @@ class Loop:
     """A joint that closes a loop: it connects two links that the tree already contains.
 
     type: any key of FREEDOMS. origin (4, 4): joint frame in the parent link. child_origin (4, 4): joint frame
-    in the child link. axis (3,): unit direction in the joint frame. It counts in the mobility formula.
+    in the child link. axis (3,): unit direction in the joint frame. second_axis (3,): of a universal joint
+    the axis that is fixed to the child, in its joint frame; at right angles to the first one. length [m]: of
+    a rod (type "distance"), from the origin of one joint frame to that of the other.
+
+    Raises UnknownNameError for an unknown type; InputError for a zero axis, NaN, a rod without a positive
+    length, and for a length or a second axis of another type.
     """
 
     name: str
@@ -161,6 +167,8 @@ class Loop:
     origin: Array = field(default_factory=lambda: IDENTITY)
     child_origin: Array = field(default_factory=lambda: IDENTITY)
     axis: Array = field(default_factory=lambda: X_AXIS)
+    second_axis: Array | None = None
+    length: float | None = None
 
     def __post_init__(self) -> None:
         subject = f"loop {name_of(self.name, 'loop')!r}"
@@ -173,6 +181,20 @@ class Loop:
             self, "child_origin", check_placement(self.child_origin, f"child origin of {subject}")
         )
         object.__setattr__(self, "axis", unit_axis(self.axis, f"axis of {subject}"))
+        if self.second_axis is not None:
+            self._refuse_other("second_axis", "universal", subject)
+            second = unit_axis(self.second_axis, f"second axis of {subject}")
+            object.__setattr__(self, "second_axis", second)
+        if self.length is not None:
+            self._refuse_other("length", "distance", subject)
+            length = positive_number(self.length, f"length of {subject}", "it must be above zero [m]")
+            object.__setattr__(self, "length", length)
+        elif self.type == "distance":
+            raise InputError(f"{subject} is a rod without a length; give length= [m]")
+
+    def _refuse_other(self, name: str, kind: str, subject: str) -> None:
+        if self.type != kind:
+            raise InputError(f"{subject} is {self.type}; {name}= is for loops of type {kind!r}")
 
 
 @dataclass(frozen=True, eq=False)

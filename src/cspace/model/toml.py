@@ -202,9 +202,11 @@ class _Reader:
         return self.at(table, lambda: Mimic(entry.text("joint"), factor, shift))
 
     def loop(self, table: Table) -> Loop:
-        table.known((*ENDS, *PLACE, "child_origin", "axis"))
+        table.known((*ENDS, *PLACE, "child_origin", "axis", "second_axis", "length"))
         ends, far = self.ends(table), self.origin(table, "child_origin")
-        return self.at(table, lambda: Loop(**ends, child_origin=far))
+        second = table.numbers("second_axis", (3,)) if "second_axis" in table else None
+        length = table.number("length") if "length" in table else None
+        return self.at(table, lambda: Loop(**ends, child_origin=far, second_axis=second, length=length))
 
     def screws(self, top: Table, name: str) -> Description:
         table = top.table("screws")

@@ -11,6 +11,7 @@ from cspace.plot.configuration_space import configuration_space
 from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
+from cspace.plot.mechanisms import mechanism
 from cspace.plot.planar import manipulability, workspace
 from cspace.plot.plans import plan
 from cspace.plot.scenes import collision, scene
@@ -23,6 +24,7 @@ __all__ = [
     "animation",
     "frames",
     "manipulability",
+    "mechanism",
     "robot",
     "route",
     "routes",
