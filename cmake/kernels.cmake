@@ -64,6 +64,7 @@ include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" has_wide_moves)
 if(has_wide_moves)
   set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/kinematics.cpp ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/dynamics.cpp
+                      ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/dynamics_simulation.cpp
                APPEND PROPERTY COMPILE_OPTIONS -mmove-max=256 -mstore-max=256)
 endif()
 

@@ -16,6 +16,7 @@
 #include "cspace/dynamics/forward_dynamics.hpp"
 #include "cspace/dynamics/make_links.hpp"
 #include "cspace/dynamics/momentum.hpp"
+#include "cspace/dynamics/roll_out.hpp"
 #include "cspace/ik/numeric/resolved_rate.hpp"
 #include "cspace/ik/numeric/search.hpp"
 #include "cspace/ik/numeric/tasks.hpp"
