@@ -23,7 +23,7 @@ class Simulator {
   public:
     Simulator(nb::object robot, const std::string& method, const ConstDoubles& gravity, const In& damping,
               const In& dry, double friction_speed, const std::pair<double, double>& times,
-              const std::pair<long long, long long>& steps, double tolerance, const In& lower,
+              const std::pair<long long, long long>& steps, bool is_held, double tolerance, const In& lower,
               const In& upper, int threads)
         : robot_(std::move(robot)), threads_(threads) {
         KinematicsObject& object = robot_from(robot_);
@@ -45,6 +45,7 @@ class Simulator {
         task_.dt = times.second;
         task_.steps = steps.first;
         task_.every = steps.second;
+        task_.is_held = is_held;
         task_.tolerance = tolerance;
         task_.lower = keep(lower, n_);
         task_.upper = keep(upper, n_);
@@ -137,7 +138,7 @@ class Simulator {
             throw nb::value_error("the motion is not known at these steps");
         const auto deadline = deadline_in(seconds);
         const nb::gil_scoped_release release;
-        if (task_.method == Method::adaptive && k < task_.steps)
+        if (task_.method == Method::adaptive)
             dynamics::roll_out_adaptively(task_, std::size_t(rows_), k, k_end, threads_, deadline, pieces_);
         else
             dynamics::roll_out(task_, std::size_t(rows_), k, k_end, threads_, deadline);
@@ -210,10 +211,10 @@ class Simulator {
 void bind_dynamics_simulation(nb::module_& m) {
     nb::class_<Simulator>(m, "Simulator", "The compiled half of cspace.dynamics.simulate.")
         .def(nb::init<nb::object, const std::string&, const ConstDoubles&, const In&, const In&, double,
-                      const std::pair<double, double>&, const std::pair<long long, long long>&, double,
+                      const std::pair<double, double>&, const std::pair<long long, long long>&, bool, double,
                       const In&, const In&, int>(),
              "robot"_a, "method"_a, "gravity"_a, "damping"_a.none(), "dry"_a.none(), "friction_speed"_a,
-             "times"_a, "steps"_a, "tolerance"_a, "lower"_a.none(), "upper"_a.none(), "threads"_a,
+             "times"_a, "steps"_a, "is_held"_a, "tolerance"_a, "lower"_a.none(), "upper"_a.none(), "threads"_a,
              "times: duration and dt; steps: how many, and of how many one state is recorded.")
         .def("hold_state", &Simulator::hold_state, "q"_a, "qd"_a, "T_world_base"_a, "tau"_a, "status"_a,
              "joint"_a, "stopped"_a, "The arrays of the states of all rows, which are written to.")

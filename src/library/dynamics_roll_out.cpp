@@ -63,12 +63,12 @@ void roll_part(const RollOut& task, std::size_t begin, std::size_t end, long lon
     }
 }
 
-// The rows of one part, by the adaptive method.
-void roll_part_adaptively(const RollOut& task, std::size_t begin, std::size_t end, long long k,
-                          long long k_end, Deadline deadline, void* scratch,
-                          std::vector<std::vector<double>>& kept) {
+// The rows of one part, by the adaptive method over steps between which what acts is smooth. values: room
+// for the steps of one call.
+void roll_smooth_part(const RollOut& task, std::size_t begin, std::size_t end, long long k, long long k_end,
+                      Deadline deadline, void* scratch, std::vector<double>& values,
+                      std::vector<std::vector<double>>& kept) {
     const std::size_t width = std::size_t(task.piece_width());
-    std::vector<double> values(part_rows * std::size_t(adaptive_steps) * width);
     bool is_fresh = true, is_done = false;
     while (!is_done && is_any_running(task, begin, end)) {
         int count[part_rows] = {};
@@ -82,6 +82,17 @@ void roll_part_adaptively(const RollOut& task, std::size_t begin, std::size_t en
         poll_interrupts();
         if (end_late_rows(task, begin, end, deadline, [&](std::size_t i) { return task.time[i]; })) return;
     }
+}
+
+void roll_part_adaptively(const RollOut& task, std::size_t begin, std::size_t end, long long k,
+                          long long k_end, Deadline deadline, void* scratch,
+                          std::vector<std::vector<double>>& kept) {
+    const long long last = std::min(k_end, task.steps), stride = task.is_held ? 1 : std::max(1LL, last - k);
+    std::vector<double> values(part_rows * std::size_t(adaptive_steps) * std::size_t(task.piece_width()));
+    for (; k < last && is_any_running(task, begin, end); k += stride)
+        roll_smooth_part(task, begin, end, k, k + stride, deadline, scratch, values, kept);
+    if (k_end > task.steps && is_any_running(task, begin, end))
+        kernels::roll_out_fixed(task, begin, end, task.steps, k_end, scratch);
 }
 
 // f(begin, end, scratch) for the parts of all rows. steps: of each row.

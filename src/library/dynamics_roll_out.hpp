@@ -16,8 +16,7 @@ using Deadline = std::chrono::steady_clock::time_point;
 void roll_out(const RollOut& task, std::size_t rows, long long k, long long k_end, int threads,
               Deadline deadline);
 
-// The same by the adaptive method over steps between which what acts is smooth; the steps of each row that it
-// took are added to `pieces` (rows,).
+// The same by the adaptive method; the steps of each row that it took are added to `pieces` (rows,).
 void roll_out_adaptively(const RollOut& task, std::size_t rows, long long k, long long k_end, int threads,
                          Deadline deadline, std::vector<std::vector<double>>& pieces);
 

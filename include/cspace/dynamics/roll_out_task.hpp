@@ -77,6 +77,7 @@ struct RollOut {
     Method method;
     double duration, dt, tolerance;
     long long steps, every;        // of dt, the last up to the duration; every so many states are recorded
+    bool is_held;                  // what acts is held over each step, so that no adaptive one is longer
     const double *lower, *upper;   // where a motion ends (n,), or null
     double *q, *qd, *T;            // the state of each row
     std::size_t T_stride;          // 0: one pose for all rows, of a base that does not float
