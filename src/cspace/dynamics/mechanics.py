@@ -42,7 +42,7 @@ class Mechanics:
     damping: Array
     dry: Array
     friction_speed: float
-    threads: int | None
+    threads: int
 
 
 def find_resistances(robot: KinematicModel) -> tuple[Array, Array]:

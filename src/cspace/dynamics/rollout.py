@@ -102,11 +102,12 @@ class Record:
         self.status, self.joint = np.zeros((2, rows), dtype=np.int32)
         self.stopped = np.zeros(rows)
         self.pieces: DenseSteps | None = None
-        count = len(self.times)
-        self.states = {name: np.empty((rows, count, m)) for name, m in (("q", n), ("qd", dof), ("tau", dof))}
-        self.states["energy"] = np.empty((rows, count))
+        sizes = {"energy": (), "q": (n,), "qd": (dof,), "tau": (dof,)}
+        self.states: dict[str, Array] = {
+            name: np.empty((rows, len(self.times), *size)) for name, size in sizes.items()
+        }
         if task.mechanics.robot.floating:
-            self.states["T_world_base"] = np.empty((rows, count, 16))
+            self.states["T_world_base"] = np.empty((rows, len(self.times), 16))
 
     def finish(self) -> None:
         """Make NaN of what lies after the end of each row, and cut off what lies after all ends."""
@@ -133,8 +134,8 @@ class Record:
         if not len(rows):
             return
         mechanics = self.task.mechanics
-        q, qd, T = self.q[rows], self.qd[rows], self.T_world_base
-        T = (T if len(T) == 1 else T[rows]).reshape(-1, 4, 4)
+        q, qd, poses = self.q[rows], self.qd[rows], self.T_world_base
+        T = (poses if len(poses) == 1 else poses[rows]).reshape(-1, 4, 4)
         energy = kinetic_energy(mechanics.robot, q, qd, T_world_base=T)
         energy = energy + potential_energy(mechanics.robot, q, gravity=mechanics.gravity, T_world_base=T)
         ends = {"q": q, "qd": qd, "tau": self.tau[rows], "energy": energy, "T_world_base": T.reshape(-1, 16)}
@@ -153,7 +154,8 @@ def run_steps(task: Task) -> Record:
     else:
         simulator.run(0, task.steps + 1, task.seconds_left)
     if task.method == "adaptive":
-        record.pieces = DenseSteps(*simulator.take_pieces(), task.start.q.shape[-1], record.stopped)
+        values, first = simulator.take_pieces()
+        record.pieces = DenseSteps(values, first, task.start.q.shape[-1], record.stopped)
     record.finish()
     return record
 
@@ -198,12 +200,13 @@ def set_control(task: Task, simulator: _core.Simulator) -> None:
         simulator.set_torques(share_rows(control, task.shape))
     elif type(control) is PD:
         goal = control.find_goal(robot)
-        gains = [share_rows(each, task.shape, "of the control") for each in control.find_gains(robot)]
-        simulator.set_pd(*gains, share_rows(goal, task.shape, "q_goal"), control.gravity_compensation)
+        kp, kd = (share_rows(each, task.shape, "a gain") for each in control.find_gains(robot))
+        simulator.set_pd(kp, kd, share_rows(goal, task.shape, "q_goal"), control.gravity_compensation)
     elif type(control) is ComputedTorque:
         control.refuse_floating(robot)
-        gains = [share_rows(each, task.shape, "of the control") for each in control.find_gains(robot)]
-        simulator.set_computed_torque(*gains, *find_resistances(robot))
+        kp, kd = (share_rows(each, task.shape, "a gain") for each in control.find_gains(robot))
+        damping, dry = find_resistances(robot)
+        simulator.set_computed_torque(kp, kd, damping, dry)
 
 
 def share_rows(values: Array, shape: tuple[int, ...], subject: str = "") -> Array:
@@ -258,8 +261,8 @@ def find_torques(task: Task, record: Record, k: int) -> Array:
     if isinstance(control, PD | ComputedTorque):
         floating = task.mechanics.robot.floating
         T = record.T_world_base.reshape(*shape, 4, 4).copy() if floating else task.start.T_world_base
-        more = {"gravity": task.mechanics.gravity, "T_world_base": T}
-        tau: Any = control(task.mechanics.robot, t, q, qd, **more)
+        gravity = task.mechanics.gravity
+        tau: Any = control(task.mechanics.robot, t, q, qd, gravity=gravity, T_world_base=T)
     else:
         tau = control(t, q, qd)
     return check_torques(tau, qd.shape, f"the torque of control at step {k} (t = {t:g} s)")

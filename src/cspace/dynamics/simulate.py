@@ -126,7 +126,7 @@ def _make_mechanics(
         damping,
         dry,
         positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]"),
-        thread_count(threads, ()) if threads is not None else 0,
+        0 if threads is None else thread_count(threads, ()),
     )
 
 
