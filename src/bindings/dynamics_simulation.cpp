@@ -37,7 +37,8 @@ class Simulator {
         dof_ = mechanics.dof();
         mechanics.damping = keep(damping, dof_);
         mechanics.dry = keep(dry, dof_);
-        if (!mechanics.damping != !mechanics.dry) throw nb::value_error("damping and dry friction go together");
+        if (!mechanics.damping != !mechanics.dry)
+            throw nb::value_error("damping and dry friction go together");
         task_.method = method == "rk4"           ? Method::runge_kutta
                        : method == "variational" ? Method::variational
                                                  : Method::adaptive;
@@ -76,9 +77,12 @@ class Simulator {
     void hold_records(const Doubles& q, const Doubles& qd, const Doubles& tau, const Doubles& energy,
                       const Out& T) {
         const npy_intp count = rows_ > 0 ? energy.size / rows_ : 0;
-        task_.records = {keep(q, rows_ * count * n_), keep(qd, rows_ * count * dof_),
-                         keep(tau, rows_ * count * dof_), keep(energy, rows_ * count),
-                         T ? keep(*T, rows_ * count * 16) : nullptr, std::size_t(count)};
+        task_.records = {keep(q, rows_ * count * n_),
+                         keep(qd, rows_ * count * dof_),
+                         keep(tau, rows_ * count * dof_),
+                         keep(energy, rows_ * count),
+                         T ? keep(*T, rows_ * count * 16) : nullptr,
+                         std::size_t(count)};
         const long long needed = (task_.steps + task_.every - 1) / task_.every + 1;
         if (rows_ > 0 && count < needed) throw nb::value_error("the records are too short");
         if (task_.mechanics.floating != bool(T)) throw nb::value_error("a floating base has poses to record");
@@ -89,7 +93,8 @@ class Simulator {
         torques_ = tau;
         task_.control.torques = rows_of(torques_, dof_);
     }
-    void set_pd(const ConstDoubles& kp, const ConstDoubles& kd, const ConstDoubles& goal, bool carries_weight) {
+    void set_pd(const ConstDoubles& kp, const ConstDoubles& kd, const ConstDoubles& goal,
+                bool carries_weight) {
         task_.control = {};
         task_.control.law = ControlLaw::pd;
         task_.control.kp = keep_rows(kp, n_);
@@ -134,7 +139,8 @@ class Simulator {
         if (k < 0 || k_end > task_.steps + 1) throw nb::value_error("there are no such steps");
         if (!task_.q || !task_.records.q) throw nb::value_error("arrays are missing");
         if (task_.control.law == ControlLaw::computed_torque &&
-            (k < task_.control.begin || std::min(k_end, task_.steps + 1) > task_.control.begin + motion_steps_))
+            (k < task_.control.begin ||
+             std::min(k_end, task_.steps + 1) > task_.control.begin + motion_steps_))
             throw nb::value_error("the motion is not known at these steps");
         const auto deadline = deadline_in(seconds);
         const nb::gil_scoped_release release;
@@ -188,8 +194,8 @@ class Simulator {
     static dynamics::Deadline deadline_in(double seconds) {
         constexpr double forever = 1e9;
         if (!(seconds < forever)) return dynamics::Deadline::max();
-        return std::chrono::steady_clock::now() +
-               std::chrono::duration_cast<dynamics::Deadline::duration>(std::chrono::duration<double>(seconds));
+        return std::chrono::steady_clock::now() + std::chrono::duration_cast<dynamics::Deadline::duration>(
+                                                      std::chrono::duration<double>(seconds));
     }
 
     nb::object robot_;
@@ -214,8 +220,8 @@ void bind_dynamics_simulation(nb::module_& m) {
                       const std::pair<double, double>&, const std::pair<long long, long long>&, bool, double,
                       const In&, const In&, int>(),
              "robot"_a, "method"_a, "gravity"_a, "damping"_a.none(), "dry"_a.none(), "friction_speed"_a,
-             "times"_a, "steps"_a, "is_held"_a, "tolerance"_a, "lower"_a.none(), "upper"_a.none(), "threads"_a,
-             "times: duration and dt; steps: how many, and of how many one state is recorded.")
+             "times"_a, "steps"_a, "is_held"_a, "tolerance"_a, "lower"_a.none(), "upper"_a.none(),
+             "threads"_a, "times: duration and dt; steps: how many, and of how many one state is recorded.")
         .def("hold_state", &Simulator::hold_state, "q"_a, "qd"_a, "T_world_base"_a, "tau"_a, "status"_a,
              "joint"_a, "stopped"_a, "The arrays of the states of all rows, which are written to.")
         .def("hold_records", &Simulator::hold_records, "q"_a, "qd"_a, "tau"_a, "energy"_a,

@@ -171,9 +171,7 @@ def test_a_compiled_pd_controller_is_the_same_as_a_function(method, weight, rng)
     control = PD(goal, rng.uniform(1, 5, n), 0.5, gravity_compensation=weight)
     given = {"duration": 0.05, "dt": 0.005, "method": method, "gravity": gravity, "T_world_base": T}
     compiled = robot.simulate(q, qd, control=control, **given)
-    called = robot.simulate(
-        q, qd, control=call_of(control, robot, gravity=gravity, T_world_base=T), **given
-    )
+    called = robot.simulate(q, qd, control=call_of(control, robot, gravity=gravity, T_world_base=T), **given)
     assert differ(compiled, called) < 1e-11
 
 

@@ -15,7 +15,7 @@ struct Tableau {
     double before[n][n], end[n];
 };
 inline constexpr Tableau<4> classical = {{{}, {1.0 / 2}, {0, 1.0 / 2}, {0, 0, 1}},
-                                           {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
+                                         {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
 
 // Dormand and Prince 1980, RK5(4)7M.
 inline constexpr Tableau<7> dormand_prince = {
@@ -28,8 +28,8 @@ inline constexpr Tableau<7> dormand_prince = {
      {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}},
     {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84, 0}};
 // The weights of the fifth order less those of the fourth.
-inline constexpr double dormand_prince_error[7] = {
-    -71.0 / 57600, 0, 71.0 / 16695, -71.0 / 1920, 17253.0 / 339200, -22.0 / 525, 1.0 / 40};
+inline constexpr double dormand_prince_error[7] = {-71.0 / 57600,    0,           71.0 / 16695, -71.0 / 1920,
+                                                   17253.0 / 339200, -22.0 / 525, 1.0 / 40};
 // The weights of θ, θ², θ³ and θ⁴ between the ends of a step (Shampine 1986).
 inline constexpr double dormand_prince_dense[4][7] = {
     {1, 0, 0, 0, 0, 0, 0},

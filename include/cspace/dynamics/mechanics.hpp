@@ -76,10 +76,12 @@ CSPACE_INLINE mask_of<V> advance_state(const Mechanics& mechanics, const State<V
 }
 // The rate of the displacement dx that led to a state: its velocities, of a rotation u' = J⁻¹(u) ω.
 template <class V>
-CSPACE_INLINE void displacement_rate(const Mechanics& mechanics, const State<V>& state, const V* dx, V* rate) {
+CSPACE_INLINE void displacement_rate(const Mechanics& mechanics, const State<V>& state, const V* dx,
+                                     V* rate) {
     for (int j = 0; j < mechanics.dof(); ++j) rate[j] = state.qd[j];
     if (mechanics.floating)
-        put_vector(rate + 3, spatial::left_jacobian_inverse_times(vector_from(dx + 3), vector_from(rate + 3)));
+        put_vector(rate + 3,
+                   spatial::left_jacobian_inverse_times(vector_from(dx + 3), vector_from(rate + 3)));
 }
 
 // Adds the forces (dof,) of the wrenches of the world, Σ Jᵀ w.
@@ -90,8 +92,8 @@ void add_wrenches(const Mechanics& mechanics, const State<V>& state, Workspace<V
         V* const sines = static_cast<V*>(work.links);
         V* const cosines = sines + chain.n + 4;
         auto* const axes = reinterpret_cast<kinematics::Axis<V>*>(cosines + chain.n + 4);
-        const Pose<V> tip = kinematics::place_axes(chain, fill_pose<V>(chain.T_base_first), state.q, sines,
-                                                   cosines, axes);
+        const Pose<V> tip =
+            kinematics::place_axes(chain, fill_pose<V>(chain.T_base_first), state.q, sines, cosines, axes);
         Vec3<V> f = vector_from(work.wrenches + 6 * k), n = vector_from(work.wrenches + 6 * k + 3);
         f = mechanics.in_tip ? tip.R * f : transpose_times(state.T.R, f);
         n = mechanics.in_tip ? tip.R * n : transpose_times(state.T.R, n);
@@ -148,10 +150,9 @@ mask_of<V> solve_accelerations(const Mechanics& mechanics, const State<V>& state
                                Workspace<V>& work, V* qdd) {
     const int first = mechanics.first(), dof = mechanics.dof();
     const mask_of<V> regular = factor_mass_matrix(mechanics, state, work);
-    const Wrench<V> on_base =
-        inverse_dynamics(mechanics.bodies, resting_base(mechanics, state), state.q, state.qd + first,
-                         static_cast<const V*>(nullptr), false, static_cast<LinkMotion<V>*>(work.links),
-                         qdd + first);
+    const Wrench<V> on_base = inverse_dynamics(mechanics.bodies, resting_base(mechanics, state), state.q,
+                                               state.qd + first, static_cast<const V*>(nullptr), false,
+                                               static_cast<LinkMotion<V>*>(work.links), qdd + first);
     if (first) {
         put_vector(qdd, state.T.R * on_base.f);
         put_vector(qdd + 3, state.T.R * on_base.n);
@@ -193,8 +194,8 @@ mask_of<V> accelerations(const Mechanics& mechanics, const State<V>& state, cons
     auto* const links = static_cast<LinkResponse<V>*>(work.links);
     Motion<V> base = resting_base(mechanics, state);
     mask_of<V> regular;
-    const Articulated<V> felt = articulate(mechanics.bodies, base.w, state.q, state.qd + first, force + first,
-                                           false, links, regular);
+    const Articulated<V> felt =
+        articulate(mechanics.bodies, base.w, state.q, state.qd + first, force + first, false, links, regular);
     if (first) {
         const Mat3<V>& R = state.T.R;
         regular = accelerate_base(felt, transpose_times(R, vector_from(force)),
@@ -209,8 +210,8 @@ mask_of<V> accelerations(const Mechanics& mechanics, const State<V>& state, cons
 
 // qdd (dof,) under the torques of a control (dof,), wrenches, friction and gravity; NaN where M is singular.
 template <class V>
-void driven_accelerations(const Mechanics& mechanics, const State<V>& state, const V* tau,
-                          Workspace<V>& work, V* qdd) {
+void driven_accelerations(const Mechanics& mechanics, const State<V>& state, const V* tau, Workspace<V>& work,
+                          V* qdd) {
     const int dof = mechanics.dof();
     for (int j = 0; j < dof; ++j) work.force[j] = tau[j];
     subtract_friction(mechanics, state.qd, work.force);

@@ -99,9 +99,9 @@ V find_energy(const RollOut& task, const State<V>& state, RollOutMemory<V>& memo
     if (first)
         base = {transpose_times(R, vector_from(state.qd)), transpose_times(R, vector_from(state.qd + 3))};
     V* const momentum = memory.work.force;
-    const WholeMomentum<V> whole = lagrangian_rates(
-        mechanics.bodies, base, transpose_times(R, gravity), state.q, state.qd + first,
-        static_cast<LinkMomentum<V>*>(memory.work.links), momentum, memory.work.other);
+    const WholeMomentum<V> whole =
+        lagrangian_rates(mechanics.bodies, base, transpose_times(R, gravity), state.q, state.qd + first,
+                         static_cast<LinkMomentum<V>*>(memory.work.links), momentum, memory.work.other);
     V twice = dot(base.v, whole.momentum.f) + dot(base.w, whole.momentum.n);
     for (int j = 0; j < mechanics.bodies.n_coordinates; ++j)
         twice = twice + state.qd[first + j] * momentum[j];
@@ -157,8 +157,8 @@ template <class V>
 void end_at_limits(const RollOut& task, RollOutPack<V>& pack, const State<V>& state, mask_of<V> moved,
                    V time) {
     for (int j = 0; j < task.mechanics.bodies.n_coordinates; ++j) {
-        const mask_of<V> beyond = pack.runs && moved &&
-                                  (state.q[j] < task.lower[j] || state.q[j] > task.upper[j]);
+        const mask_of<V> beyond =
+            pack.runs && moved && (state.q[j] < task.lower[j] || state.q[j] > task.upper[j]);
         if (!any(beyond)) continue;
         for (int l = 0; l < pack.count; ++l)
             if (lane(beyond, l)) task.joint[pack.i + std::size_t(l)] = j;
@@ -207,11 +207,11 @@ void roll_fixed_steps(const RollOut& task, std::size_t i, int count, long long k
         }
         const double later = task.find_time(k + 1);
         const V h = fill<V>(later - task.find_time(k));
-        const mask_of<V> solved =
-            is_variational ? step_variational(task.mechanics, memory.state, memory.tau, h, memory.work,
-                                              memory.variational, memory.after)
-                           : step_runge_kutta(task.mechanics, memory.state, memory.tau, h, memory.work,
-                                              memory.stages, memory.after);
+        const mask_of<V> solved = is_variational
+                                      ? step_variational(task.mechanics, memory.state, memory.tau, h,
+                                                         memory.work, memory.variational, memory.after)
+                                      : step_runge_kutta(task.mechanics, memory.state, memory.tau, h,
+                                                         memory.work, memory.stages, memory.after);
         take_step(task, pack, always, solved, time, fill<V>(later), memory);
     }
     store_state(task, pack, memory);
@@ -252,9 +252,10 @@ V step_factors(V error) {
         const double e = lane(error, l);
         if (e == 0.0) continue;
         const double wanted = step_safety * std::pow(e, -1.0 / error_order);
-        set_lane(factor, l, wanted < slowest_change   ? slowest_change
-                            : wanted < fastest_change ? wanted
-                                                      : fastest_change);
+        set_lane(factor, l,
+                 wanted < slowest_change   ? slowest_change
+                 : wanted < fastest_change ? wanted
+                                           : fastest_change);
     }
     return factor;
 }
@@ -380,8 +381,8 @@ bool roll_adaptive_steps(const RollOut& task, std::size_t begin, std::size_t i, 
         const V h = select(is_inside, length, until - time);
         const V time_after = select(is_inside, time + length, until);
         find_stages(dormand_prince, task.mechanics, memory.state, memory.tau, h, memory.work, memory.stages);
-        const mask_of<V> near = advance_state(task.mechanics, memory.state, memory.stages.dx,
-                                              memory.stages.dv, memory.after);
+        const mask_of<V> near =
+            advance_state(task.mechanics, memory.state, memory.stages.dx, memory.stages.dv, memory.after);
         V error = relative_error(task, h, memory);
         error = select(near, error, fill<V>(std::numeric_limits<double>::infinity()));
         const V next = h * step_factors(error);

@@ -41,11 +41,11 @@ enum class ControlLaw { given, pd, computed_torque };
 
 struct Control {
     ControlLaw law;
-    RowValues torques;        // given (dof,); null for zero
-    RowValues kp, kd;         // (n,)
-    RowValues goal;           // of pd (n,)
-    bool carries_weight;      // of pd: gravity is compensated
-    RowValues motion;         // of computed torque (steps, 3, n): q, q̇ and q̈ at the steps from `begin` on
+    RowValues torques;    // given (dof,); null for zero
+    RowValues kp, kd;     // (n,)
+    RowValues goal;       // of pd (n,)
+    bool carries_weight;  // of pd: gravity is compensated
+    RowValues motion;     // of computed torque (steps, 3, n): q, q̇ and q̈ at the steps from `begin` on
     long long begin;
     const double *damping, *dry;  // of the joints (n,), cancelled by computed torque
 };
@@ -76,16 +76,16 @@ struct RollOut {
     Control control;
     Method method;
     double duration, dt, tolerance;
-    long long steps, every;        // of dt, the last up to the duration; every so many states are recorded
-    bool is_held;                  // what acts is held over each step, so that no adaptive one is longer
-    const double *lower, *upper;   // where a motion ends (n,), or null
-    double *q, *qd, *T;            // the state of each row
-    std::size_t T_stride;          // 0: one pose for all rows, of a base that does not float
-    double* tau;                   // (rows, dof): what the control said last
-    int *status, *joint;           // of each row; the joint at its limit
-    double* stopped;               // when it did
-    double *time, *length;         // of the adaptive method: the time of each row and its next step
-    long long* next;               // and the step of its next record
+    long long steps, every;       // of dt, the last up to the duration; every so many states are recorded
+    bool is_held;                 // what acts is held over each step, so that no adaptive one is longer
+    const double *lower, *upper;  // where a motion ends (n,), or null
+    double *q, *qd, *T;           // the state of each row
+    std::size_t T_stride;         // 0: one pose for all rows, of a base that does not float
+    double* tau;                  // (rows, dof): what the control said last
+    int *status, *joint;          // of each row; the joint at its limit
+    double* stopped;              // when it did
+    double *time, *length;        // of the adaptive method: the time of each row and its next step
+    long long* next;              // and the step of its next record
     Records records;
 
     CSPACE_INLINE double find_time(long long k) const { return k == steps ? duration : double(k) * dt; }

@@ -74,9 +74,9 @@ mask_of<V> find_middle(const Mechanics& mechanics, const State<V>& state, const 
     if (first)
         base = {transpose_times(R, vector_from(middle.qd)), transpose_times(R, vector_from(middle.qd + 3))};
     const Vec3<V> gravity = transpose_times(R, fill3<V>(mechanics.gravity));
-    const WholeMomentum<V> whole = lagrangian_rates(
-        mechanics.bodies, base, gravity, middle.q, middle.qd + first,
-        static_cast<LinkMomentum<V>*>(work.links), step.momentum + first, step.push + first);
+    const WholeMomentum<V> whole =
+        lagrangian_rates(mechanics.bodies, base, gravity, middle.q, middle.qd + first,
+                         static_cast<LinkMomentum<V>*>(work.links), step.momentum + first, step.push + first);
     if (first) {
         // By rotations ∂L/∂q is l × v and the torque of the weight, less ω × k, since the velocity of the
         // base is kept in axes of the world.

@@ -8,8 +8,8 @@
 namespace cspace::inline CSPACE_ISA {
 
 // (e^r − 1 − r) / r² by its series, for |r| ≤ ½ ln 2; the next term is below the last place.
-inline constexpr double exponential[] = {1.0 / 2,      1.0 / 6,       1.0 / 24,       1.0 / 120,
-                                         1.0 / 720,    1.0 / 5040,    1.0 / 40320,    1.0 / 362880,
+inline constexpr double exponential[] = {1.0 / 2,       1.0 / 6,        1.0 / 24,        1.0 / 120,
+                                         1.0 / 720,     1.0 / 5040,     1.0 / 40320,     1.0 / 362880,
                                          1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
 // e^x − 1 for x up to 709; larger ones give that of 709.
 template <class V>

@@ -17,7 +17,7 @@ inline constexpr double small_rotation_square = 0.1;
 template <class V>
 CSPACE_INLINE Vec3<V> left_jacobian_times(const Vec3<V>& u, const Vec3<V>& a) {
     constexpr double first[] = {1.0 / 2, -1.0 / 24, 1.0 / 720, -1.0 / 40320, 1.0 / 3628800, -1.0 / 479001600};
-    constexpr double second[] = {1.0 / 6,      -1.0 / 120,      1.0 / 5040,
+    constexpr double second[] = {1.0 / 6,       -1.0 / 120,     1.0 / 5040,
                                  -1.0 / 362880, 1.0 / 39916800, -1.0 / 6227020800};
     const V square = dot(u, u);
     const mask_of<V> is_small = square < small_rotation_square;
