@@ -17,6 +17,7 @@ COURSE = ("spatial", "robots", "catalogue", "kinematics", "ik", "subproblems", "
 COURSE += (
     "differential-kinematics",
     "dynamics",
+    "simulation",
     "export",
     "shapes",
     "collision",
