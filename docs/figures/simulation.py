@@ -89,7 +89,7 @@ def draw_spin(ax: Any) -> None:
 
 
 def draw_roll_outs(ax: Any) -> None:
-    """Double pendulums from many starts that a controller brings to one goal, in the plane of their angles."""
+    """Double pendulums that a controller brings from many starts to one goal."""
     goal, starts = np.array([0.5, -1.0]), np.random.default_rng(1).normal(size=(60, 2)) * 1.5
     control = cs.dynamics.PD(goal, kp=40, kd=25)
     run = double_pendulum().simulate(starts, [0, 0], control=control, duration=10.0, dt=0.01)
