@@ -320,8 +320,8 @@ percentile), in turns in one process.
 
 ## Simulation
 
-The Panda of example-robot-data without friction, steps of a millisecond, from Python; processor time per step and row
-[ns], median (95th percentile), in turns in one process.
+The Panda of example-robot-data without friction, steps of a millisecond, from Python; processor time per step
+and row [ns], median (95th percentile), in turns in one process.
 
 {simulation_tables.section(results)}
 

@@ -13,7 +13,6 @@
 #include "cspace/collision/one.hpp"
 #include "cspace/dynamics/coriolis.hpp"
 #include "cspace/dynamics/derivatives.hpp"
-#include "cspace/dynamics/forward_dynamics.hpp"
 #include "cspace/dynamics/make_links.hpp"
 #include "cspace/dynamics/momentum.hpp"
 #include "cspace/dynamics/roll_out.hpp"
