@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,11 @@ WrenchLaw = Callable[[float, Array, Array], Wrenches]
 """(t, q, qd) → the wrenches from time t on."""
 
 
+LARGEST_STATE: Final = 1e50
+"""Largest coordinate or velocity of a state: the square of a velocity times any inertia still fits a
+double."""
+
+
 @dataclass(frozen=True, eq=False)
 class State:
     """Where a robot is and how it moves: q (..., n) [rad or m], qd (..., dof), T_world_base (..., 4, 4)."""
@@ -25,6 +31,24 @@ class State:
     q: Array
     qd: Array
     T_world_base: Array | None
+
+    def wild(self) -> Flags:
+        """Which rows (...) are not finite, or too large for the functions of dynamics."""
+        largest = np.maximum(
+            np.abs(self.q).max(axis=-1, initial=0.0), np.abs(self.qd).max(axis=-1, initial=0.0)
+        )
+        result: Flags = np.asarray(~(largest < LARGEST_STATE))
+        return result
+
+    def with_rows(self, rows: Flags, other: State) -> State:
+        """The state whose rows (...) that are set come from another one."""
+        T, T_other = self.T_world_base, other.T_world_base
+        moved = T is None or T_other is None or T is T_other
+        return State(
+            np.where(rows[..., None], other.q, self.q),
+            np.where(rows[..., None], other.qd, self.qd),
+            T if moved else np.where(rows[..., None, None], T_other, T),  # type: ignore[arg-type]
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +83,16 @@ def advance_state(state: State, dx: Array, dv: Array, floating: bool) -> State:
     """The state after a displacement and a change of the velocities (..., dof).
 
     The first six displacements of a floating base are that of its origin and a rotation vector, in axes of
-    the world: R ← exp(u) R.
+    the world: R ← exp(u) R. Rows that rotate by half a turn or more become NaN.
     """
     if not floating:
         return State(state.q + dx, state.qd + dv, state.T_world_base)
     assert state.T_world_base is not None
+    u = dx[..., 3:6]
+    far = ~(np.einsum("...i,...i", u, u) < np.pi**2)
     T = state.T_world_base.copy()
     T[..., :3, 3] += dx[..., :3]
-    T[..., :3, :3] = exp_so3(dx[..., 3:6]) @ T[..., :3, :3]
-    return State(state.q + dx[..., 6:], state.qd + dv, T)
+    T[..., :3, :3] = exp_so3(np.where(far[..., None], 0.0, u)) @ T[..., :3, :3]
+    q = state.q + dx[..., 6:]
+    qd = state.qd + dv
+    return State(q, np.where(far[..., None], np.nan, qd) if far.any() else qd, T)

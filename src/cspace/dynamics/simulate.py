@@ -69,8 +69,9 @@ def simulate(
     """The motion of a robot from a state on, under torques, gravity, friction and wrenches.
 
     q (..., n) [rad or m], qd (..., dof): the state at time zero; leading axes are motions that run side by
-    side. control: t, q, qd → tau (..., dof), called once per step and held over it; PD and ComputedTorque are
-    such; None for no torques. duration [s]; dt [s]: the step. The last one ends with the duration.
+    side. control: torques tau (..., dof), None for zero; PD or ComputedTorque, which are compiled; or a
+    function t, q, qd → tau. It is asked at the beginning of each step, and its torques are held over the
+    step. duration [s]; dt [s]: the step. The last one ends with the duration.
 
     method: "rk4", the classical Runge–Kutta method, of order four; "variational", the variational midpoint
     rule of order two, whose energy does not drift and which conserves momenta; or "adaptive", the method of
@@ -85,7 +86,8 @@ def simulate(
 
     every: of so many states one is recorded, and the last; the adaptive method also keeps its own steps.
     stop_at_limits: end where a joint passes one of its limits; otherwise limits do not count. time_limit [s]:
-    of the computation, looked at between steps. threads: as in fk.
+    of the computation, looked at between steps; rows are computed some at a time, others may not have begun.
+    threads: as in fk.
 
     Returns a Simulation, which is falsy with a reason if it broke down.
     Raises InputError for a wrong shape or NaN, also of what control returns, for steps and durations that are
