@@ -39,7 +39,7 @@ cspace simulate puma560 0 0 0 0 0 0 --duration 2
 cspace simulate ur5e --pose up --duration 5 --dt 0.002 --method variational --plot fall.png
 cspace simulate panda --pose ready --goal 0 0 0 -pi/2 0 pi/2 0 --duration 3
 cspace simulate arm.urdf 0.1 0.2 --qd 1 0 --duration 1 --every 10 --json
-cspace simulate quadruped.urdf --floating --xyz 0 0 1 --rpy 0.3 0 0 --hold
+cspace simulate panda --pose ready --floating --xyz 0 0 1 --rpy 0.3 0 0 --hold
 """
 
 ROWS: Final = 10
