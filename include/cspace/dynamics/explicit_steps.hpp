@@ -11,9 +11,21 @@ namespace cspace::dynamics {
 // The weights of the stages before each stage, and those of the step.
 template <int n>
 struct Tableau {
-    static constexpr int stages = n;
     double before[n][n], end[n];
 };
+
+// The rates of displacement and of velocity at up to seven stages, (stages, dof) each; a displacement and a
+// change of velocity (dof,); and a state between.
+template <class V>
+struct Stages {
+    V *xs, *vs, *dx, *dv;
+    State<V> inner;
+};
+
+}  // namespace cspace::dynamics
+
+namespace cspace::dynamics::inline CSPACE_ISA {
+
 inline constexpr Tableau<4> classical = {{{}, {1.0 / 2}, {0, 1.0 / 2}, {0, 0, 1}},
                                          {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
 
@@ -39,18 +51,6 @@ inline constexpr double dormand_prince_dense[4][7] = {
      -318862633887.0 / 49829197408, 2019193451.0 / 616988883, -110615467.0 / 29380423},
     {-12715105075.0 / 11282082432, 0, 87487479700.0 / 32700410799, -10690763975.0 / 1880347072,
      701980252875.0 / 199316789632, -1453857185.0 / 822651844, 69997945.0 / 29380423}};
-
-// The rates of displacement and of velocity at up to seven stages, (stages, dof) each; a displacement and a
-// change of velocity (dof,); and a state between.
-template <class V>
-struct Stages {
-    V *xs, *vs, *dx, *dv;
-    State<V> inner;
-};
-
-}  // namespace cspace::dynamics
-
-namespace cspace::dynamics::inline CSPACE_ISA {
 
 // h times the weighted sum of `count` rates (dof,).
 template <class V>
