@@ -35,6 +35,11 @@ SOURCES = {
         *("include/cspace/math", "include/cspace/model", "include/cspace/dynamics"),
         *("src/kernels/dynamics.cpp", "src/bindings/dynamics.cpp"),
     ],
+    "simulation": [
+        *("include/cspace/math", "include/cspace/model", "include/cspace/dynamics"),
+        *("src/kernels/dynamics_simulation.cpp", "src/library/dynamics_roll_out.cpp"),
+        *("src/bindings/dynamics_simulation.cpp", "src/cspace/dynamics/rollout.py"),
+    ],
     "": [
         *("include/cspace/math", "include/cspace/kinematics", "include/cspace/ik", "src/kernels"),
         *("src/library", "src/bindings", "src/cspace/ik", "src/cspace/kinematics"),

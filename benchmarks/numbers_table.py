@@ -10,6 +10,7 @@ import dynamics_tables
 import further_tables
 import navigation_numbers
 import planning_tables
+import simulation_tables
 from arms import CLASSIC as ARMS
 from rows import Row, row
 
@@ -301,5 +302,11 @@ ROWS: list[Callable[[Results], Row]] = [
 def table(results: Results) -> list[Row]:
     return [
         build(results)
-        for build in [*ROWS, *navigation_numbers.ROWS, *planning_tables.ROWS, *dynamics_tables.ROWS]
+        for build in [
+            *ROWS,
+            *navigation_numbers.ROWS,
+            *planning_tables.ROWS,
+            *dynamics_tables.ROWS,
+            *simulation_tables.ROWS,
+        ]
     ]

@@ -24,6 +24,7 @@ import further_tables  # noqa: E402
 import navigation_tables  # noqa: E402
 import numbers_table  # noqa: E402
 import planning_tables  # noqa: E402
+import simulation_tables  # noqa: E402
 from rows import Row  # noqa: E402
 
 NAMES = {
@@ -50,6 +51,7 @@ def measured_names() -> list[str]:
         *(f"navigation_{part}" for part in NAVIGATION),
         *PLANNING,
         "dynamics",
+        "simulation",
     ]
 
 
@@ -315,6 +317,13 @@ URDF files of example-robot-data; arguments and outputs are prepared; processor 
 percentile), in turns in one process.
 
 {dynamics_tables.section(results)}
+
+## Simulation
+
+The Panda of example-robot-data without friction, steps of a millisecond, from Python; processor time per step
+and row [ns], median (95th percentile), in turns in one process.
+
+{simulation_tables.section(results)}
 
 ## Import
 

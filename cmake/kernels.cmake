@@ -63,7 +63,7 @@ endif()
 include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag("-mmove-max=256 -mstore-max=256" has_wide_moves)
 if(has_wide_moves)
-  foreach(kernel kinematics dynamics dynamics_floats dynamics_regressor dynamics_spatial)
+  foreach(kernel kinematics dynamics dynamics_simulation dynamics_floats dynamics_regressor dynamics_spatial)
     set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/${kernel}.cpp
                  APPEND PROPERTY COMPILE_OPTIONS -mmove-max=256 -mstore-max=256)
   endforeach()

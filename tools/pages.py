@@ -18,6 +18,7 @@ COURSE += (
     "differential-kinematics",
     "dynamics",
     "closed-loops",
+    "simulation",
     "export",
     "shapes",
     "collision",

@@ -35,18 +35,6 @@ MASSLESS_MOTION: Final = 1e-8
 """Root of the kinetic energy of a unit motion, relative to the largest one, up to which it is none: its
 square is the rounding of the mass matrix."""
 
-STEP_CONVERGED: Final = 1e-14
-"""Last change of the mean velocity of a variational step, relative to its size: momenta are then conserved
-to rounding."""
-
-STEP_ROUNDED: Final = 1e-9
-"""Change of the mean velocity, relative likewise, from which on one that no longer halves is rounding: that
-of torques whose terms cancel."""
-
-SHORTEST_STEP: Final = 1e-13
-"""Shortest step of an adaptive simulation, relative to the time and to dt: below it time no longer
-advances."""
-
 WHOLE_STEP: Final = 1e-9
 """Part of a step by which a duration may exceed a whole number of steps: rounding of their quotient, also of
 millions of them."""

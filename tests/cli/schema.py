@@ -114,6 +114,8 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "times": VECTOR,
         "q": MATRIX,
         "qd": MATRIX,
+        "tau": MATRIX,
+        "T_world_base": LIST_OR_NULL,
         "energy": VECTOR,
         "stopped": NUMBER,
         "ended": bool,

@@ -11,6 +11,7 @@ import cspace as cs
 from cli import schema
 from cli.run import ROOT, cspace
 from cspace.cli.app import VERBS, import_verb
+from cspace.dynamics import PD
 
 LINES = {
     "robots": "robots --search ur5",
@@ -133,6 +134,40 @@ def test_simulate_says_what_the_library_says(tmp_path):
     assert "ended   ended" in told.out
     assert told.code == 0
     assert cspace("simulate puma560 --duration -1", *typed(Q)).code == 2
+
+
+def test_simulate_holds_pulls_and_pushes_joints():
+    robot = cs.load_robot("puma560")
+    goal = np.array(Q) + 0.1
+    kp, kd = np.arange(1.0, 7.0), 0.5
+    line = "simulate puma560 --duration 0.05 --every 10 --json"
+    pulled = cspace(line, "--goal", *typed(goal), "--kp", *typed(kp), "--kd", "0.5", "--", *typed(Q)).json
+    run = robot.simulate(Q, [0] * 6, control=PD(goal, kp, kd), duration=0.05, dt=1e-3, every=10)
+    np.testing.assert_array_equal(pulled["q"], run.q)
+    np.testing.assert_array_equal(pulled["tau"], run.tau)
+    pushed = cspace(line, "--tau", *typed(kp), "--", *typed(Q)).json
+    np.testing.assert_array_equal(pushed["tau"], [kp] * 6)
+    held = cspace(line, "--hold", *typed(Q)).json
+    np.testing.assert_allclose(held["q"], [Q] * 6, atol=1e-9)
+    assert cspace(line, "--tau", "1", "--", *typed(Q)).code == 2
+    assert "gains of --hold or --goal" in cspace(line, "--kp", "1", "--", *typed(Q)).err
+
+
+def test_simulate_lets_a_base_float(tmp_path):
+    picture = tmp_path / "fall.png"
+    line = (
+        f"simulate puma560 --floating --xyz 0 0 1 --rpy 0 0 90 --deg --hold --duration 0.2 --plot {picture}"
+    )
+    fallen = cspace(line, "--json", *typed(Q)).json
+    T = np.array(fallen["T_world_base"])
+    robot = cs.load_robot("puma560", floating=True)
+    centers = robot.center_of_mass(fallen["q"], T_world_base=T)
+    times = np.array(fallen["times"])
+    np.testing.assert_allclose(centers[:, 2] - centers[0, 2], -0.5 * 9.81 * times**2, atol=1e-9)
+    np.testing.assert_allclose(T[0, :2, 0], [0, 1], atol=1e-12)
+    assert picture.stat().st_size > 10_000
+    assert "z [m]" in cspace(line, *typed(Q)).out
+    assert "[v; ω] of the base" in cspace(line, "--qd", "1", "--", *typed(Q)).err
 
 
 def test_jacobian_says_what_the_library_says():

@@ -26,14 +26,15 @@ FEWER_DECIMALS: Final = 2
 """How many decimals joints may lose where a terminal is narrow."""
 
 
-def load_chosen(args: argparse.Namespace) -> Robot:
-    """The robot that the words name, with the chosen ends."""
+def load_chosen(args: argparse.Namespace, *, floating: bool | None = None) -> Robot:
+    """The robot that the words name, with the chosen ends. floating: as in load_robot."""
     from cspace.robots import load_robot
 
     return load_robot(
         args.robot,
         base=getattr(args, "base", None),
         tip=getattr(args, "tip", None),
+        floating=floating,
         package_paths=args.package_path,
         xacro_args=dict(args.xacro_arg),
         calibration=args.calibration,

@@ -16,6 +16,9 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
+Motion = Callable[[float], tuple[ArrayLike, ArrayLike, ArrayLike]]
+"""t → q, qd and qdd."""
+
 
 @dataclass(frozen=True, eq=False)
 class PD:
@@ -50,8 +53,8 @@ class PD:
     ) -> Array:
         """The torques (..., dof) at q (..., n) and qd (..., dof)."""
         first = robot.dof - q.shape[-1]
-        goal = _check_count(self.q_goal, "q_goal", robot)
-        joints = self.kp * (goal - q) - self.kd * qd[..., first:]  # type: ignore[operator]
+        kp, kd = self.find_gains(robot)
+        joints = kp * (self.find_goal(robot) - q) - kd * qd[..., first:]
         if self.gravity_compensation:
             joints = (
                 joints + gravity_torques(robot, q, gravity=gravity, T_world_base=T_world_base)[..., first:]
@@ -59,6 +62,14 @@ class PD:
         tau = np.zeros((*joints.shape[:-1], robot.dof))
         tau[..., first:] = joints
         return tau
+
+    def find_gains(self, robot: KinematicModel) -> tuple[Array, Array]:
+        """kp and kd of each joint (..., n)."""
+        return _spread_gain(self.kp, "kp", robot), _spread_gain(self.kd, "kd", robot)
+
+    def find_goal(self, robot: KinematicModel) -> Array:
+        """q_goal (..., n); InputError if it has another number of joints."""
+        return _check_count(self.q_goal, "q_goal", robot)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +84,7 @@ class ComputedTorque:
     Luh, Walker and Paul 1980.
     """
 
-    motion: Callable[[float], tuple[ArrayLike, ArrayLike, ArrayLike]]
+    motion: Motion
     kp: ArrayLike
     kd: ArrayLike
 
@@ -97,19 +108,35 @@ class ComputedTorque:
         T_world_base: PoseLike | None = None,
     ) -> Array:
         """The torques (..., dof) at q (..., n) and qd (..., dof)."""
-        if robot.floating:
-            raise InputError(
-                f"the base of {robot.name} floats; no torque of a joint accelerates it as wanted"
-            )
-        q_d, qd_d, qdd_d = (
-            _check_count(as_floats(value, f"{name} of the motion at t = {t:g} s"), name, robot)
-            for name, value in zip(("q", "qd", "qdd"), self.motion(t), strict=True)
-        )
-        wanted = qdd_d + self.kd * (qd_d - qd) + self.kp * (q_d - q)  # type: ignore[operator]
+        self.refuse_floating(robot)
+        q_d, qd_d, qdd_d = find_motion(self.motion, t, robot)
+        kp, kd = self.find_gains(robot)
+        wanted = qdd_d + kd * (qd_d - qd) + kp * (q_d - q)
         more = {"gravity": gravity, "friction": False, "T_world_base": T_world_base}
         damping, dry = find_resistances(robot)
         tau: Array = inverse_dynamics(robot, q, qd, wanted, **more)  # type: ignore[arg-type]
         return tau + damping * qd + dry * np.sign(qd_d)
+
+    def find_gains(self, robot: KinematicModel) -> tuple[Array, Array]:
+        """kp and kd of each joint (..., n)."""
+        return _spread_gain(self.kp, "kp", robot), _spread_gain(self.kd, "kd", robot)
+
+    def refuse_floating(self, robot: KinematicModel) -> None:
+        """InputError for a robot whose base floats."""
+        if robot.floating:
+            raise InputError(
+                f"the base of {robot.name} floats; no torque of a joint accelerates it as wanted"
+            )
+
+
+def find_motion(motion: Motion, t: float, robot: KinematicModel) -> tuple[Array, Array, Array]:
+    """q, qd and qdd (..., n) of a motion at a time; InputError for NaN or another number of joints."""
+    names = ("q", "qd", "qdd")
+    q, qd, qdd = (
+        _check_count(as_floats(value, f"{name} of the motion at t = {t:g} s"), name, robot)
+        for name, value in zip(names, motion(t), strict=True)
+    )
+    return q, qd, qdd
 
 
 def _check_gain(value: ArrayLike, name: str) -> Array:
@@ -117,6 +144,11 @@ def _check_gain(value: ArrayLike, name: str) -> Array:
     if (gain < 0.0).any():
         raise InputError(f"{name} holds {gain.min():g}; a negative gain drives the joints away from the goal")
     return gain
+
+
+def _spread_gain(gain: ArrayLike, name: str, robot: KinematicModel) -> Array:
+    array, n = np.asarray(gain), len(robot.joint_names)
+    return np.broadcast_to(array, (n,)) if array.ndim == 0 else _check_count(array, name, robot)
 
 
 def _check_count(value: ArrayLike, name: str, robot: KinematicModel) -> Array:

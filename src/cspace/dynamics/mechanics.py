@@ -1,23 +1,23 @@
-"""A robot in motion: its state, how a state is moved, and which accelerations the forces cause."""
+"""A robot in motion: its state, how a state is moved, and the friction of its joints."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cspace.arrays import Array
-from cspace.dynamics.forward import forward_dynamics
 from cspace.dynamics.rows import Wrenches
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.spatial import exp_so3, left_jacobian_inv_so3
+from cspace.spatial import exp_so3
 
 Flags = NDArray[np.bool_]
 WrenchLaw = Callable[[float, Array, Array], Wrenches]
 """(t, q, qd) → the wrenches from time t on."""
+
 
 LARGEST_STATE: Final = 1e50
 """Largest coordinate or velocity of a state: the square of a velocity times any inertia still fits a
@@ -52,14 +52,6 @@ class State:
 
 
 @dataclass(frozen=True, eq=False)
-class Drive:
-    """What is held over a step: the torques of the control (..., dof) and the wrenches of the world."""
-
-    tau: Array
-    wrenches: Wrenches | None
-
-
-@dataclass(frozen=True, eq=False)
 class Mechanics:
     """A robot and what acts on it at every time.
 
@@ -74,39 +66,7 @@ class Mechanics:
     damping: Array
     dry: Array
     friction_speed: float
-    threads: int | None
-
-    def resistance(self, qd: Array) -> Array:
-        """The torques (..., dof) that the friction of the joints opposes to a motion."""
-        result: Array = self.damping * qd + self.dry * np.tanh(qd / self.friction_speed)
-        return result
-
-    def accelerations(self, state: State, drive: Drive) -> Array:
-        """qdd (..., dof); NaN in rows whose state is wild."""
-        wild = state.wild()
-        if wild.any():
-            state = state.with_rows(wild, self.rest(state))
-        qdd = forward_dynamics(
-            self.robot,
-            state.q,
-            state.qd,
-            drive.tau - self.resistance(state.qd),
-            wrenches=drive.wrenches,
-            expressed_in=self.expressed_in,
-            friction=False,
-            **self.shared(state),
-        )
-        return np.where(wild[..., None], np.nan, qdd) if wild.any() else qdd
-
-    def shared(self, state: State) -> dict[str, Any]:
-        """The keywords that functions of dynamics share."""
-        return {"gravity": self.gravity, "T_world_base": state.T_world_base, "threads": self.threads}
-
-    def rest(self, state: State) -> State:
-        """A state at zero, which stands in where there is none that can be computed with."""
-        T = state.T_world_base
-        still = None if T is None else np.broadcast_to(np.eye(4), T.shape)
-        return State(np.zeros_like(state.q), np.zeros_like(state.qd), still)
+    threads: int
 
 
 def find_resistances(robot: KinematicModel) -> tuple[Array, Array]:
@@ -136,16 +96,3 @@ def advance_state(state: State, dx: Array, dv: Array, floating: bool) -> State:
     q = state.q + dx[..., 6:]
     qd = state.qd + dv
     return State(q, np.where(far[..., None], np.nan, qd) if far.any() else qd, T)
-
-
-def displacement_rate(state: State, dx: Array, floating: bool) -> Array:
-    """The rate of the displacement dx (..., dof) that led to a state: qd, where u' = J⁻¹(u) ω for a
-    rotation."""
-    if not floating:
-        return state.qd
-    u = dx[..., 3:6]
-    far = ~(np.einsum("...i,...i", u, u) < np.pi**2)
-    J = left_jacobian_inv_so3(np.where(far[..., None], 0.0, u))
-    rate = state.qd.copy()
-    rate[..., 3:6] = np.einsum("...ij,...j", J, state.qd[..., 3:6])
-    return rate

@@ -1,8 +1,9 @@
-"""The loops of a simulation: what acts, a step, and what is recorded, until all rows have ended."""
+"""The run of a simulation: arrays for its states, the compiled loop over its steps, and how it ended."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Final
@@ -10,48 +11,38 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes
-from cspace.dynamics.controllers import PD, ComputedTorque
-from cspace.dynamics.explicit_steps import (
-    DORMAND_PRINCE,
-    DORMAND_PRINCE_DENSE,
-    DORMAND_PRINCE_END,
-    DORMAND_PRINCE_ERROR,
-    Stages,
-    find_stages,
-    step_rk4,
-)
-from cspace.dynamics.mechanics import Drive, Flags, Mechanics, State, WrenchLaw, advance_state
+from cspace.dynamics.controllers import PD, ComputedTorque, find_motion
+from cspace.dynamics.mechanics import Mechanics, State, WrenchLaw, find_resistances
+from cspace.dynamics.momentum import kinetic_energy, potential_energy
 from cspace.dynamics.rows import Wrenches
-from cspace.dynamics.simulation import Piece
-from cspace.dynamics.variational_step import step_variational
+from cspace.dynamics.simulation import DenseSteps
 from cspace.errors import InputError, InputTypeError
-from cspace.tolerances import FARTHEST, SHORTEST_STEP
+from cspace.kinematics.batch import frame_number
+from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.tolerances import FARTHEST
 
-Control = Callable[[float, Array, Array], ArrayLike] | PD | ComputedTorque
+Control = Callable[[float, Array, Array], ArrayLike] | PD | ComputedTorque | ArrayLike
 
-STEPS: Final = {"rk4": step_rk4, "variational": step_variational}
+ENDED, AT_LIMIT, BROKEN, OUT_OF_TIME = range(1, 5)
+"""How a row ended: after its duration, at a limit of a joint, without a next state, or cut off by the time
+limit. Zero while it runs."""
 
-STEP_SAFETY, SLOWEST, FASTEST = 0.9, 0.2, 5.0
-"""The next step of the adaptive method, relative to the one that would just do, and the bounds of its change
-(Hairer, Nørsett and Wanner 1993, section II.4)."""
-
-ERROR_ORDER: Final = 5
-"""The power of the step with which the error of one step falls."""
-
-RUNNING, ENDED, AT_LIMIT, BROKEN, OUT_OF_TIME = range(5)
-"""How a row stands: before its end, after its duration, at a limit of a joint, without a next state, or cut
-off by the time limit."""
+MOTION_SAMPLES: Final = 2**14
+"""Numbers of a motion that are sampled at once for computed torque: a thousand
+steps of an arm, some milliseconds."""
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
     """The arguments of a simulation, checked; steps is how many of length dt, the last one up to the
-    duration."""
+    duration. control: a function, PD, ComputedTorque, torques (..., dof), or None."""
 
     mechanics: Mechanics
+    method: str
     start: State
-    control: Control | None
+    control: Any
     wrenches: Wrenches | WrenchLaw | None
     duration: float
     dt: float
@@ -62,48 +53,223 @@ class Task:
     deadline: float
 
     @property
-    def held(self) -> bool:
+    def is_held(self) -> bool:
         """Whether something is held over each step or looked at after it, so that no step may be longer."""
-        return self.control is not None or callable(self.wrenches) or self.stop_at_limits
+        held = self.control is not None and not isinstance(self.control, np.ndarray)
+        return held or callable(self.wrenches) or self.stop_at_limits
 
     @property
-    def late(self) -> bool:
-        """Whether the time limit has passed."""
-        return perf_counter() > self.deadline
+    def is_compiled(self) -> bool:
+        """Whether no function of Python is called at each step."""
+        known = self.control is None or type(self.control) in (PD, ComputedTorque, np.ndarray)
+        return known and not callable(self.wrenches)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The leading axes."""
+        return self.start.qd.shape[:-1]
+
+    @property
+    def seconds_left(self) -> float:
+        """Of the time limit; infinite without one."""
+        return math.inf if math.isinf(self.deadline) else self.deadline - perf_counter()
 
     def find_time(self, k: int) -> float:
         """When step k begins [s]."""
         return self.duration if k == self.steps else k * self.dt
 
-    def find_record(self, k: int) -> int | None:
-        """The number of the record at the beginning of step k, if there is one."""
-        if k == self.steps:
-            return -(-k // self.every)
-        return None if k % self.every else k // self.every
+    def list_records(self) -> Array:
+        """The times (k,) of the states that are recorded [s]."""
+        times = np.arange(0, self.steps, self.every) * self.dt
+        return np.append(times, self.duration)
 
-    def find_drive(self, k: int, state: State) -> Drive:
-        """What is held from the beginning of step k on."""
-        wrenches = self.wrenches
-        if callable(wrenches):
-            wrenches = wrenches(self.find_time(k), state.q.copy(), state.qd.copy())
-        check_wrenches(wrenches, state.qd.shape[:-1])
-        return Drive(self.find_torques(k, state), wrenches)
 
-    def find_torques(self, k: int, state: State) -> Array:
-        """The torques (..., dof) of the control at the beginning of step k."""
-        t, q, qd = self.find_time(k), state.q.copy(), state.qd.copy()
-        if self.control is None:
-            return np.zeros_like(qd)
-        if isinstance(self.control, PD | ComputedTorque):
-            gravity, T = self.mechanics.gravity, state.T_world_base
-            tau: Any = self.control(self.mechanics.robot, t, q, qd, gravity=gravity, T_world_base=T)
-        else:
-            tau = self.control(t, q, qd)
-        return check_torques(tau, qd.shape, f"the torque of control at step {k} (t = {t:g} s)")
+class Record:
+    """The states of a simulation: times (k,), and arrays (rows, k, …) that the compiled loop fills.
+
+    q, qd, T_world_base, tau: the states (rows, …) as they are now; T_world_base is (1, 16) where one base
+    serves all rows. status, joint, stopped (rows,): how each row ended, at which joint, and when.
+    """
+
+    def __init__(self, task: Task) -> None:
+        start, self.task = task.start, task
+        rows, n, dof = math.prod(task.shape), start.q.shape[-1], start.qd.shape[-1]
+        self.times = task.list_records()
+        self.q, self.qd = start.q.reshape(rows, n).copy(), start.qd.reshape(rows, dof).copy()
+        T = np.eye(4) if start.T_world_base is None else start.T_world_base
+        self.T_world_base = T.reshape(-1, 16).copy()
+        self.tau = np.zeros((rows, dof))
+        self.status, self.joint = np.zeros((2, rows), dtype=np.int32)
+        self.stopped = np.zeros(rows)
+        self.pieces: DenseSteps | None = None
+        sizes = {"energy": (), "q": (n,), "qd": (dof,), "tau": (dof,)}
+        self.states: dict[str, Array] = {
+            name: np.empty((rows, len(self.times), *size)) for name, size in sizes.items()
+        }
+        if task.mechanics.robot.floating:
+            self.states["T_world_base"] = np.empty((rows, len(self.times), 16))
+
+    def finish(self) -> None:
+        """Make NaN of what lies after the end of each row, and cut off what lies after all ends."""
+        early = np.flatnonzero(self.status != ENDED)
+        firsts = np.searchsorted(self.times, self.stopped[early], side="right")
+        for row, first in zip(early, firsts, strict=True):
+            for array in self.states.values():
+                array[row, first:] = np.nan
+        last = self.stopped.max(initial=0.0)
+        if len(early) and len(early) == len(self.status):
+            count = int(np.searchsorted(self.times, last, side="right"))
+            if self.times[count - 1] < last:
+                self.times[count] = last
+                count += 1
+            self.times = self.times[:count]
+            self.states = {name: array[:, :count] for name, array in self.states.items()}
+        at = np.searchsorted(self.times, self.stopped[early])
+        shown = at < len(self.times)
+        shown[shown] = self.times[at[shown]] == self.stopped[early][shown]
+        self._write_ends(early[shown], at[shown])
+
+    def _write_ends(self, rows: Any, at: Any) -> None:
+        """The last states of rows, as the records at these places."""
+        if not len(rows):
+            return
+        mechanics = self.task.mechanics
+        q, qd, poses = self.q[rows], self.qd[rows], self.T_world_base
+        T = (poses if len(poses) == 1 else poses[rows]).reshape(-1, 4, 4)
+        energy = kinetic_energy(mechanics.robot, q, qd, T_world_base=T)
+        energy = energy + potential_energy(mechanics.robot, q, gravity=mechanics.gravity, T_world_base=T)
+        ends = {"q": q, "qd": qd, "tau": self.tau[rows], "energy": energy, "T_world_base": T.reshape(-1, 16)}
+        for name, array in self.states.items():
+            array[rows, at] = ends[name]
+
+
+def run_steps(task: Task) -> Record:
+    """The record of a simulation."""
+    record = Record(task)
+    simulator = make_simulator(task, record)
+    if not task.is_compiled:
+        call_each_step(task, record, simulator)
+    elif isinstance(task.control, ComputedTorque):
+        follow_motion(task, task.control, record, simulator)
+    else:
+        simulator.run(0, task.steps + 1, task.seconds_left)
+    if task.method == "adaptive":
+        values, first = simulator.take_pieces()
+        record.pieces = DenseSteps(values, first, task.start.q.shape[-1], record.stopped)
+    record.finish()
+    return record
+
+
+def make_simulator(task: Task, record: Record) -> _core.Simulator:
+    """The compiled half of a simulation."""
+    mechanics = task.mechanics
+    rubs = mechanics.damping.any() or mechanics.dry.any()
+    limits = mechanics.robot.limits
+    simulator = _core.Simulator(
+        mechanics.robot,
+        task.method,
+        mechanics.gravity,
+        mechanics.damping if rubs else None,
+        mechanics.dry if rubs else None,
+        mechanics.friction_speed,
+        (task.duration, task.dt),
+        (task.steps, task.every),
+        task.is_held,
+        task.tolerance,
+        np.ascontiguousarray(limits.lower) if task.stop_at_limits else None,
+        np.ascontiguousarray(limits.upper) if task.stop_at_limits else None,
+        mechanics.threads,
+    )
+    simulator.hold_state(
+        record.q, record.qd, record.T_world_base, record.tau, record.status, record.joint, record.stopped
+    )
+    states = record.states
+    simulator.hold_records(
+        states["q"], states["qd"], states["tau"], states["energy"], states.get("T_world_base")
+    )
+    if not callable(task.wrenches):
+        set_wrenches(task, simulator, task.wrenches)
+    set_control(task, simulator)
+    return simulator
+
+
+def set_control(task: Task, simulator: _core.Simulator) -> None:
+    """The control of a simulation, as far as it is known before."""
+    control, robot = task.control, task.mechanics.robot
+    if isinstance(control, np.ndarray):
+        simulator.set_torques(share_rows(control, task.shape))
+    elif type(control) is PD:
+        goal = control.find_goal(robot)
+        kp, kd = (share_rows(each, task.shape, "a gain") for each in control.find_gains(robot))
+        simulator.set_pd(kp, kd, share_rows(goal, task.shape, "q_goal"), control.gravity_compensation)
+    elif type(control) is ComputedTorque:
+        control.refuse_floating(robot)
+        kp, kd = (share_rows(each, task.shape, "a gain") for each in control.find_gains(robot))
+        damping, dry = find_resistances(robot)
+        simulator.set_computed_torque(kp, kd, damping, dry)
+
+
+def share_rows(values: Array, shape: tuple[int, ...], subject: str = "") -> Array:
+    """Values (..., m) as one row for all, or as a row for each of the leading axes."""
+    m = values.shape[-1]
+    if values.size == m:
+        return np.ascontiguousarray(values.reshape(m))
+    if leading_axes(**{subject or "tau": values.shape[:-1]}, q=shape) != shape:
+        raise InputError(f"{subject} has shape {values.shape}, expected {(*shape, m)} as there are rows of q")
+    return np.ascontiguousarray(np.broadcast_to(values, (*shape, m))).reshape(-1, m)
+
+
+def follow_motion(task: Task, control: ComputedTorque, record: Record, simulator: _core.Simulator) -> None:
+    """Run with computed torque: its motion is sampled at the steps, some at a time."""
+    robot, k = task.mechanics.robot, 0
+    while k <= task.steps and not record.status.all():
+        first = sample_motion(control, task.find_time(k), robot)
+        count = min(max(1, MOTION_SAMPLES // max(first.size, 1)), task.steps + 1 - k)
+        later = [sample_motion(control, task.find_time(i), robot) for i in range(k + 1, k + count)]
+        samples = np.stack([first, *later], axis=-3)
+        rows = samples.reshape(*samples.shape[:-3], math.prod(samples.shape[-3:]))
+        simulator.set_motion(share_rows(rows, task.shape, "the motion"), k, count)
+        simulator.run(k, k + count, task.seconds_left)
+        k += count
+
+
+def sample_motion(control: ComputedTorque, t: float, robot: KinematicModel) -> Array:
+    """q, qd and qdd (..., 3, n) of a motion at a time."""
+    return np.stack(np.broadcast_arrays(*find_motion(control.motion, t, robot)), axis=-2)
+
+
+def call_each_step(task: Task, record: Record, simulator: _core.Simulator) -> None:
+    """Run with a control or wrenches that functions of Python find at the beginning of each step."""
+    law = task.wrenches if callable(task.wrenches) else None
+    calls = task.control is not None and type(task.control) not in (PD, np.ndarray)
+    for k in range(task.steps + 1):
+        if record.status.all():
+            return
+        t = task.find_time(k)
+        if law is not None and k < task.steps:
+            q, qd = record.q.reshape(task.start.q.shape), record.qd.reshape(task.start.qd.shape)
+            set_wrenches(task, simulator, law(t, q.copy(), qd.copy()))
+        if calls:
+            simulator.set_torques(find_torques(task, record, k))
+        simulator.run(k, k + 1, task.seconds_left)
+
+
+def find_torques(task: Task, record: Record, k: int) -> Array:
+    """The torques (dof,) or (rows, dof) of a control that is a function, at the beginning of step k."""
+    t, shape, control = task.find_time(k), task.shape, task.control
+    q, qd = record.q.reshape(task.start.q.shape).copy(), record.qd.reshape(task.start.qd.shape).copy()
+    if isinstance(control, PD | ComputedTorque):
+        floating = task.mechanics.robot.floating
+        T = record.T_world_base.reshape(*shape, 4, 4).copy() if floating else task.start.T_world_base
+        gravity = task.mechanics.gravity
+        tau: Any = control(task.mechanics.robot, t, q, qd, gravity=gravity, T_world_base=T)
+    else:
+        tau = control(t, q, qd)
+    return check_torques(tau, qd.shape, f"the torque of control at step {k} (t = {t:g} s)")
 
 
 def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
-    """What a control returned as (..., dof); InputError for another shape or NaN."""
+    """Torques as (dof,) or as rows; InputError for another shape than (..., dof) or NaN."""
     if tau is None:
         raise InputTypeError(f"{subject} is None; a control returns the torques")
     array = as_floats(tau, subject, largest=FARTHEST)
@@ -114,183 +280,24 @@ def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
             f"{subject} has shape {array.shape}, expected {shape}: one torque or force per joint,"
             " of a floating base its wrench [f; n] first"
         )
-    return np.broadcast_to(array, shape)
+    return share_rows(array, shape[:-1])
 
 
-def check_wrenches(wrenches: Wrenches | None, lead: tuple[int, ...]) -> None:
-    """InputError for wrenches that are for more rows than there are; see also torques_of_wrenches."""
-    for frame, wrench in wrenches.items() if isinstance(wrenches, Mapping) else ():
-        shape = as_floats(wrench, f"wrench at {frame!r}", last=(6,)).shape
-        if leading_axes(wrenches=shape[:-1], q=lead) != lead:
+def set_wrenches(task: Task, simulator: _core.Simulator, wrenches: Wrenches | None) -> None:
+    """What the world does at frames from now on; see torques_of_wrenches for what is refused."""
+    if wrenches is not None and not isinstance(wrenches, Mapping):
+        raise InputTypeError(
+            f"wrenches is a {type(wrenches).__name__}, expected a dict of frame → (..., 6), such as"
+            ' {"tool0": [0, 0, -10, 0, 0, 0]}'
+        )
+    given = []
+    for frame, wrench in (wrenches or {}).items():
+        number = frame_number(task.mechanics.robot, frame)
+        array = as_floats(wrench, f"wrench at {frame!r}", last=(6,))
+        shape = array.shape
+        if leading_axes(wrenches=shape[:-1], q=task.shape) != task.shape:
             raise InputError(
-                f"wrench at {frame!r} has shape {shape}, expected {(*lead, 6)} as there are rows of q"
+                f"wrench at {frame!r} has shape {shape}, expected {(*task.shape, 6)} as there are rows of q"
             )
-
-
-class Record:
-    """The states of a simulation as they come: times (k,), arrays (..., k, …), and how each row (...)
-    stands."""
-
-    def __init__(self, task: Task) -> None:
-        start, count = task.start, -(-task.steps // task.every) + 1
-        lead = start.qd.shape[:-1]
-        self.task, self.count = task, 0
-        self.times = np.empty(count)
-        self.q = np.full((*lead, count, start.q.shape[-1]), np.nan)
-        self.qd, self.tau = (np.full((*lead, count, start.qd.shape[-1]), np.nan) for _ in range(2))
-        floating = task.mechanics.robot.floating
-        self.T_world_base = np.full((*lead, count, 4, 4), np.nan) if floating else None
-        self.stopped = np.full(lead, np.inf)
-        self.status = np.full(lead, RUNNING)
-        self.joint = np.zeros(lead, dtype=int)
-        self.pieces: list[Piece] = []
-
-    @property
-    def running(self) -> Flags:
-        """Which rows (...) go on."""
-        result: Flags = np.asarray(self.status == RUNNING)
-        return result
-
-    def write(self, t: float, state: State, tau: Array) -> None:
-        """Record a state; rows that stopped before stay NaN."""
-        k, valid = self.count, (self.stopped >= t)[..., None]
-        self.times[k] = t
-        self.q[..., k, :] = np.where(valid, state.q, np.nan)
-        self.qd[..., k, :] = np.where(valid, state.qd, np.nan)
-        self.tau[..., k, :] = np.where(valid, tau, np.nan)
-        if self.T_world_base is not None and state.T_world_base is not None:
-            self.T_world_base[..., k, :, :] = np.where(valid[..., None], state.T_world_base, np.nan)
-        self.count += 1
-
-    def end_rows(self, before: State, after: State, t: float, t_after: float, failed: Flags) -> State:
-        """The state from which to go on: rows that broke down or passed a limit have ended and stay."""
-        running = self.running
-        broken = running & (after.wild() | failed)
-        if broken.any():
-            self._stop(broken, BROKEN, t)
-        if self.task.stop_at_limits:
-            self._stop_at_limits(after, running & ~broken, t_after)
-        halted = broken | ~running
-        return after.with_rows(halted, before) if halted.any() else after
-
-    def _stop_at_limits(self, state: State, rows: Flags, t: float) -> None:
-        limits = self.task.mechanics.robot.limits
-        beyond = (state.q < limits.lower) | (state.q > limits.upper)
-        hits = rows & beyond.any(axis=-1)
-        if hits.any():
-            self.joint = np.where(hits, beyond.argmax(axis=-1), self.joint)
-            self._stop(hits, AT_LIMIT, t)
-
-    def _stop(self, rows: Flags, status: int, t: float) -> None:
-        self.status = np.where(rows, status, self.status)
-        self.stopped = np.where(rows, t, self.stopped)
-
-    def finish(self, t: float, state: State, tau: Array, status: int) -> None:
-        """The rows that still run end at a time; the last state is recorded if it has not been."""
-        self._stop(self.running, status, t)
-        last = float(self.stopped.max(initial=0.0))
-        if not self.count or self.times[self.count - 1] < last:
-            self.write(last, state, tau)
-
-
-def run_fixed_steps(task: Task, method: str) -> Record:
-    """The record of a simulation with steps of one length."""
-    record, state, step = Record(task), task.start, STEPS[method]
-    for k in range(task.steps):
-        t, t_after = task.find_time(k), task.find_time(k + 1)
-        drive = task.find_drive(k, state)
-        if task.find_record(k) is not None:
-            record.write(t, state, drive.tau)
-        if task.late:
-            record.finish(t, state, drive.tau, OUT_OF_TIME)
-            return record
-        after = step(task.mechanics, state, drive, t_after - t)
-        state = record.end_rows(state, after, t, t_after, np.zeros_like(record.running))
-        if not record.running.any():
-            record.finish(t_after, state, drive.tau, ENDED)
-            return record
-    record.finish(task.duration, state, task.find_torques(task.steps, state), ENDED)
-    return record
-
-
-def run_adaptive_steps(task: Task) -> Record:
-    """The record of a simulation with steps as long as the tolerance allows; see run_fixed_steps."""
-    record, state, h, late = Record(task), task.start, task.dt, False
-    for k, k_end in list_intervals(task):
-        t, t_end = task.find_time(k), task.find_time(k_end)
-        drive = task.find_drive(k, state)
-        if task.find_record(k) is not None:
-            record.write(t, state, drive.tau)
-        while t < t_end and record.running.any() and not late:
-            step, t_after = (h, t + h) if t + h * (1.0 + SHORTEST_STEP) < t_end else (t_end - t, t_end)
-            stages = find_stages(task.mechanics, state, drive, step, DORMAND_PRINCE)
-            after = advance_state(state, *stages.changes(DORMAND_PRINCE_END), task.mechanics.robot.floating)
-            errors = find_errors(task, state, after, stages)
-            worst = float(np.max(errors, where=record.running, initial=0.0))
-            factor = find_step_factor(worst)
-            late = task.late
-            if worst > 1.0 and step > SHORTEST_STEP * (t + task.dt):
-                h = step * factor
-                continue
-            piece = make_piece(t, state, stages)
-            kept = record.end_rows(state, after, t, t_after, errors > 1.0)
-            record.pieces.append(piece)
-            write_between(task, record, piece, t, t_after, (k, k_end), drive.tau)
-            t, state = t_after, kept
-            h = step * factor if step == h else max(h, step * factor)
-        if late or not record.running.any():
-            record.finish(t, state, drive.tau, OUT_OF_TIME)
-            return record
-    record.finish(task.duration, state, task.find_torques(task.steps, state), ENDED)
-    return record
-
-
-def list_intervals(task: Task) -> Iterator[tuple[int, int]]:
-    """The steps over which what acts is smooth, each from one number to another."""
-    if not task.held:
-        yield 0, task.steps
-    else:
-        for k in range(task.steps):
-            yield k, k + 1
-
-
-def find_errors(task: Task, before: State, after: State, stages: Stages) -> Array:
-    """The estimated error of each row (...), relative to the tolerance; infinite for rows without a state."""
-    dx, dv = stages.changes(DORMAND_PRINCE_ERROR)
-    size_x, size_v = np.ones_like(dx), 1.0 + np.maximum(np.abs(before.qd), np.abs(after.qd))
-    first = dx.shape[-1] - before.q.shape[-1]
-    size_x[..., first:] += np.maximum(np.abs(before.q), np.abs(after.q))
-    if before.T_world_base is not None and first:
-        size_x[..., :3] += np.abs(before.T_world_base[..., :3, 3])
-    with np.errstate(over="ignore", invalid="ignore"):
-        both = np.concatenate([dx / size_x, dv / size_v], axis=-1) / task.tolerance
-        errors = np.sqrt(np.sum(both**2, axis=-1) / max(both.shape[-1], 1))
-    return np.where(np.isfinite(errors) & ~after.wild(), errors, np.inf)
-
-
-def find_step_factor(error: float) -> float:
-    """The length of the next step relative to this one, whose error is given relative to the tolerance."""
-    if error == 0.0:
-        return FASTEST
-    return float(np.clip(STEP_SAFETY * error ** (-1.0 / ERROR_ORDER), SLOWEST, FASTEST))
-
-
-def make_piece(t: float, state: State, stages: Stages) -> Piece:
-    """The motion within a step of Dormand and Prince."""
-    changes = [stages.changes(weights) for weights in DORMAND_PRINCE_DENSE]
-    return Piece(t, stages.h, state, tuple(dx for dx, _ in changes), tuple(dv for _, dv in changes))
-
-
-def write_between(
-    task: Task, record: Record, piece: Piece, t: float, t_after: float, ends: tuple[int, int], tau: Array
-) -> None:
-    """Record the states after t, up to the end of a step, that lie strictly within an interval of smooth
-    motion."""
-    begin, end = ends
-    k = max(begin + 1, int(t / task.dt))
-    k += -k % task.every
-    while k < end and task.find_time(k) <= t_after:
-        time = task.find_time(k)
-        if time > t and task.find_record(k) == record.count:
-            record.write(time, piece.find_state(time, task.mechanics.robot.floating), tau)
-        k += task.every
+        given.append((number, share_rows(array, task.shape)))
+    simulator.set_wrenches(given, task.mechanics.expressed_in == "tip")

@@ -4,36 +4,35 @@ from __future__ import annotations
 
 import math
 from time import perf_counter
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, guard_memory, positive_number, whole_number
+from cspace.arrays import guard_memory, positive_number, whole_number
+from cspace.dynamics.forward import forward_dynamics
 from cspace.dynamics.mass_matrix import mass_matrix
-from cspace.dynamics.mechanics import Drive, Mechanics, State, WrenchLaw, find_resistances
-from cspace.dynamics.momentum import kinetic_energy, potential_energy
+from cspace.dynamics.mechanics import Mechanics, State, WrenchLaw, find_resistances
 from cspace.dynamics.rollout import (
     AT_LIMIT,
     BROKEN,
     ENDED,
     OUT_OF_TIME,
-    STEPS,
     Control,
     Record,
     Task,
-    run_adaptive_steps,
-    run_fixed_steps,
+    check_torques,
+    run_steps,
 )
 from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows
 from cspace.dynamics.simulation import Simulation
 from cspace.errors import InputError, InputTypeError
-from cspace.kinematics.batch import check_choice, check_robot, refuse_infinite
+from cspace.kinematics.batch import check_choice, check_robot, refuse_infinite, thread_count
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 from cspace.tolerances import WHOLE_STEP
 
-METHODS: Final = (*STEPS, "adaptive")
+METHODS: Final = ("rk4", "variational", "adaptive")
 
 FRICTION_SPEED: Final = 1e-2
 """Where dry friction has 76 % of its value [rad/s or m/s]: a hundredth of the speeds at which arms work."""
@@ -70,8 +69,9 @@ def simulate(
     """The motion of a robot from a state on, under torques, gravity, friction and wrenches.
 
     q (..., n) [rad or m], qd (..., dof): the state at time zero; leading axes are motions that run side by
-    side. control: t, q, qd → tau (..., dof), called once per step and held over it; PD and ComputedTorque are
-    such; None for no torques. duration [s]; dt [s]: the step. The last one ends with the duration.
+    side. control: torques tau (..., dof), None for zero; PD or ComputedTorque, which are compiled; or a
+    function t, q, qd → tau. It is asked at the beginning of each step, and its torques are held over the
+    step. duration [s]; dt [s]: the step. The last one ends with the duration.
 
     method: "rk4", the classical Runge–Kutta method, of order four; "variational", the variational midpoint
     rule of order two, whose energy does not drift and which conserves momenta; or "adaptive", the method of
@@ -86,7 +86,8 @@ def simulate(
 
     every: of so many states one is recorded, and the last; the adaptive method also keeps its own steps.
     stop_at_limits: end where a joint passes one of its limits; otherwise limits do not count. time_limit [s]:
-    of the computation, looked at between steps. threads: as in fk.
+    of the computation, looked at between steps; rows are computed some at a time, others may not have begun.
+    threads: as in fk.
 
     Returns a Simulation, which is falsy with a reason if it broke down.
     Raises InputError for a wrong shape or NaN, also of what control returns, for steps and durations that are
@@ -98,14 +99,15 @@ def simulate(
     name = check_choice(method, "method", METHODS)
     mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
     start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
+    law = _check_control(control, start)
     task = _make_task(
-        mechanics, start, control, wrenches, duration, dt, every, stop_at_limits, tolerance, time_limit
+        mechanics, name, start, law, wrenches, duration, dt, every, stop_at_limits, tolerance, time_limit
     )
-    mechanics.accelerations(start, Drive(np.zeros_like(start.qd), None))  # raises where M is singular
+    rest = np.zeros_like(start.qd)
+    forward_dynamics(robot, start.q, rest, rest, T_world_base=start.T_world_base)  # raises if M is singular
     numbers = task.steps / task.every * start.qd.size * (16.0 if robot.floating else 4.0)
     with guard_memory("duration / dt", f"{task.steps} steps", numbers, "record fewer states (every=)"):
-        record = run_adaptive_steps(task) if name == "adaptive" else run_fixed_steps(task, name)
-        return _make_answer(task, record, name)
+        return _make_answer(task, run_steps(task))
 
 
 def _make_mechanics(
@@ -126,14 +128,27 @@ def _make_mechanics(
         damping,
         dry,
         positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]"),
-        threads,
+        0 if threads is None else thread_count(threads, ()),
+    )
+
+
+def _check_control(control: Control | None, start: State) -> Any:
+    """A control as a function, constant torques (..., dof), or None."""
+    if control is None or callable(control):
+        return control
+    if isinstance(control, np.ndarray | list | tuple):
+        return check_torques(control, start.qd.shape, "control")
+    raise InputTypeError(
+        f"control is a {type(control).__name__}, expected torques, or a function of t, q and qd that returns"
+        " them, or dynamics.PD or dynamics.ComputedTorque"
     )
 
 
 def _make_task(
     mechanics: Mechanics,
+    method: str,
     start: State,
-    control: Control | None,
+    control: Any,
     wrenches: Wrenches | WrenchLaw | None,
     duration: float,
     dt: float,
@@ -143,11 +158,6 @@ def _make_task(
     time_limit: float | None,
 ) -> Task:
     """The arguments of a simulation, checked."""
-    if control is not None and not callable(control):
-        raise InputTypeError(
-            f"control is a {type(control).__name__}, expected a function of t, q and qd that returns torques,"
-            " or dynamics.PD or dynamics.ComputedTorque"
-        )
     length = positive_number(duration, "duration", "it must be one positive number [s]")
     step = positive_number(dt, "dt", "it must be one positive number [s]")
     if length / step > MOST_STEPS:
@@ -157,6 +167,7 @@ def _make_task(
     late = math.inf if time_limit is None else perf_counter() + positive_number(time_limit, "time_limit")
     return Task(
         mechanics,
+        method,
         start,
         control,
         wrenches,
@@ -201,75 +212,52 @@ def _check_start(
     return start
 
 
-def _make_answer(task: Task, record: Record, method: str) -> Simulation:
+def _make_answer(task: Task, record: Record) -> Simulation:
     """The answer of what was recorded."""
-    count = record.count
-    T = record.T_world_base
-    q, qd = record.q[..., :count, :], record.qd[..., :count, :]
-    T = None if T is None else T[..., :count, :, :]
+    shape, count, states = task.shape, len(record.times), record.states
+    q, qd, tau = (states[name].reshape(*shape, *states[name].shape[1:]) for name in ("q", "qd", "tau"))
+    T = states["T_world_base"].reshape(*shape, count, 4, 4) if "T_world_base" in states else None
     good = (record.status == ENDED) | (record.status == AT_LIMIT)
     return Simulation(
         task.mechanics.robot.name,
         tuple(task.mechanics.robot.joint_names),
-        method,
-        record.times[:count],
+        task.method,
+        record.times,
         q,
         qd,
-        record.tau[..., :count, :],
-        _find_energy(task, q, qd, T),
+        tau,
+        states["energy"].reshape(*shape, count),
         T,
-        record.stopped,
-        np.asarray(record.status == ENDED),
-        _name_reason(task, record, method),
+        record.stopped.reshape(shape),
+        (record.status == ENDED).reshape(shape),
+        _name_reason(task, record),
         bool(good.all()),
-        tuple(record.pieces),
+        record.pieces,
     )
 
 
-def _find_energy(task: Task, q: Array, qd: Array, T: Array | None) -> Array:
-    """The energy (..., k) [J] of states; NaN where there is none."""
-    robot, threads = task.mechanics.robot, task.mechanics.threads
-    valid = np.isfinite(qd).all(axis=-1)
-    whole = bool(valid.all())
-    if T is None and task.start.T_world_base is not None:
-        place = task.start.T_world_base
-        T = place if place.ndim == 2 else np.broadcast_to(place[..., None, :, :], (*valid.shape, 4, 4))
-    if not whole:
-        q, qd = q[valid], qd[valid]
-        T = T if T is None or T.ndim == 2 else T[valid]
-    energy = kinetic_energy(robot, q, qd, T_world_base=T, threads=threads)
-    energy = energy + potential_energy(
-        robot, q, gravity=task.mechanics.gravity, T_world_base=T, threads=threads
-    )
-    if whole:
-        return energy
-    result = np.full(valid.shape, np.nan)
-    result[valid] = energy
-    return result
-
-
-def _name_reason(task: Task, record: Record, method: str) -> str:
+def _name_reason(task: Task, record: Record) -> str:
     """How the simulation ended: its first row that did not come to its end, those that broke down before
     others."""
-    status = record.status.ravel()
+    status, method = record.status, task.method
     order = [
         int(row) for code in (BROKEN, OUT_OF_TIME, AT_LIMIT) for row in np.flatnonzero(status == code)[:1]
     ]
     if not order:
         return "ended"
     row = order[0]
-    t = f"t = {record.stopped.ravel()[row]:g} s" + (f" in row {row}" if record.status.ndim else "")
+    t = f"t = {record.stopped[row]:g} s" + (f" in row {row}" if task.shape else "")
     if status[row] == OUT_OF_TIME:
         return f"time limit, at {t}"
     if status[row] == AT_LIMIT:
-        return f"limit reached: joint {task.mechanics.robot.joint_names[record.joint.ravel()[row]]!r} at {t}"
+        return f"limit reached: joint {task.mechanics.robot.joint_names[record.joint[row]]!r} at {t}"
     word = "not solved: no step from" if method == "variational" else "not finite: after"
-    return f"{word} {t}; {_advise(task, method)}"
+    return f"{word} {t}; {_advise(task)}"
 
 
-def _advise(task: Task, method: str) -> str:
+def _advise(task: Task) -> str:
     """What helps a simulation that broke down."""
-    stiff = task.mechanics.damping + task.mechanics.dry / task.mechanics.friction_speed
+    method, stiff = task.method, task.mechanics.damping + task.mechanics.dry / task.mechanics.friction_speed
     if method == "rk4" and stiff.any():
         M = mass_matrix(task.mechanics.robot, task.start.q, T_world_base=task.start.T_world_base)
         rates = (

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cspace.arrays import Array, as_floats
 from cspace.dynamics.mechanics import Flags, State, advance_state
@@ -15,27 +15,41 @@ from cspace.tables import count_things, html_table, one_line, shown
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
-    """The motion between two times as polynomials of θ = (t − begin) / h, from 0 to 1.
+class DenseSteps:
+    """The steps of the adaptive method as polynomials of θ = (t − begin) / h, from 0 to 1.
 
-    dx, dv: the coefficients (..., dof) of θ, θ², … of displacement and change of velocity.
+    values (k, m): of each step when it begins, h, q (n,), qd (dof,), of a floating base its pose (16,), and
+    the coefficients (4, dof) of θ, θ², … of displacement and change of velocity. first (rows + 1,): where the
+    steps of each row begin. n: coordinates. stopped (rows,) [s]: when each row ended.
     """
 
-    begin: float
-    h: float
-    state: State
-    dx: Sequence[Array]
-    dv: Sequence[Array]
+    values: Array
+    first: NDArray[np.int64]
+    n: int
+    stopped: Array
 
-    def find_state(self, t: float, floating: bool) -> State:
-        """The state at a time."""
-        theta = (t - self.begin) / self.h
-        powers = [theta ** (k + 1) for k in range(max(len(self.dx), len(self.dv)))]
-        dx, dv = (
-            sum((p * c for p, c in zip(powers, rates, strict=False)), np.zeros_like(self.state.qd))
-            for rates in (self.dx, self.dv)
+    def find_state(self, t: float, start: State) -> State:
+        """The state at a time, NaN in rows that ended before. start: that at time zero."""
+        if t == 0.0:
+            return start
+        rows = [
+            max(begin + int(np.searchsorted(self.values[begin:end, 0], t, side="right")) - 1, begin)
+            for begin, end in zip(self.first[:-1], self.first[1:], strict=True)
+        ]
+        gone = (t > self.stopped) | (np.diff(self.first) == 0)
+        taken = np.zeros((len(rows), self.values.shape[1]))
+        taken[~gone] = self.values[np.array(rows, dtype=int)[~gone]]
+        floating, lead = start.T_world_base is not None, start.qd.shape[:-1]
+        sizes = (1, 1, self.n, start.qd.shape[-1], 16 if floating else 0)
+        begin, h, q, qd, T, rates = np.split(taken, np.cumsum(sizes), axis=-1)
+        theta = np.where(gone[:, None], 0.0, (t - begin) / np.where(gone[:, None], 1.0, h))
+        powers = theta ** np.arange(1, 5)
+        dx, dv = np.einsum("rp,rcpj->crj", powers, rates.reshape(len(taken), 2, 4, qd.shape[-1]))
+        before = State(
+            q.reshape(start.q.shape), qd.reshape(start.qd.shape), T.reshape(*lead, 4, 4) if floating else None
         )
-        return advance_state(self.state, dx, dv, floating)
+        dx[gone] = dv[gone] = np.nan
+        return advance_state(before, dx.reshape(start.qd.shape), dv.reshape(start.qd.shape), floating)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +80,7 @@ class Simulation:
     ended: Flags
     reason: str
     _truth: bool = True
-    _pieces: tuple[Piece, ...] = field(default=(), repr=False)
+    _dense: DenseSteps | None = field(default=None, repr=False)
 
     def __bool__(self) -> bool:
         return self._truth
@@ -86,35 +100,38 @@ class Simulation:
         time = float(as_floats(t, "t"))
         if not self.times[0] <= time <= self.times[-1]:
             raise InputError(f"t is {time:g} s; the simulation is from 0 to {self.times[-1]:g} s")
-        state = self._find_piece(time).find_state(time, self.T_world_base is not None)
+        if self._dense is not None:
+            state = self._dense.find_state(time, self._state(0))
+        else:
+            k = min(max(int(np.searchsorted(self.times, time, side="right")) - 1, 0), max(len(self) - 2, 0))
+            state = self._find_between(k, time)
         both = state.q, state.qd
         return both if state.T_world_base is None else (*both, state.T_world_base)
 
-    def _find_piece(self, t: float) -> Piece:
-        if self._pieces:
-            begins = [piece.begin for piece in self._pieces]
-            return self._pieces[max(int(np.searchsorted(begins, t, side="right")) - 1, 0)]
-        k = min(max(int(np.searchsorted(self.times, t, side="right")) - 1, 0), max(len(self) - 2, 0))
-        return self._find_cubic(k)
-
-    def _find_cubic(self, k: int) -> Piece:
-        """The cubic of Hermite from record k to the next."""
-        state = self._state(k)
+    def _find_between(self, k: int, t: float) -> State:
+        """The state at a time by the cubic of Hermite from record k to the next."""
+        state, floating = self._state(k), self.T_world_base is not None
         if len(self) == 1:
-            return Piece(0.0, 1.0, state, (), ())
+            return state
         after, h = self._state(k + 1), float(self.times[k + 1] - self.times[k])
         slope, slope_after = h * state.qd, h * after.qd
         step = np.zeros_like(state.qd)
         step[..., step.shape[-1] - state.q.shape[-1] :] = after.q - state.q
-        if self.T_world_base is not None:
-            T, T_after = self.T_world_base[..., k, :, :], self.T_world_base[..., k + 1, :, :]
+        if state.T_world_base is not None and after.T_world_base is not None:
+            T, T_after = state.T_world_base, after.T_world_base
             step[..., :3] = T_after[..., :3, 3] - T[..., :3, 3]
             step[..., 3:6] = log_so3(T_after[..., :3, :3] @ np.swapaxes(T[..., :3, :3], -1, -2))
             J = left_jacobian_inv_so3(step[..., 3:6])
             slope_after[..., 3:6] = np.einsum("...ij,...j", J, slope_after[..., 3:6])
-        bend = 3.0 * step - 2.0 * slope - slope_after
-        dx = slope, bend, slope + slope_after - 2.0 * step
-        return _CubicPiece(float(self.times[k]), h, state, dx, ())
+        a, b, c = slope, 3.0 * step - 2.0 * slope - slope_after, slope + slope_after - 2.0 * step
+        theta = (t - float(self.times[k])) / h
+        dx = theta * (a + theta * (b + theta * c))
+        rate = (a + theta * (2.0 * b + 3.0 * theta * c)) / h
+        between = advance_state(state, dx, np.zeros_like(dx), floating)
+        if floating:
+            J = left_jacobian_so3(dx[..., 3:6])
+            rate[..., 3:6] = np.einsum("...ij,...j", J, rate[..., 3:6])
+        return State(between.q, rate, between.T_world_base)
 
     def _state(self, k: int) -> State:
         T = None if self.T_world_base is None else self.T_world_base[..., k, :, :]
@@ -140,18 +157,3 @@ class Simulation:
             for i, (until, row, last) in enumerate(zip(stopped, energy, lasts, strict=True))
         ]
         return html_table(self.summary, titles, rows)
-
-
-class _CubicPiece(Piece):
-    """A piece whose velocity is the rate of its displacement."""
-
-    def find_state(self, t: float, floating: bool) -> State:
-        theta = (t - self.begin) / self.h
-        a, b, c = self.dx
-        dx = theta * (a + theta * (b + theta * c))
-        rate = (a + theta * (2.0 * b + 3.0 * theta * c)) / self.h
-        state = advance_state(self.state, dx, np.zeros_like(dx), floating)
-        if floating:
-            J = left_jacobian_so3(dx[..., 3:6])
-            rate[..., 3:6] = np.einsum("...ij,...j", J, rate[..., 3:6])
-        return State(state.q, rate, state.T_world_base)

@@ -1,4 +1,4 @@
-"""Draws the figure of the page on dynamics: `python docs/figures/dynamics.py` writes it here."""
+"""Draws the figures of the page on simulation: `python docs/figures/simulation.py` writes them here."""
 
 from __future__ import annotations
 
@@ -88,11 +88,43 @@ def draw_spin(ax: Any) -> None:
     ax.grid(alpha=0.3)
 
 
+def draw_roll_outs(ax: Any) -> None:
+    """Double pendulums that a controller brings from many starts to one goal."""
+    goal, starts = np.array([0.5, -1.0]), np.random.default_rng(1).normal(size=(60, 2)) * 1.5
+    control = cs.dynamics.PD(goal, kp=40, kd=25)
+    run = double_pendulum().simulate(starts, [0, 0], control=control, duration=10.0, dt=0.01)
+    ax.plot(*run.q.transpose(2, 1, 0), color="tab:blue", linewidth=0.6, alpha=0.7)
+    ax.plot(*starts.T, ".", color="0.4", markersize=4, label="starts")
+    ax.plot(*goal, "o", color="tab:red", markersize=6, label="goal")
+    ax.set(xlabel="shoulder [rad]", ylabel="elbow [rad]", title="60 roll-outs under PD with gravity")
+    ax.legend(loc="upper left", fontsize=8)
+    ax.grid(alpha=0.3)
+
+
+def draw_friction(ax: Any) -> None:
+    """The velocity of a rotor with stiff damping at steps far longer than its decay time."""
+    links = (model.Link("base"), model.Link("disk", model.Inertial(1.0, (0, 0, 0), 0.2 * np.eye(3))))
+    for damping, color in ((1.0, "tab:blue"), (10.0, "tab:orange"), (100.0, "tab:green")):
+        joint = model.Joint("axis", "continuous", "base", "disk", axis=(0, 0, 1), damping=damping)
+        rotor = cs.Robot(model.Description("rotor", links, (joint,)))
+        run = rotor.simulate([0], [1.0], duration=0.5, dt=0.05, method="variational")
+        exact = np.linspace(0, 0.5, 400)
+        ax.plot(exact, np.exp(-damping / 0.2 * exact), color=color, linewidth=1.0)
+        ax.plot(run.times, run.qd[:, 0], "o", color=color, markersize=4, label=f"{damping:g} N m s")
+    ax.set(xlabel="time [s]", ylabel="velocity [rad/s]", title="damping, variational, steps of 50 ms")
+    ax.legend(loc="upper right", fontsize=8)
+    ax.grid(alpha=0.3)
+
+
 def main() -> None:
-    figure, axes = plt.subplots(1, 2, figsize=(9.6, 3.8), dpi=110, layout="constrained")
-    draw_energy(axes[0])
-    draw_spin(axes[1])
-    cs.plot.save(figure, HERE / "simulation.png")
+    for name, left, right in (
+        ("simulation.png", draw_energy, draw_spin),
+        ("simulation_control.png", draw_roll_outs, draw_friction),
+    ):
+        figure, axes = plt.subplots(1, 2, figsize=(9.6, 3.8), dpi=110, layout="constrained")
+        left(axes[0])
+        right(axes[1])
+        cs.plot.save(figure, HERE / name)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,49 @@
+// The left Jacobian J(u) of the exponential of rotations, and its inverse, applied to vectors.
+//
+// Along exp([u]) R the angular velocity is ω = J(u) u'. Transposed they are those of −u (Chirikjian 2012,
+// section 10.7; Solà, Deray and Atchuthan 2018).
+#pragma once
+
+#include "cspace/math/trig.hpp"
+#include "cspace/math/vec.hpp"
+
+namespace cspace::spatial::inline CSPACE_ISA {
+
+// The square of a rotation [rad²] below which factors come from their series: their closed forms lose digits
+// there, and six terms are exact to rounding.
+inline constexpr double small_rotation_square = 0.1;
+
+// J(u) a = a + (1 − cos θ)/θ² u × a + (θ − sin θ)/θ³ u × (u × a), θ = |u|.
+template <class V>
+CSPACE_INLINE Vec3<V> left_jacobian_times(const Vec3<V>& u, const Vec3<V>& a) {
+    constexpr double first[] = {1.0 / 2, -1.0 / 24, 1.0 / 720, -1.0 / 40320, 1.0 / 3628800, -1.0 / 479001600};
+    constexpr double second[] = {1.0 / 6,       -1.0 / 120,     1.0 / 5040,
+                                 -1.0 / 362880, 1.0 / 39916800, -1.0 / 6227020800};
+    const V square = dot(u, u);
+    const mask_of<V> is_small = square < small_rotation_square;
+    const V safe = select(is_small, fill<V>(1.0), square), theta = sqrt(safe);
+    V s, c;
+    sincos(0.5 * theta, s, c);
+    const V near = select(is_small, square, fill<V>(0.0));
+    const V f = select(is_small, trig::polynomial(first, near), 2.0 * (s * s) / safe);
+    const V g = select(is_small, trig::polynomial(second, near), (1.0 - 2.0 * (s * c) / theta) / safe);
+    const Vec3<V> ua = cross(u, a);
+    return a + f * ua + g * cross(u, ua);
+}
+// J⁻¹(u) a = a − ½ u × a + (1 − (θ/2) cot(θ/2))/θ² u × (u × a), for less than a full turn.
+template <class V>
+CSPACE_INLINE Vec3<V> left_jacobian_inverse_times(const Vec3<V>& u, const Vec3<V>& a) {
+    constexpr double series[] = {1.0 / 12,      1.0 / 720,      1.0 / 30240,
+                                 1.0 / 1209600, 1.0 / 47900160, 691.0 / 1307674368000.0};
+    const V square = dot(u, u);
+    const mask_of<V> is_small = square < small_rotation_square;
+    const V safe = select(is_small, fill<V>(1.0), square), half = 0.5 * sqrt(safe);
+    V s, c;
+    sincos(half, s, c);
+    const V near = select(is_small, square, fill<V>(0.0));
+    const V f = select(is_small, trig::polynomial(series, near), (1.0 - half * c / s) / safe);
+    const Vec3<V> ua = cross(u, a);
+    return a - 0.5 * ua + f * cross(u, ua);
+}
+
+}  // namespace cspace::spatial::inline CSPACE_ISA
