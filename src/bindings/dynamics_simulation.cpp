@@ -28,7 +28,7 @@ class Simulator {
         : robot_(std::move(robot)), threads_(threads) {
         KinematicsObject& object = robot_from(robot_);
         auto& mechanics = task_.mechanics;
-        mechanics.bodies = multibody_of(object);
+        mechanics.bodies = links_of(object).view();
         mechanics.floating = object.floating;
         mechanics.friction_speed = friction_speed;
         if (gravity.size != 3) throw nb::value_error("gravity has three numbers");

@@ -39,7 +39,7 @@ CSPACE_INLINE Wrench<V> body_momentum(const Moments<double>& body, const Twist<V
     const Vec3<V> h = fill3<V>(body.first);
     const Symmetric3<double>& S = body.second;
     const Symmetric3<V> inertia =
-        fill_symmetric<V>({S.yy + S.zz, -S.xy, -S.xz, S.xx + S.zz, -S.yz, S.xx + S.yy});
+        fill_symmetric<V>(Symmetric3<double>{S.yy + S.zz, -S.xy, -S.xz, S.xx + S.zz, -S.yz, S.xx + S.yy});
     return {body.mass * motion.v + cross(motion.w, h), cross(h, motion.v) + inertia * motion.w};
 }
 
