@@ -25,8 +25,23 @@ void track_rows(nb::handle robot, int frame, Goals poses, Matrix starts,
                         q.data(), last.data(), info.data()});
 }
 
+// See cspace::ik::JointPathRows.
+void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Matrix rates,
+                     Array<double, nb::ndim<2>> q, Array<double, nb::ndim<2>> slope,
+                     Array<double, nb::ndim<2>> bend, Array<double, nb::shape<-1, 2>> info) {
+    const model::Chain& chain = chain_on(robot, frame);
+    const std::size_t count = poses.shape(0), dof = std::size_t(chain.n_coordinates);
+    require_sizes(has_shape(twists, count, std::size_t(6)) && has_shape(rates, count, std::size_t(6)) && has_shape(q, count, dof) &&
+                  has_shape(slope, count, dof) && has_shape(bend, count, dof) && info.shape(0) == count);
+    const nb::gil_scoped_release release;
+    ik::correct_joint_path({chain, poses.data(), twists.data(), rates.data(), count, q.data(), slope.data(),
+                            bend.data(), info.data()});
+}
+
 }  // namespace
 
 void bind_ik_tracking(nb::module_& m) {
     m.def("_ik_track", track_rows, "Follows branches along poses; q, last and info take the results.");
+    m.def("_ik_path_rows", joint_path_rows,
+          "Corrects q to the poses of a path; slope, bend and info take the results.");
 }
