@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         robots,
         shapes,
         spatial,
+        trajectory,
     )
     from cspace._core import __version__
     from cspace.collision import Scene
@@ -77,7 +78,7 @@ __all__ = [
     "plan_many",
     "planning",
 ]
-__all__ += ["plot", "robots", "shapes", "spatial", "subproblems"]
+__all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
@@ -128,6 +129,7 @@ _LATER = {
     "spatial": "",
     "subproblems": "cspace.ik",
     "tolerances": "",
+    "trajectory": "",
 }
 
 

@@ -553,3 +553,20 @@ LOST_MOTION: Final = 1e-12
 1e-16, and of the root, as a singular value, 1e-6 is nearly singular."""
 
 __all__ = [name for name in globals() if name.isupper()]
+
+TIME_ROUNDING: Final = 1e-12
+"""Part of the duration of a trajectory by which a time may lie outside of it: sums of a million steps."""
+
+CONTINUITY_ROUNDING: Final = 1e-9
+"""Jump of a derivative, relative to its largest value, up to which it is continuous: polynomials evaluated
+from both ends of a piece differ by their rounding, a thousandth of this."""
+
+LIMIT_ROUNDING: Final = 1e-9
+"""Part of a limit (of positions at least of 1 rad or m) by which a motion may exceed it: the rounding of the
+sums of its pieces, which controllers do not notice."""
+
+LIMIT_BINDS: Final = 1e-6
+"""Part of a limit, as above, within which a motion is at it."""
+
+ROOT_CONVERGED: Final = 4e-16
+"""Last step towards the root of a polynomial, relative to its interval: two units in the last place."""

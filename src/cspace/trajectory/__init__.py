@@ -1,0 +1,16 @@
+"""Trajectories: motions in time, their derivatives, and checks against the limits of joints."""
+
+from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
+from cspace.trajectory.polynomials import PolynomialTrajectory
+from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
+
+__all__ = [
+    "BindingLimit",
+    "Extremes",
+    "JoinedTrajectory",
+    "PolynomialTrajectory",
+    "Samples",
+    "Trajectory",
+    "TrajectoryCheck",
+    "Violation",
+]
