@@ -833,6 +833,16 @@ def find_reach(checker: CollisionChecker) -> float:
     The farthest that a sphere may be from the axis of a joint that moves it [m].
     """
 
+def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], intervals: int) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Pieces, from and to (k,) of about so many intervals of a path, none across a break.
+    """
+
+def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], numpy.typing.NDArray[numpy.float64], bool]:
+    """
+    Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.
+    """
+
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...
 def _car_shortest(*arguments: Any) -> Any: ...

@@ -552,6 +552,20 @@ LOST_MOTION: Final = 1e-12
 """How much a unit wrench moves a frame, relative to that of the best one, that is nothing: rounding leaves
 1e-16, and of the root, as a singular value, 1e-6 is nearly singular."""
 
+SAME_WAYPOINT: Final = 1e-9
+"""Distance of neighbouring waypoints, relative to the length of the path, up to which they are one: a spline
+through points so close turns on the spot."""
+
+PATH_CORNER: Final = 1e-9
+"""Jump of a derivative of a path, relative to its size, up to which it is continuous: the slopes of neighbouring
+pieces are rounded differently."""
+
+STRAIGHT_TURN: Final = 1e-10
+"""Turn of a path at a waypoint [rad] up to which its legs are one line."""
+
+REVERSED_TURN: Final = 0.02
+"""Turn short of 180° [rad] from which on a path stops at a waypoint: a blend so sharp turns on the spot."""
+
 __all__ = [name for name in globals() if name.isupper()]
 
 TIME_ROUNDING: Final = 1e-12

@@ -18,6 +18,10 @@ struct SpeedRange {
 // Share of y by which the width of what remains may be negative: the rounding of two rows.
 inline constexpr double closed_width = 8e-16;
 
+// Share of x by which the rows are narrowed: the rounding of y, which is all of an acceleration where intervals
+// are short and motions fast.
+inline constexpr double speed_rounding = 4.5e-16;
+
 }  // namespace cspace::trajectory
 
 namespace cspace::trajectory::inline CSPACE_ISA {
@@ -63,6 +67,10 @@ CSPACE_INLINE Edges bound_next(const Rows& rows, double x, const SpeedRange& nex
         high_offset = select(lower, other, high_offset);
     }
     Edges edges = reduce_edges(low, low_slope, low_offset, high, high_slope, high_offset);
+    edges.low.value += speed_rounding * x;
+    edges.low.slope += speed_rounding;
+    edges.high.value -= speed_rounding * x;
+    edges.high.slope -= speed_rounding;
     const double most = min(next.high, rows.largest_y);
     if (most < edges.high.value) edges.high = {most, 0.0, most};
     if (next.low > edges.low.value) edges.low = {next.low, 0.0, next.low};
