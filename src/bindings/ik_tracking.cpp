@@ -31,8 +31,9 @@ void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Ma
                      Array<double, nb::ndim<2>> bend, Array<double, nb::shape<-1, 2>> info) {
     const model::Chain& chain = chain_on(robot, frame);
     const std::size_t count = poses.shape(0), dof = std::size_t(chain.n_coordinates);
-    require_sizes(has_shape(twists, count, std::size_t(6)) && has_shape(rates, count, std::size_t(6)) && has_shape(q, count, dof) &&
-                  has_shape(slope, count, dof) && has_shape(bend, count, dof) && info.shape(0) == count);
+    require_sizes(has_shape(twists, count, std::size_t(6)) && has_shape(rates, count, std::size_t(6)) &&
+                  has_shape(q, count, dof) && has_shape(slope, count, dof) && has_shape(bend, count, dof) &&
+                  info.shape(0) == count);
     const nb::gil_scoped_release release;
     ik::correct_joint_path({chain, poses.data(), twists.data(), rates.data(), count, q.data(), slope.data(),
                             bend.data(), info.data()});

@@ -20,8 +20,8 @@ struct PathRows {
     const double *twists, *rates;  // (count, 6): t and t'
     double* q;                     // (count, dof): guesses, corrected
     double *slope, *bend;          // (count, dof): q' and q''; columns that do not move are left alone
-    double* info;                  // (count, 2): pose error that is left, the least diagonal entry of the factored J
-    void (*poll)();                // called now and then; throws to stop
+    double* info;    // (count, 2): pose error that is left, the least diagonal entry of the factored J
+    void (*poll)();  // called now and then; throws to stop
 };
 
 inline constexpr int path_row_info = 2;
@@ -54,7 +54,8 @@ CSPACE_INLINE void load_path_rows(const PathRows& rows, std::size_t first, RowLa
             set_lane(lanes.twist.entry[r], l, twist.entry[r]);
             set_lane(lanes.rate.entry[r], l, rate.entry[r]);
         }
-        for (int j = 0; j < rows.path->n; ++j) set_lane(lanes.q[j], l, rows.q[k * rows.dof + std::size_t(rows.column[j])]);
+        for (int j = 0; j < rows.path->n; ++j)
+            set_lane(lanes.q[j], l, rows.q[k * rows.dof + std::size_t(rows.column[j])]);
     }
 }
 

@@ -227,8 +227,8 @@ CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& g
     if (n > 6) add_rate_of_inverse(f, J, y, out.bend);
 }
 
-// slope and bend are derivatives by the parameter of which twist and rate are the first two derivatives of the
-// pose; without a rate, the twist is constant.
+// slope and bend are derivatives by the parameter of which twist and rate are the first two derivatives of
+// the pose; without a rate, the twist is constant.
 template <class V>
 CSPACE_NOINLINE void measure_motion(const Path& path, const Pose<V>& goal, const Twist<V>& twist,
                                     const Twist<V>* rate, const V* q, Motion<V>& out) {
