@@ -26,6 +26,7 @@
 #include "cspace/ik/subproblems/sp5.hpp"
 #include "cspace/ik/subproblems/sp6.hpp"
 #include "cspace/ik/tracking/along.hpp"
+#include "cspace/ik/tracking/cheapest_chain.hpp"
 #include "cspace/ik/tracking/follow.hpp"
 #include "cspace/maps/grid_outlines.hpp"
 #include "cspace/maps/path_clearance.hpp"

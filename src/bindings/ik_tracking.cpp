@@ -1,8 +1,14 @@
 // Branches along a path of poses: plain checked arrays in, filled arrays out, the interpreter free meanwhile.
 #include "library/ik_tracking.hpp"
 
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "cspace/ik/tracking/cheapest_chain.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "kinematics.hpp"
 
 namespace nb = nanobind;
@@ -39,10 +45,28 @@ void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Ma
                             bend.data(), info.data()});
 }
 
+// See cspace::ik::Layers. Returns the states of the chain and its cost.
+nb::tuple cheapest_chain(Matrix q, Array<const int, nb::ndim<1>> value, Row cost,
+                         Array<const std::size_t, nb::ndim<1>> begin, Row stride, Row period, int reach,
+                         int ring) {
+    const std::size_t states = q.shape(0), dof = q.shape(1), layers = begin.shape(0) - 1;
+    require_sizes(begin.shape(0) > 1 && value.shape(0) == states && cost.shape(0) == states &&
+                  stride.shape(0) == dof && period.shape(0) == dof && begin.data()[0] == 0 &&
+                  begin.data()[layers] == states && std::is_sorted(begin.data(), begin.data() + layers + 1));
+    ik::LayerChain chain;
+    {
+        const nb::gil_scoped_release release;
+        chain = ik::find_cheapest_chain({dof, q.data(), value.data(), cost.data(), begin.data(), layers,
+                                         stride.data(), period.data(), reach, ring, poll_interrupts});
+    }
+    return nb::make_tuple(chain.states, chain.cost);
+}
+
 }  // namespace
 
 void bind_ik_tracking(nb::module_& m) {
     m.def("_ik_track", track_rows, "Follows branches along poses; q, last and info take the results.");
     m.def("_ik_path_rows", joint_path_rows,
           "Corrects q to the poses of a path; slope, bend and info take the results.");
+    m.def("_ik_cheapest_chain", cheapest_chain, "The cheapest chain of states, one of each layer.");
 }

@@ -49,7 +49,7 @@ def spline(
     if (np.diff(breaks) <= 0.0).any():
         raise InputError("the waypoints lie too close together, relative to the length of the path")
     h = np.diff(breaks)
-    made = _cubic_controls(h, given.q, ends) if degree == 3 else _quintic_controls(h, given.q, ends)
+    made = _cubic_controls(h, given.q, ends) if degree == 3 else quintic_controls(h, given.q, ends)
     return Path(breaks, made, remarks=given.remarks)
 
 
@@ -75,7 +75,7 @@ def _cubic_controls(h: Array, q: Array, ends: str) -> Array:
     return np.stack(control, axis=1)
 
 
-def _quintic_controls(h: Array, q: Array, ends: str) -> Array:
+def quintic_controls(h: Array, q: Array, ends: str) -> Array:
     """Control points (k, 6, dof) of the quintic spline, from its slopes v and bends a at the waypoints.
 
     With p = h v and w = h² a, on a piece h³ q''' is 60Δ − 36p₀ − 24p₁ − 9w₀ + 3w₁ at its begin and
