@@ -46,18 +46,19 @@ void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Ma
 }
 
 // See cspace::ik::Layers. Returns the states of the chain and its cost.
-nb::tuple cheapest_chain(Matrix q, Array<const int, nb::ndim<1>> value, Row cost,
-                         Array<const std::size_t, nb::ndim<1>> begin, Row stride, Row period, int reach,
-                         int ring) {
-    const std::size_t states = q.shape(0), dof = q.shape(1), layers = begin.shape(0) - 1;
-    require_sizes(begin.shape(0) > 1 && value.shape(0) == states && cost.shape(0) == states &&
-                  stride.shape(0) == dof && period.shape(0) == dof && begin.data()[0] == 0 &&
-                  begin.data()[layers] == states && std::is_sorted(begin.data(), begin.data() + layers + 1));
+nb::tuple cheapest_chain(Matrix q, Row cost, Array<const std::size_t, nb::ndim<1>> begin, int values,
+                         Row stride, Row period, int reach, bool is_ring) {
+    const std::size_t states = q.shape(0), dof = q.shape(1), cells = begin.shape(0) - 1;
+    require_sizes(begin.shape(0) > 1 && values > 0 && cells % std::size_t(values) == 0 &&
+                  cost.shape(0) == states && stride.shape(0) == dof && period.shape(0) == dof &&
+                  begin.data()[0] == 0 && begin.data()[cells] == states &&
+                  std::is_sorted(begin.data(), begin.data() + cells + 1));
+    const std::size_t layers = cells / std::size_t(values);
     ik::LayerChain chain;
     {
         const nb::gil_scoped_release release;
-        chain = ik::find_cheapest_chain({dof, q.data(), value.data(), cost.data(), begin.data(), layers,
-                                         stride.data(), period.data(), reach, ring, poll_interrupts});
+        chain = ik::find_cheapest_chain({dof, q.data(), cost.data(), begin.data(), layers, values,
+                                         stride.data(), period.data(), reach, is_ring, poll_interrupts});
     }
     return nb::make_tuple(chain.states, chain.cost);
 }

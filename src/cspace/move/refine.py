@@ -22,7 +22,7 @@ FIRST_SPACING: Final = 0.1
 FEWEST_PIECES: Final = 4
 """Of each piece of the Cartesian path, so that a short one is compared with its joint path at all."""
 
-SHORTEST_PIECE: Final = 1e-5
+SHORTEST_PIECE: Final = 1e-4
 """[m or rad] A piece that is off and this short ends its branch: the joints would have to jump."""
 
 POSE_LEFT: Final = 1e-9

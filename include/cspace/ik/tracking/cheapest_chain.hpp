@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <limits>
 #include <vector>
 
@@ -14,14 +13,14 @@ namespace cspace::ik {
 struct Layers {
     std::size_t dof;
     const double* q;           // (states, dof)
-    const int* value;          // (states,): number of the value of the redundant joint
     const double* cost;        // (states,)
-    const std::size_t* begin;  // (layers + 1,): where the states of each layer begin
+    const std::size_t* begin;  // (layers · values + 1,): where the states of each value in each layer begin
     std::size_t layers;
+    int values;            // of the redundant joint in each layer
     const double* stride;  // (dof,): how far a joint may move between neighbouring layers
     const double* period;  // (dof,): 2π where multiples of it count as one configuration, else 0
     int reach;             // how many values the redundant joint may move between neighbouring layers
-    int ring;              // the number of values where the last is a neighbour of the first, else 0
+    bool is_ring;          // the last value is a neighbour of the first
     void (*poll)();        // called now and then; throws to stop
 };
 
@@ -30,11 +29,6 @@ struct LayerChain {
     std::vector<std::size_t> states;
     double cost;
 };
-
-inline int distance_of_values(const Layers& layers, std::size_t a, std::size_t b) {
-    const int apart = std::abs(layers.value[a] - layers.value[b]);
-    return layers.ring ? std::min(apart, layers.ring - apart) : apart;
-}
 
 // The squared distance between two states; infinite where a joint would move too far.
 inline double squared_step(const Layers& layers, std::size_t a, std::size_t b) {
@@ -49,39 +43,68 @@ inline double squared_step(const Layers& layers, std::size_t a, std::size_t b) {
     return sum;
 }
 
+// Totals of the states so far, and the state before each.
+struct ChainTable {
+    std::vector<double> total;
+    std::vector<std::size_t> parent;
+};
+
+// The number of a value, brought into the ring; −1 where there is none.
+inline int neighbour_value(const Layers& layers, int value) {
+    if (layers.is_ring) return (value + layers.values) % layers.values;
+    return value < layers.values ? value : -1;  // negative ones stay so
+}
+
+// The cheapest state before state s, among those of one value of the layer before.
+inline void try_parents(const Layers& layers, const std::size_t* begin, std::size_t s, ChainTable& table,
+                        double& best) {
+    for (std::size_t p = begin[0]; p < begin[1]; ++p) {
+        if (!(table.total[p] < best)) continue;
+        const double with = table.total[p] + squared_step(layers, p, s);
+        if (!(with < best)) continue;
+        best = with;
+        table.parent[s] = p;
+    }
+}
+
+// True if a state of the layer can be reached.
+inline bool extend_chains(const Layers& layers, std::size_t layer, ChainTable& table) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const std::size_t values = std::size_t(layers.values);
+    const std::size_t *here = layers.begin + values * layer, *before = layer ? here - values : here;
+    const int reach = std::min(layers.reach, (layers.values - 1) / (layers.is_ring ? 2 : 1));
+    bool any = false;
+    for (int v = 0; v < layers.values; ++v)
+        for (std::size_t s = here[v]; s < here[v + 1]; ++s) {
+            double best = layer ? never : 0.0;
+            for (int w = v - reach; layer && w <= v + reach; ++w) {
+                const int value = neighbour_value(layers, w);
+                if (value >= 0) try_parents(layers, before + value, s, table, best);
+            }
+            table.total[s] = best + layers.cost[s];
+            any = any || table.total[s] < never;
+        }
+    return any;
+}
+
 // The sum of the costs of the states and of the squared steps between them is least.
 inline LayerChain find_cheapest_chain(const Layers& layers) {
-    constexpr double never = std::numeric_limits<double>::infinity();
-    const std::size_t none = std::size_t(-1);
-    std::vector<double> total(layers.begin[layers.layers], never);
-    std::vector<std::size_t> parent(total.size(), none);
+    const std::size_t values = std::size_t(layers.values), count = layers.begin[layers.layers * values];
+    ChainTable table = {std::vector<double>(count, std::numeric_limits<double>::infinity()),
+                        std::vector<std::size_t>(count, 0)};
     std::size_t reached = 0;
-    for (std::size_t k = 0; k < layers.layers; ++k) {
+    while (reached < layers.layers && extend_chains(layers, reached, table)) {
+        ++reached;
         if (layers.poll) layers.poll();
-        bool any = false;
-        for (std::size_t s = layers.begin[k]; s < layers.begin[k + 1]; ++s) {
-            double best = k == 0 ? 0 : never;
-            for (std::size_t p = k == 0 ? s : layers.begin[k - 1]; k > 0 && p < layers.begin[k]; ++p) {
-                if (!(total[p] < best) || distance_of_values(layers, p, s) > layers.reach) continue;
-                const double with = total[p] + squared_step(layers, p, s);
-                if (!(with < best)) continue;
-                best = with;
-                parent[s] = p;
-            }
-            total[s] = best + layers.cost[s];
-            any = any || total[s] < never;
-        }
-        if (!any) break;
-        reached = k + 1;
     }
-    LayerChain chain = {{}, never};
+    LayerChain chain = {{}, std::numeric_limits<double>::infinity()};
     if (reached == 0) return chain;
-    std::size_t last = layers.begin[reached - 1];
-    for (std::size_t s = last; s < layers.begin[reached]; ++s)
-        if (total[s] < total[last]) last = s;
-    chain.cost = total[last];
+    std::size_t last = layers.begin[(reached - 1) * values];
+    for (std::size_t s = last; s < layers.begin[reached * values]; ++s)
+        if (table.total[s] < table.total[last]) last = s;
+    chain.cost = table.total[last];
     chain.states.resize(reached);
-    for (std::size_t k = reached, s = last; k-- > 0; s = parent[s]) chain.states[k] = s;
+    for (std::size_t k = reached; k-- > 0; last = table.parent[last]) chain.states[k] = last;
     return chain;
 }
 
