@@ -72,14 +72,6 @@ def solve_locked_redundant(solver: Solver, T: Array, values: Array) -> tuple[Arr
     Returns q (n, room, dof) with NaN behind the solutions, and how many each pose has (n,). The poses are
     checked: rotations, none of them too far away.
     """
-    q, count, _ = solve_locked_branches(solver, T, values)
-    return q, count
-
-
-def solve_locked_branches(
-    solver: Solver, T: Array, values: Array
-) -> tuple[Array, npt.NDArray[np.int64], npt.NDArray[np.int8]]:
-    """The same, and the number of the branch of each solution (n, room), negative where it has none."""
     joints = list(solver.redundant_joints)
     n, room = len(T), _core._ik_locked_room(solver, joints)
     at = np.zeros((n, solver.dof))
@@ -89,4 +81,4 @@ def solve_locked_branches(
     branch, self_motion = np.empty((n, room), dtype=np.int8), np.empty((n, room), dtype=bool)
     rows = q, branch, self_motion, count, status, 1
     _core._ik_locked_rows(solver, joints, at, np.ascontiguousarray(T), NO_SEED, *rows)
-    return q, count, branch
+    return q, count

@@ -31,8 +31,8 @@ POSE_LEFT: Final = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """Configurations at poses of a path: q, its first two derivatives by s (n, dof), and the error that is left
-    of each pose (n,), lengths over that of the arm."""
+    """Configurations at poses of a path: q, its first two derivatives by s (n, dof), and the error that is
+    left of each pose (n,), lengths over that of the arm."""
 
     q: Array
     slope: Array
@@ -41,7 +41,8 @@ class Nodes:
 
 
 class Corrector(Protocol):
-    """Finds the configurations of a path at pieces (n,) and u (n,), poses T (n, 4, 4), near guesses (n, dof)."""
+    """Finds the configurations of a path at pieces (n,) and u (n,), poses T (n, 4, 4), near guesses (n,
+    dof)."""
 
     def __call__(self, piece: Indices, u: Array, T: Array, guess: Array) -> Nodes: ...
 
