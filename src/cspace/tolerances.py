@@ -552,8 +552,6 @@ LOST_MOTION: Final = 1e-12
 """How much a unit wrench moves a frame, relative to that of the best one, that is nothing: rounding leaves
 1e-16, and of the root, as a singular value, 1e-6 is nearly singular."""
 
-__all__ = [name for name in globals() if name.isupper()]
-
 TIME_ROUNDING: Final = 1e-12
 """Part of the duration of a trajectory by which a time may lie outside of it: sums of a million steps."""
 
@@ -570,3 +568,5 @@ LIMIT_BINDS: Final = 1e-6
 
 ROOT_CONVERGED: Final = 4e-16
 """Last step towards the root of a polynomial, relative to its interval: two units in the last place."""
+
+__all__ = [name for name in globals() if name.isupper()]
