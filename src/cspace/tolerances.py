@@ -566,8 +566,6 @@ STRAIGHT_TURN: Final = 1e-10
 REVERSED_TURN: Final = 0.02
 """Turn short of 180° [rad] from which on a path stops at a waypoint: a blend so sharp turns on the spot."""
 
-__all__ = [name for name in globals() if name.isupper()]
-
 TIME_ROUNDING: Final = 1e-12
 """Part of the duration of a trajectory by which a time may lie outside of it: sums of a million steps."""
 
@@ -584,3 +582,5 @@ LIMIT_BINDS: Final = 1e-6
 
 ROOT_CONVERGED: Final = 4e-16
 """Last step towards the root of a polynomial, relative to its interval: two units in the last place."""
+
+__all__ = [name for name in globals() if name.isupper()]

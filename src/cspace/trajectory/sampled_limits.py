@@ -1,0 +1,195 @@
+"""Limits along a path that are no polynomials: torques of the joints, speed and turn rate of a frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.dynamics import inverse_dynamics
+from cspace.kinematics import jacobian
+from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.trajectory.path import Path
+from cspace.trajectory.timed_path import Grid, Places, TimedPath, move_along
+
+CHECKED_PLACES: Final = 10
+"""Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss."""
+
+MOST_ROUNDS: Final = 8
+"""Of checking and tightening."""
+
+TIGHTENED: Final = 1.5
+"""Multiple of what exceeds a limit by which it is tightened: the motion changes with it."""
+
+STANDING: Final = 1e-12
+"""Squared speed, relative to the largest, below which the tangent of its root is not taken."""
+
+
+@dataclass
+class TorqueLimits:
+    """Torques of joints that are linear in the acceleration and the squared speed of a path.
+
+    robot: with masses. limit (dof,) [N·m or N]. gravity (3,) [m/s²].
+    """
+
+    robot: KinematicModel
+    limit: Array
+    gravity: Array
+
+    def torques(self, path: Path, at: Places) -> Array:
+        """The torques (m, dof) of a motion at places."""
+        q, qd, qdd = (move_along(path, at, order) for order in range(3))
+        return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity)
+
+    def terms(self, q: Array, slope: Array, bend: Array, squared_speed: Array) -> tuple[Array, ...]:
+        """τ = along s̈ + across ṡ² + offset: the three terms, each (m, dof).
+
+        Damping is proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
+        """
+        rest = np.zeros_like(q)
+
+        def torque(qd: Array, qdd: Array, friction: bool = False) -> Array:
+            return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity, friction=friction)
+
+        weight = torque(rest, rest)
+        along = torque(rest, slope) - weight
+        own = torque(slope, bend)
+        across = own - weight
+        once = torque(slope, bend, friction=True) - own
+        if not once.any():
+            return along, across, weight
+        damping = torque(2.0 * slope, bend, friction=True) - torque(2.0 * slope, bend) - once
+        dry = once - damping
+        x = squared_speed[:, None]
+        root = np.sqrt(np.maximum(x, STANDING * squared_speed.max(initial=1.0)))
+        return along, across + 0.5 * damping / root, weight + dry + 0.5 * damping * root
+
+
+@dataclass
+class FrameLimits:
+    """Largest speed [m/s] and turn rate [rad/s] of a frame of a robot; inf where there is none."""
+
+    robot: KinematicModel
+    frame: str | None
+    speed: float
+    turn_rate: float
+
+    def rates(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        """The speed and the turn rate (m,) at configurations and velocities (m, dof)."""
+        twist = np.einsum("kij,kj->ki", jacobian(self.robot, q, self.frame), qd)
+        return np.linalg.norm(twist[:, :3], axis=1), np.linalg.norm(twist[:, 3:], axis=1)
+
+    def shares(self, q: Array, qd: Array) -> Array:
+        """The larger of the two shares (m,) that are used of the limits."""
+        speed, turn = self.rates(q, qd)
+        return np.maximum(speed / self.speed, turn / self.turn_rate)
+
+
+@dataclass
+class SampledLimits:
+    """What time_path samples on a grid; margins tighten the limits where a check finds them exceeded.
+
+    expected: parameters and squared speeds near which the motion will be.
+    """
+
+    path: Path
+    torque: TorqueLimits | None
+    frame: FrameLimits | None
+    expected: tuple[Array, Array] | None = None
+    margin: Array | None = None
+    slower: Array | None = field(default=None)
+
+    def __call__(self, piece: Array, begin: Array, end: Array) -> tuple[Array | None, ...]:
+        """The samples at the begin, the middle and the end of each interval, as the core wants them."""
+        places = np.stack([begin, 0.5 * (begin + end), end], axis=1).ravel()
+        pieces = np.repeat(piece, 3)
+        q, slope, bend = (self.path.evaluate_pieces(pieces, places, order) for order in range(3))
+        along = across = offset = limit = None
+        if self.torque is not None:
+            along, across, offset = self.torque.terms(q, slope, bend, self._expected_at(pieces, places))
+            limit = self.torque.limit
+        squared = None
+        if self.frame is not None:
+            squared = _least_squares(self.frame.shares(q, slope).reshape(-1, 3))
+            if self.slower is not None:
+                squared = squared * self.slower
+        return along, across, offset, self.margin, limit, squared
+
+    def _expected_at(self, pieces: Array, places: Array) -> Array:
+        if self.expected is None:
+            return np.zeros(len(pieces))
+        s = self.path.breaks[pieces] + places * self.path.lengths[pieces]
+        return np.interp(s, *self.expected)
+
+    def tighten(self, timed: TimedPath) -> bool:
+        """Whether no limit is exceeded at samples of each interval; else the limits there are tightened."""
+        shares = np.arange(CHECKED_PLACES + 1.0) / CHECKED_PLACES
+        at = timed._look_at(tuple(shares))
+        kept = True
+        if self.torque is not None:
+            over = np.abs(self.torque.torques(self.path, at)) - self.torque.limit
+            over = over.reshape(len(shares), -1, self.path.dof).max(axis=0)
+            if (over > ROUNDING * np.maximum(self.torque.limit, 1.0)).any():
+                kept = False
+                own = np.zeros_like(over) if self.margin is None else self.margin
+                self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
+            self.expected = timed.grid, timed.squared_speed
+        if self.frame is not None:
+            used = self.frame.shares(*(move_along(self.path, at, order) for order in range(2)))
+            used = used.reshape(len(shares), -1).max(axis=0)
+            if (used > 1.0 + ROUNDING).any():
+                kept = False
+                own = np.ones_like(used) if self.slower is None else self.slower
+                self.slower = own / np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
+        return kept
+
+
+ROUNDING: Final = 1e-9
+"""Share of a limit by which it may be exceeded, as of Trajectory.check."""
+
+
+def _least_squares(shares: Array) -> Array:
+    """The squared speed (k,) at which the largest of three shares per unit speed (k, 3) is one.
+
+    Between the places a share may be larger, by as much as its second difference.
+    """
+    bump = np.abs(shares[:, 0] - 2.0 * shares[:, 1] + shares[:, 2])
+    most = shares.max(axis=1) + 0.125 * bump
+    with np.errstate(divide="ignore"):
+        return np.minimum(1.0 / (most * most), LARGEST_SQUARE)
+
+
+LARGEST_SQUARE: Final = 1e30
+"""Squared speed that stands for none."""
+
+
+@dataclass(frozen=True)
+class LimitShares:
+    """How much a motion uses of its limits: what TimedPath.binding compares."""
+
+    labels: tuple[str, ...]
+    velocity: Array
+    acceleration: Array
+    torque: TorqueLimits | None
+    frame: FrameLimits | None
+
+    def __call__(self, path: Path, at: Places) -> list[tuple[str, str, Array]]:
+        """Joint or frame, name and share (m,) of every limit."""
+        rows: list[tuple[str, str, Array]] = []
+        for name, order, limit in (("velocity", 1, self.velocity), ("acceleration", 2, self.acceleration)):
+            rows += self._joint_rows(name, move_along(path, at, order), limit)
+        if self.torque is not None:
+            rows += self._joint_rows("torque", self.torque.torques(path, at), self.torque.limit)
+        if self.frame is not None:
+            speed, turn = self.frame.rates(move_along(path, at, 0), move_along(path, at, 1))
+            frame = self.frame.frame or "tip"
+            rows.append((frame, "speed", speed / self.frame.speed))
+            rows.append((frame, "turn_rate", turn / self.frame.turn_rate))
+        return rows
+
+    def _joint_rows(self, name: str, values: Array, limit: Array) -> list[tuple[str, str, Array]]:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shares: Any = np.where(limit > 0.0, np.abs(values) / limit, 0.0)
+        return [(label, name, shares[:, j]) for j, label in enumerate(self.labels)]
