@@ -117,7 +117,7 @@ class PathTimer {
     void take_samples(TimingSamples&& given) {
         samples_ = std::move(given);
         SampledLimits& sampled = rows_.sampled;
-        if (!samples_.squared_speed.empty()) sampled.squared_speed = samples_.squared_speed.data();
+        if (!samples_.inverse_square.empty()) sampled.inverse_square = samples_.inverse_square.data();
         if (samples_.along.empty()) return;
         for (auto* rows : {&samples_.along, &samples_.across, &samples_.offset, &samples_.margin})
             *rows = pad_rows(*rows, path_.joints, padded_);

@@ -30,9 +30,9 @@ struct TimingGrid {
 };
 
 // Limits that are sampled along the path, as of SampledLimits: along, across, offset (3 intervals, joints) or
-// empty, margin (intervals, joints) or empty, limit (joints,), squared_speed (intervals,) or empty.
+// empty, margin (intervals, joints) or empty, limit (joints,), inverse_square (intervals, 3) or empty.
 struct TimingSamples {
-    std::vector<double> along, across, offset, margin, limit, squared_speed;
+    std::vector<double> along, across, offset, margin, limit, inverse_square;
 };
 using Sampler = std::function<TimingSamples(const TimingGrid&)>;
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
@@ -99,7 +99,7 @@ class SampledLimits:
     frame: FrameLimits | None
     expected: tuple[Array, Array] | None = None
     margin: Array | None = None
-    slower: Array | None = field(default=None)
+    slower: Array | None = None
 
     def __call__(self, piece: Array, begin: Array, end: Array) -> tuple[Array | None, ...]:
         """The samples at the begin, the middle and the end of each interval, as the core wants them."""
@@ -110,12 +110,12 @@ class SampledLimits:
         if self.torque is not None:
             along, across, offset = self.torque.terms(q, slope, bend, self._expected_at(pieces, places))
             limit = self.torque.limit
-        squared = None
+        inverse = None
         if self.frame is not None:
-            squared = _least_squares(self.frame.shares(q, slope).reshape(-1, 3))
+            inverse = _inverse_squares(self.frame.shares(q, slope).reshape(-1, 3))
             if self.slower is not None:
-                squared = squared * self.slower
-        return along, across, offset, self.margin, limit, squared
+                inverse = inverse * self.slower[:, None]
+        return along, across, offset, self.margin, limit, inverse
 
     def _expected_at(self, pieces: Array, places: Array) -> Array:
         if self.expected is None:
@@ -142,7 +142,7 @@ class SampledLimits:
             if (used > 1.0 + ROUNDING).any():
                 kept = False
                 own = np.ones_like(used) if self.slower is None else self.slower
-                self.slower = own / np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
+                self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
         return kept
 
 
@@ -150,19 +150,15 @@ ROUNDING: Final = 1e-9
 """Share of a limit by which it may be exceeded, as of Trajectory.check."""
 
 
-def _least_squares(shares: Array) -> Array:
-    """The squared speed (k,) at which the largest of three shares per unit speed (k, 3) is one.
+def _inverse_squares(shares: Array) -> Array:
+    """Bernstein coefficients (k, 3) of the inverse of the squared speed at which a share is one.
 
-    Between the places a share may be larger, by as much as its second difference.
+    shares (k, 3): what unit speed uses of a limit at the begin, the middle and the end of each interval. The
+    quadratic polynomial through their squares stands for what is between.
     """
-    bump = np.abs(shares[:, 0] - 2.0 * shares[:, 1] + shares[:, 2])
-    most = shares.max(axis=1) + 0.125 * bump
-    with np.errstate(divide="ignore"):
-        return np.minimum(1.0 / (most * most), LARGEST_SQUARE)
-
-
-LARGEST_SQUARE: Final = 1e30
-"""Squared speed that stands for none."""
+    first, middle, last = (shares * shares).T
+    control = np.maximum(2.0 * middle - 0.5 * (first + last), np.minimum(first, last))
+    return np.stack([first, control, last], axis=1)
 
 
 @dataclass(frozen=True)

@@ -146,7 +146,12 @@ class TimedPath(Trajectory):
             c = c[..., 1:] * np.arange(1.0, c.shape[-1]) if c.shape[-1] > 1 else np.zeros_like(c)
         count, n = c.shape[:2]
         flat = c.reshape(count * n, -1)
-        roots = find_piece_roots(flat, np.zeros(len(flat)), np.ones(len(flat))).reshape(count, n, -1)
+        control = flat @ _powers_to_bernstein(flat.shape[1] - 1).T
+        turns = (control.min(axis=1) < 0.0) & (control.max(axis=1) > 0.0)  # others have no root inside
+        found = find_piece_roots(flat[turns], np.zeros(turns.sum()), np.ones(turns.sum()))
+        roots = np.full((count * n, found.shape[1]), np.nan)
+        roots[turns] = found
+        roots = roots.reshape(count, n, -1)
         seconds = np.diff(self._times)
         times = self._times[:-1, None, None] + seconds[:, None, None] * roots
         return [np.unique(np.append(t[np.isfinite(t)], self._times)) for t in times.transpose(1, 0, 2)]
