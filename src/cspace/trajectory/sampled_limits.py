@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -12,7 +13,7 @@ from cspace.dynamics import inverse_dynamics
 from cspace.kinematics import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.trajectory.path import Path
-from cspace.trajectory.timed_path import Grid, Places, TimedPath, move_along
+from cspace.trajectory.timed_path import Places, TimedPath, move_along_path
 
 CHECKED_PLACES: Final = 10
 """Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss."""
@@ -38,10 +39,19 @@ class TorqueLimits:
     limit: Array
     gravity: Array
 
-    def torques(self, path: Path, at: Places) -> Array:
-        """The torques (m, dof) of a motion at places."""
-        q, qd, qdd = (move_along(path, at, order) for order in range(3))
-        return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity)
+    @cached_property
+    def resists(self) -> bool:
+        """Whether joints have damping or dry friction."""
+        rest, moving = np.zeros((1, self.robot.dof)), np.ones((1, self.robot.dof))
+        with_friction, without = (self._torque(rest, moving, rest, each) for each in (True, False))
+        return not np.array_equal(with_friction, without)
+
+    def _torque(self, q: Array, qd: Array, qdd: Array, friction: bool = False) -> Array:
+        return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity, friction=friction)
+
+    def torques(self, q: Array, qd: Array, qdd: Array) -> Array:
+        """The torques (m, dof) of a motion (m, dof)."""
+        return self._torque(q, qd, qdd, friction=True)
 
     def terms(self, q: Array, slope: Array, bend: Array, squared_speed: Array) -> tuple[Array, ...]:
         """τ = along s̈ + across ṡ² + offset: the three terms, each (m, dof).
@@ -49,19 +59,17 @@ class TorqueLimits:
         Damping is proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
         """
         rest = np.zeros_like(q)
-
-        def torque(qd: Array, qdd: Array, friction: bool = False) -> Array:
-            return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity, friction=friction)
-
-        weight = torque(rest, rest)
-        along = torque(rest, slope) - weight
-        own = torque(slope, bend)
-        across = own - weight
-        once = torque(slope, bend, friction=True) - own
-        if not once.any():
+        rates = np.stack([rest, rest, slope]), np.stack([rest, slope, bend])
+        weight, along, across = self._torque(q, *rates)
+        along -= weight
+        across -= weight
+        if not self.resists:
             return along, across, weight
-        damping = torque(2.0 * slope, bend, friction=True) - torque(2.0 * slope, bend) - once
-        dry = once - damping
+        once, twice = (
+            self._torque(q, k * slope, bend, friction=True) - self._torque(q, k * slope, bend)
+            for k in (1.0, 2.0)
+        )
+        damping, dry = twice - once, 2.0 * once - twice
         x = squared_speed[:, None]
         root = np.sqrt(np.maximum(x, STANDING * squared_speed.max(initial=1.0)))
         return along, across + 0.5 * damping / root, weight + dry + 0.5 * damping * root
@@ -127,9 +135,10 @@ class SampledLimits:
         """Whether no limit is exceeded at samples of each interval; else the limits there are tightened."""
         shares = np.arange(CHECKED_PLACES + 1.0) / CHECKED_PLACES
         at = timed._look_at(tuple(shares))
+        q, qd, qdd = move_along_path(self.path, at)
         kept = True
         if self.torque is not None:
-            over = np.abs(self.torque.torques(self.path, at)) - self.torque.limit
+            over = np.abs(self.torque.torques(q, qd, qdd)) - self.torque.limit
             over = over.reshape(len(shares), -1, self.path.dof).max(axis=0)
             if (over > ROUNDING * np.maximum(self.torque.limit, 1.0)).any():
                 kept = False
@@ -137,7 +146,7 @@ class SampledLimits:
                 self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
             self.expected = timed.grid, timed.squared_speed
         if self.frame is not None:
-            used = self.frame.shares(*(move_along(self.path, at, order) for order in range(2)))
+            used = self.frame.shares(q, qd)
             used = used.reshape(len(shares), -1).max(axis=0)
             if (used > 1.0 + ROUNDING).any():
                 kept = False
@@ -174,12 +183,13 @@ class LimitShares:
     def __call__(self, path: Path, at: Places) -> list[tuple[str, str, Array]]:
         """Joint or frame, name and share (m,) of every limit."""
         rows: list[tuple[str, str, Array]] = []
-        for name, order, limit in (("velocity", 1, self.velocity), ("acceleration", 2, self.acceleration)):
-            rows += self._joint_rows(name, move_along(path, at, order), limit)
+        q, qd, qdd = move_along_path(path, at)
+        rows += self._joint_rows("velocity", qd, self.velocity)
+        rows += self._joint_rows("acceleration", qdd, self.acceleration)
         if self.torque is not None:
-            rows += self._joint_rows("torque", self.torque.torques(path, at), self.torque.limit)
+            rows += self._joint_rows("torque", self.torque.torques(q, qd, qdd), self.torque.limit)
         if self.frame is not None:
-            speed, turn = self.frame.rates(move_along(path, at, 0), move_along(path, at, 1))
+            speed, turn = self.frame.rates(q, qd)
             frame = self.frame.frame or "tip"
             rows.append((frame, "speed", speed / self.frame.speed))
             rows.append((frame, "turn_rate", turn / self.frame.turn_rate))

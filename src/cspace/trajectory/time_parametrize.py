@@ -151,7 +151,7 @@ class _Timer:
         """The fastest motion; on a grid of its own without one."""
         if self.sampled is None:
             return self._solve(grid, None)
-        if self.sampled.torque is not None:
+        if self.sampled.torque is not None and self.sampled.torque.resists:
             plain = self._solve(grid, None)
             if plain:
                 self.sampled.expected = plain.grid, plain.squared_speed

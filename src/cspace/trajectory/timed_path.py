@@ -262,6 +262,13 @@ def move_along(path: Path, at: Places, order: int) -> Array:
     return twist * v**3 + bend * (3.0 * v * u)
 
 
+def move_along_path(path: Path, at: Places) -> tuple[Array, Array, Array]:
+    """Positions, velocities and accelerations (m, dof) of a motion along a path."""
+    q, slope, bend = (path.evaluate_pieces(at.piece, at.local, order) for order in range(3))
+    v, u = at.speed[:, None], at.acceleration[:, None]
+    return q, slope * v, bend * (v * v) + slope * u
+
+
 def restrict_pieces(control_points: Array, begin: Array, end: Array) -> Array:
     """Control points (k, degree + 1, dof) of parts [begin, end] of pieces, by two subdivisions."""
     made = np.array(control_points)
