@@ -1,4 +1,6 @@
 // The fastest motion along a path, for cspace.trajectory.time_parametrize.
+#include "library/trajectory_timing.hpp"
+
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
@@ -9,7 +11,6 @@
 
 #include "arrays_in_place.hpp"
 #include "bindings.hpp"
-#include "library/trajectory_timing.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -21,9 +22,9 @@ using Integers = Plain<const std::int32_t>;
 using Flags = Plain<const std::int8_t>;
 using GridArrays = std::tuple<Plain<std::int32_t>, Doubles, Doubles>;
 // along, across, offset, margin and limit of sampled limits, and the inverse of the squared speed.
-using SampleArrays = std::tuple<std::optional<ConstDoubles>, std::optional<ConstDoubles>,
-                                std::optional<ConstDoubles>, std::optional<ConstDoubles>,
-                                std::optional<ConstDoubles>, std::optional<ConstDoubles>>;
+using SampleArrays =
+    std::tuple<std::optional<ConstDoubles>, std::optional<ConstDoubles>, std::optional<ConstDoubles>,
+               std::optional<ConstDoubles>, std::optional<ConstDoubles>, std::optional<ConstDoubles>>;
 
 void require_size(bool fits) {
     if (!fits) throw nb::value_error("arrays of matching sizes are needed");
@@ -71,8 +72,8 @@ Sampler make_sampler(const nb::object& sample, int joints) {
     return [&sample, joints](const TimingGrid& grid) {
         const nb::gil_scoped_acquire acquire;
         const GridArrays arrays = show_grid(grid);
-        const auto given = nb::cast<SampleArrays>(
-            sample(std::get<0>(arrays), std::get<1>(arrays), std::get<2>(arrays)));
+        const auto given =
+            nb::cast<SampleArrays>(sample(std::get<0>(arrays), std::get<1>(arrays), std::get<2>(arrays)));
         const std::size_t width = std::size_t(joints), count = grid.size();
         const std::size_t rows = std::get<0>(given) ? 3 * count * width : 0;
         require_size(!rows || (std::get<1>(given) && std::get<2>(given) && std::get<4>(given)));
@@ -135,5 +136,6 @@ void bind_trajectory_timing(nb::module_& m) {
         },
         "controls"_a, "lengths"_a, "stops"_a, "velocity"_a, "acceleration"_a, "start"_a, "end"_a,
         "tolerance"_a, "grid"_a.none(), "sample"_a.none(),
-        "Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.");
+        "Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether "
+        "converged.");
 }

@@ -101,6 +101,7 @@ class PathTimer {
             timing.where = size_t(blocked);
             return timing;
         }
+        if (start_ < range_[0].low && end_ > 0.0) return explain_end(timing);
         if (!(range_[0].low <= start_ && start_ <= range_[0].high))
             return report(timing, TimingOutcome::start, range_[0]);
         timing.squared_speed.assign(count + 1, 0.0);

@@ -144,7 +144,8 @@ template <int m>
 CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const double (&P)[2 * m + 1]) {
     using V = Pack<native_width>;
     constexpr int last = 2 * m + 1, padded = (last + joint_padding - 1) / joint_padding * joint_padding;
-    double alpha[padded] = {}, beta[padded] = {};  // of rows 1 to 2m; row 0 is largest_x, row 2m + 1 largest_y
+    double alpha[padded] = {},
+           beta[padded] = {};  // of rows 1 to 2m; row 0 is largest_x, row 2m + 1 largest_y
     for (int k = 1; k < last; ++k) {
         alpha[k - 1] = (double(last - k) / last) * P[k];
         beta[k - 1] = (double(k) / last) * P[k - 1];

@@ -18,8 +18,8 @@ struct SpeedRange {
 // Share of y by which the width of what remains may be negative: the rounding of two rows.
 inline constexpr double closed_width = 8e-16;
 
-// Share of x by which the rows are narrowed: the rounding of y, which is all of an acceleration where intervals
-// are short and motions fast.
+// Share of x by which the rows are narrowed: the rounding of y, which is all of an acceleration where
+// intervals are short and motions fast.
 inline constexpr double speed_rounding = 4.5e-16;
 
 }  // namespace cspace::trajectory
@@ -40,7 +40,8 @@ CSPACE_INLINE Edges reduce_edges(V low, V low_slope, V low_offset, V high, V hig
     Edges edges{{lane(low, 0), lane(low_slope, 0), lane(low_offset, 0)},
                 {lane(high, 0), lane(high_slope, 0), lane(high_offset, 0)}};
     for (int k = 1; k < Lanes<V>::count; ++k) {
-        if (lane(low, k) > edges.low.value) edges.low = {lane(low, k), lane(low_slope, k), lane(low_offset, k)};
+        if (lane(low, k) > edges.low.value)
+            edges.low = {lane(low, k), lane(low_slope, k), lane(low_offset, k)};
         if (lane(high, k) < edges.high.value)
             edges.high = {lane(high, k), lane(high_slope, k), lane(high_offset, k)};
     }
@@ -103,7 +104,8 @@ inline std::ptrdiff_t bound_speeds(const TimedRows& path, std::size_t begin, std
     for (std::size_t i = end; i-- > begin;) {
         const Rows rows = build_rows<m>(path, i, memory);
         const SpeedRange& next = range[i + 1];
-        const double most = find_end(rows, path.stops[i] ? 0.0 : min(rows.largest_x, range[i].high), -1.0, next);
+        const double most =
+            find_end(rows, path.stops[i] ? 0.0 : min(rows.largest_x, range[i].high), -1.0, next);
         const bool may_stand = next.low == 0.0 && !path.sampled.along;
         const double least = may_stand ? 0.0 : find_end(rows, 0.0, 1.0, next);
         if (most < 0.0 || least < 0.0 || least > most) return std::ptrdiff_t(i);

@@ -1,16 +1,29 @@
-"""Trajectories: motions in time, their derivatives, and checks against the limits of joints."""
+"""Trajectories: paths, motions in time, and checks against the limits of joints."""
 
+from cspace.trajectory.blends import blend
+from cspace.trajectory.fit_path import fit_path
 from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
+from cspace.trajectory.path import Path
 from cspace.trajectory.polynomials import PolynomialTrajectory
+from cspace.trajectory.splines import b_spline, spline
+from cspace.trajectory.time_parametrize import time_parametrize
+from cspace.trajectory.timed_path import TimedPath
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
 
 __all__ = [
     "BindingLimit",
     "Extremes",
     "JoinedTrajectory",
+    "Path",
     "PolynomialTrajectory",
     "Samples",
+    "TimedPath",
     "Trajectory",
     "TrajectoryCheck",
     "Violation",
+    "b_spline",
+    "blend",
+    "fit_path",
+    "spline",
+    "time_parametrize",
 ]

@@ -68,9 +68,7 @@ def blend(waypoints: ArrayLike, deviation: ArrayLike, *, kind: str = "quintic") 
         at = corner + l * directions[i + 1]
     pieces.add_line(at, given.q[-1])
     reversals = int((turns >= np.pi - REVERSED_TURN).sum())
-    remarks = given.remarks + (
-        [f"stops at {count_things(reversals, 'turn')} near 180°"] if reversals else []
-    )
+    remarks = given.remarks + ([f"stops at {count_things(reversals, 'turn')} near 180°"] if reversals else [])
     return pieces.make_path(remarks)
 
 
@@ -142,4 +140,6 @@ class _Pieces:
 
     def make_path(self, remarks: list[str]) -> Path:
         """All pieces as a path."""
-        return Path(np.concatenate([[0.0], np.cumsum(self.lengths)]), np.array(self.controls), remarks=remarks)
+        return Path(
+            np.concatenate([[0.0], np.cumsum(self.lengths)]), np.array(self.controls), remarks=remarks
+        )

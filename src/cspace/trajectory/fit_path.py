@@ -69,5 +69,7 @@ def _fit_pieces(curve: Callable[[Array, int], Array], breaks: Array) -> tuple[Pa
 def _read_curve(curve: Callable[[Array, int], Array], s: Array, order: int) -> Array:
     values = as_floats(curve(s, order), f"curve(s, {order})", last=(None,))
     if values.ndim != 2 or len(values) != len(s):
-        raise InputError(f"curve(s, {order}) has shape {values.shape} for s ({len(s)},); expected ({len(s)}, dof)")
+        raise InputError(
+            f"curve(s, {order}) has shape {values.shape} for s ({len(s)},); expected ({len(s)}, dof)"
+        )
     return values

@@ -226,7 +226,10 @@ class Path:
 def _powers_to_bernstein(degree: int) -> Array:
     """The matrix from coefficients of powers on [0, 1] to those of Bernstein polynomials."""
     return np.array(
-        [[comb(j, i) / comb(degree, i) if i <= j else 0.0 for i in range(degree + 1)] for j in range(degree + 1)]
+        [
+            [comb(j, i) / comb(degree, i) if i <= j else 0.0 for i in range(degree + 1)]
+            for j in range(degree + 1)
+        ]
     )
 
 

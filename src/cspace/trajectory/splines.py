@@ -23,9 +23,7 @@ DEGREES: Final = (3, 5)
 """Of the splines through waypoints."""
 
 
-def spline(
-    waypoints: ArrayLike, degree: int = 3, *, ends: str = "natural", spacing: str = "chord"
-) -> Path:
+def spline(waypoints: ArrayLike, degree: int = 3, *, ends: str = "natural", spacing: str = "chord") -> Path:
     """The spline through waypoints: cubic with continuous q'', or quintic with continuous q''''.
 
     waypoints (k, dof) [rad or m]. ends: "natural" with q'' = 0 (and q'''' = 0 of quintic ones), or "clamped"
@@ -100,7 +98,9 @@ def _quintic_controls(h: Array, q: Array, ends: str) -> Array:
     lower[1:-1] = end[:-1, :, 0] * weight
     diagonal[1:-1] = (end[:-1, :, 1] - begin[1:, :, 0]) * weight
     upper[1:-1] = -begin[1:, :, 1] * weight
-    right[1:-1] = weight * (begin_step[1:, :, None] * step[1:, None] - end_step[:-1, :, None] * step[:-1, None])
+    right[1:-1] = weight * (
+        begin_step[1:, :, None] * step[1:, None] - end_step[:-1, :, None] * step[:-1, None]
+    )
     diagonal[[0, -1], 1, 1] = 1.0  # a = 0 in the second row of both ends
     if ends == "natural":
         diagonal[0, 0], upper[0, 0] = begin[0, 1, 0] * h[0] ** 3, begin[0, 1, 1] * h[0] ** 3
@@ -155,7 +155,10 @@ def b_spline(control_points: ArrayLike, degree: int = 3, *, length: float | None
     knots = np.concatenate([np.zeros(degree), inner, np.full(degree, float(pieces))])
     controls = np.stack(
         [
-            [_blossom(q, knots, k, [inner[k]] * (degree - j) + [inner[k + 1]] * j, degree) for k in range(pieces)]
+            [
+                _blossom(q, knots, k, [inner[k]] * (degree - j) + [inner[k + 1]] * j, degree)
+                for k in range(pieces)
+            ]
             for j in range(degree + 1)
         ],
         axis=1,
