@@ -113,7 +113,7 @@ void bind_trajectory_timing(nb::module_& m) {
             return show_grid(divide_evenly(read_path(controls, lengths, stops), intervals));
         },
         "controls"_a, "lengths"_a, "stops"_a, "intervals"_a,
-        "Pieces, from and to (k,) of about so many intervals of a path, none across a break.");
+        "Pieces, from and to (k,) of about so many intervals of a path, two or more in each piece.");
     m.def(
         "time_path",
         [](const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops,

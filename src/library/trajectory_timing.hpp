@@ -55,7 +55,7 @@ struct Timing {
     bool converged;                     // the halving ended before its limits
 };
 
-// About so many intervals, no fewer than pieces, none across a break.
+// About so many intervals, two or more in each piece.
 TimingGrid divide_evenly(const TimingPath& path, std::size_t intervals);
 
 // The fastest motion on a grid. sample may be empty.

@@ -44,6 +44,7 @@ struct TimedRows {
     int degree, joints, padded;          // of q'; padded: joints rounded up
     const double* slopes;                // (pieces, degree + 1, padded): Bernstein coefficients of dq/ds
     const double* lengths;               // (pieces,): of their parameter
+    const double* least_inverse_square;  // (pieces,): of the squared path speed
     const double* inverse_acceleration;  // (padded,) [s²/rad or s²/m], 0 without a limit
     const double* inverse_velocity;      // (padded,)
     const Interval* intervals;
@@ -215,7 +216,7 @@ CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memo
         raise_squares<m>(scaled, squares);
     }
     double P[2 * m + 1];
-    for (int k = 0; k <= 2 * m; ++k) P[k] = largest_lane(squares[k]);
+    for (int k = 0; k <= 2 * m; ++k) P[k] = max(largest_lane(squares[k]), path.least_inverse_square[part.piece]);
     if (path.sampled.inverse_square) raise_to_quadratic<m>(P, path.sampled.inverse_square + 3 * i);
     write_velocity_rows<m>(rows, (m + 1) * padded, P);
     if (path.sampled.along) {
