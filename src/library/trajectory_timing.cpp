@@ -13,13 +13,13 @@ namespace {
 using std::size_t;
 
 constexpr size_t intervals_between_polls = 256;  // some fifty microseconds
-constexpr int first_parts = 4;           // of a piece: halved once before anything is known of it
-constexpr double least_part = 0x1p-18;   // of a piece: beyond it rounding shows in the accelerations
+constexpr int first_parts = 4;                   // of a piece: halved once before anything is known of it
+constexpr double least_part = 0x1p-18;           // of a piece: beyond it rounding shows in the accelerations
 constexpr double share_of_change = 0.3;  // of the mean change of an interval, above which it is halved
 constexpr int most_rounds = 24;
 constexpr size_t least_parts = 2;  // of a piece: with stops at both its ends it has to move between
-// Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes of
-// the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
+// Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
+// of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
 constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
 
 std::vector<double> pad_rows(std::span<const double> rows, int width, int padded) {

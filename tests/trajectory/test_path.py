@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from trajectory.path_cases import MAKERS, random_waypoints
 
 import cspace as cs
 from cspace.trajectory import Path, b_spline, fit_path
+from trajectory.path_cases import MAKERS, random_waypoints
 
 RNG = np.random.default_rng(5)
 
@@ -123,7 +123,9 @@ def test_waypoints_that_are_the_same_merge():
 
 def test_fitted_curves_are_within_the_tolerance():
     def curve(s, order):
-        return np.stack([np.sin(3 * s + order * np.pi / 2) * 3**order, np.cos(s + order * np.pi / 2)], axis=-1)
+        return np.stack(
+            [np.sin(3 * s + order * np.pi / 2) * 3**order, np.cos(s + order * np.pi / 2)], axis=-1
+        )
 
     for tolerance in (1e-3, 1e-6, 1e-9):
         path = fit_path(curve, 5.0, tolerance=tolerance)

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from trajectory.path_cases import MAKERS, excess, line, random_waypoints
 
 import cspace as cs
 from cspace.trajectory import Path
+from trajectory.path_cases import MAKERS, excess, line, random_waypoints
 
 ROUNDING = 1e-9
 

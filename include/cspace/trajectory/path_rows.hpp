@@ -216,7 +216,8 @@ CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memo
         raise_squares<m>(scaled, squares);
     }
     double P[2 * m + 1];
-    for (int k = 0; k <= 2 * m; ++k) P[k] = max(largest_lane(squares[k]), path.least_inverse_square[part.piece]);
+    for (int k = 0; k <= 2 * m; ++k)
+        P[k] = max(largest_lane(squares[k]), path.least_inverse_square[part.piece]);
     if (path.sampled.inverse_square) raise_to_quadratic<m>(P, path.sampled.inverse_square + 3 * i);
     write_velocity_rows<m>(rows, (m + 1) * padded, P);
     if (path.sampled.along) {

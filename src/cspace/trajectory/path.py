@@ -93,12 +93,12 @@ class Path:
     @property
     def start(self) -> Array:
         """The first configuration (dof,)."""
-        return self.control_points[0, 0]
+        return np.asarray(self.control_points[0, 0])
 
     @property
     def end(self) -> Array:
         """The last configuration (dof,)."""
-        return self.control_points[-1, -1]
+        return np.asarray(self.control_points[-1, -1])
 
     @cached_property
     def lengths(self) -> Array:
@@ -176,7 +176,7 @@ class Path:
         degree = control.shape[1] - 1
         points = control.take(piece, axis=0)
         if degree == 0:
-            return points[:, 0]
+            return np.asarray(points[:, 0])
         rest = 1.0 - local
         weights = np.empty((len(local), degree + 1))
         weights[:, 0] = 1.0
@@ -185,7 +185,7 @@ class Path:
             for k in range(i - 1, 0, -1):
                 weights[:, k] = rest * weights[:, k] + local * weights[:, k - 1]
             weights[:, 0] *= rest
-        return np.einsum("mi,mij->mj", weights, points)
+        return np.asarray(np.einsum("mi,mij->mj", weights, points))
 
     @cached_property
     def excursion(self) -> Array:

@@ -12,6 +12,7 @@ from cspace.arrays import Array
 from cspace.dynamics import inverse_dynamics
 from cspace.kinematics import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED
 from cspace.trajectory.path import Path
 from cspace.trajectory.timed_path import Places, TimedPath, move_along_path
 
@@ -23,9 +24,6 @@ MOST_ROUNDS: Final = 8
 
 TIGHTENED: Final = 1.5
 """Multiple of what exceeds a limit by which it is tightened: the motion changes with it."""
-
-STANDING: Final = 1e-12
-"""Squared speed, relative to the largest, below which the tangent of its root is not taken."""
 
 
 @dataclass
@@ -71,7 +69,7 @@ class TorqueLimits:
         )
         damping, dry = twice - once, 2.0 * once - twice
         x = squared_speed[:, None]
-        root = np.sqrt(np.maximum(x, STANDING * squared_speed.max(initial=1.0)))
+        root = np.sqrt(np.maximum(x, STANDING_SPEED * squared_speed.max(initial=1.0)))
         return along, across + 0.5 * damping / root, weight + dry + 0.5 * damping * root
 
 
@@ -92,7 +90,8 @@ class FrameLimits:
     def shares(self, q: Array, qd: Array) -> Array:
         """The larger of the two shares (m,) that are used of the limits."""
         speed, turn = self.rates(q, qd)
-        return np.maximum(speed / self.speed, turn / self.turn_rate)
+        shares: Array = np.maximum(speed / self.speed, turn / self.turn_rate)
+        return shares
 
 
 @dataclass
@@ -109,7 +108,7 @@ class SampledLimits:
     margin: Array | None = None
     slower: Array | None = None
 
-    def __call__(self, piece: Array, begin: Array, end: Array) -> tuple[Array | None, ...]:
+    def __call__(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
         """The samples at the begin, the middle and the end of each interval, as the core wants them."""
         places = np.stack([begin, 0.5 * (begin + end), end], axis=1).ravel()
         pieces = np.repeat(piece, 3)
@@ -140,7 +139,7 @@ class SampledLimits:
         if self.torque is not None:
             over = np.abs(self.torque.torques(q, qd, qdd)) - self.torque.limit
             over = over.reshape(len(shares), -1, self.path.dof).max(axis=0)
-            if (over > ROUNDING * np.maximum(self.torque.limit, 1.0)).any():
+            if (over > LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)).any():
                 kept = False
                 own = np.zeros_like(over) if self.margin is None else self.margin
                 self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
@@ -148,15 +147,11 @@ class SampledLimits:
         if self.frame is not None:
             used = self.frame.shares(q, qd)
             used = used.reshape(len(shares), -1).max(axis=0)
-            if (used > 1.0 + ROUNDING).any():
+            if (used > 1.0 + LIMIT_ROUNDING).any():
                 kept = False
                 own = np.ones_like(used) if self.slower is None else self.slower
                 self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
         return kept
-
-
-ROUNDING: Final = 1e-9
-"""Share of a limit by which it may be exceeded, as of Trajectory.check."""
 
 
 def _inverse_squares(shares: Array) -> Array:

@@ -14,6 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.tables import join_words
+from cspace.tolerances import STILL_JOINT, TIMED_WITHIN
 from cspace.trajectory.path import Path
 from cspace.trajectory.sampled_limits import (
     MOST_ROUNDS,
@@ -24,14 +25,8 @@ from cspace.trajectory.sampled_limits import (
 )
 from cspace.trajectory.timed_path import Grid, TimedPath
 
-TOLERANCE: Final = 1e-3
-"""Of the duration, by default."""
-
 MOST_INTERVALS: Final = 10_000_000
 """Of a grid that is given as a number."""
-
-MOVES: Final = 1e-12
-"""Slope of a joint, relative to the largest one, up to which it does not move."""
 
 EMPTY_GRID: Final = Grid(np.zeros(0, dtype=np.int32), np.zeros(0), np.zeros(0))
 
@@ -51,7 +46,7 @@ def time_parametrize(
     start_speed: float = 0.0,
     end_speed: float = 0.0,
     grid: int | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: float = TIMED_WITHIN,
 ) -> TimedPath:
     """The fastest motion along a path within limits of velocity, acceleration, torque and tip speed.
 
@@ -62,8 +57,8 @@ def time_parametrize(
     path: a Path, such as of spline or blend. limits: Limits or a robot. velocity, acceleration: in their
     place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. torque: one number, (dof,) [N·m or
     N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest ones of the frame of
-    robot, by default its tip. robot: whose dynamics and kinematics those need, by default limits. gravity (3,)
-    [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends. grid: about so many intervals;
+    robot, by default its tip. robot: whose dynamics and kinematics those need, by default limits. gravity
+    (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends. grid: about so many intervals;
     by default intervals are halved until that changes the duration by less than `tolerance`, relative.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits or the
@@ -133,7 +128,7 @@ class _Timer:
     def find_locked_joint(self) -> TimedPath | None:
         """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
         slopes = np.abs(self.path._derivatives[1]).max(axis=1)
-        moves = slopes > MOVES * slopes.max(axis=1, keepdims=True)
+        moves = slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True)
         for name, limit in (("velocity", self.velocity), ("acceleration", self.acceleration)):
             locked = np.argwhere(moves & (limit == 0.0))
             if locked.size:
@@ -173,7 +168,7 @@ class _Timer:
             self.acceleration,
             *self.ends,
             self.tolerance,
-            None if grid is None else tuple(grid),
+            None if grid is None else (grid.piece, grid.begin, grid.end),
             sample,
         )
         used = Grid(*intervals)

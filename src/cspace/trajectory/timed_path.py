@@ -23,7 +23,7 @@ elsewhere, by as much as its acceleration changes."""
 
 
 class Grid(NamedTuple):
-    """Intervals of a path in order: the piece (k,) of each, and where in it, in [0, 1], it begins and ends."""
+    """Intervals of a path in order: the piece (k,) of each, and where in it, from 0 to 1, it begins and ends."""
 
     piece: npt.NDArray[np.int32]
     begin: Array
@@ -45,7 +45,7 @@ class Places(NamedTuple):
 
 
 Ratios = Callable[[Path, Places], list[tuple[str, str, Array]]]
-"""The limits of a motion at places (m,): of each its joint or frame, its name, and how much of it is used (m,)."""
+"""The limits of a motion at places (m,): of each its joint or frame, its name, and its share (m,) in use."""
 
 
 class TimedPath(Trajectory):
@@ -192,7 +192,7 @@ class TimedPath(Trajectory):
         begins = np.flatnonzero(np.append(True, np.diff(most) != 0))
         ends = np.append(begins[1:], len(most))
         return tuple(
-            BindingLimit(*used[most[a]][:2], float(self._times[a]), float(self._times[b]))
+            BindingLimit(used[most[a]][0], used[most[a]][1], float(self._times[a]), float(self._times[b]))
             for a, b in zip(begins, ends, strict=True)
             if most[a] >= 0
         )
