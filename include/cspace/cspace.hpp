@@ -66,4 +66,5 @@
 #include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/cover.hpp"
 #include "cspace/shapes/triangle.hpp"
+#include "cspace/trajectory/synchronize.hpp"
 #include "cspace/version.hpp"
