@@ -46,7 +46,7 @@ void solve(const States& states, const Matrix& limits, const Row& durations, dou
 }
 
 void fill_pieces(const OneState& states, const Counts& count, const PhasesIn& phases, double duration,
-                 bool has_jerk, MatrixOut knots, CubeOut coefficients, MatrixOut origins) {
+                 MatrixOut knots, CubeOut coefficients, MatrixOut origins) {
     const std::size_t dof = states.shape(2), pieces = origins.shape(1), most = std::size_t(phases_of_axis());
     bool fit = has_shape(count, dof) && has_shape(phases, dof, most, std::size_t(phase_numbers)) &&
                pieces > 0 && has_shape(knots, dof, pieces + 1) && has_shape(coefficients, dof, pieces, 4u) &&
@@ -54,7 +54,7 @@ void fill_pieces(const OneState& states, const Counts& count, const PhasesIn& ph
     for (std::size_t i = 0; fit && i < dof; ++i)
         fit = count.data()[i] >= 0 && std::size_t(count.data()[i]) <= std::min(pieces, most);
     require_sizes(fit);
-    make_pieces({dof, pieces, states.data(), count.data(), phases.data(), duration, has_jerk, knots.data(),
+    make_pieces({dof, pieces, states.data(), count.data(), phases.data(), duration, knots.data(),
                  coefficients.data(), origins.data()});
 }
 
@@ -63,7 +63,7 @@ void fill_pieces(const OneState& states, const Counts& count, const PhasesIn& ph
 void bind_trajectory(nb::module_& m) {
     m.attr("PHASES_OF_AXIS") = phases_of_axis();
     m.def(
-        "_solve_states", &solve, "states"_a, "limits"_a, "durations"_a, "cycle"_a, "mode"_a, "threads"_a,
+        "solve_states", &solve, "states"_a, "limits"_a, "durations"_a, "cycle"_a, "mode"_a, "threads"_a,
         "verdict"_a, "duration"_a, "shortest"_a, "count"_a, "phases"_a,
         "Motions of axes from state to state.\n\nstates (rows, 2, 3, dof): q, qd, qdd at the start and the "
         "goal. "
@@ -73,8 +73,8 @@ void bind_trajectory(nb::module_& m) {
         "duration, 2 not parallel; duration (rows,), shortest (rows, dof), count (rows, dof), phases (rows, "
         "dof, "
         "PHASES_OF_AXIS, 3).");
-    m.def("_fill_pieces", &fill_pieces, "states"_a, "count"_a, "phases"_a, "duration"_a, "has_jerk"_a,
-          "knots"_a, "coefficients"_a, "origins"_a,
+    m.def("fill_pieces", &fill_pieces, "states"_a, "count"_a, "phases"_a, "duration"_a, "knots"_a,
+          "coefficients"_a, "origins"_a,
           "Polynomials of the phases of one motion: writes knots (dof, k + 1), coefficients (dof, k, 4) and "
           "origins "
           "(dof, k).");

@@ -174,6 +174,13 @@ void write_piece(const AxisState& s, double jerk, double* c) {
     c[3] = jerk / 6;
 }
 
+// An acceleration at an end of a motion: the one of the state there if they differ by rounding alone, else
+// the acceleration jumps.
+double without_rounding(double a, double of_state) {
+    const double gap = std::fabs(a - of_state);
+    return gap <= parallel_rounding * std::fmax(std::fabs(a), std::fabs(of_state)) ? of_state : a;
+}
+
 // The phases of one axis, and where its pieces are written to.
 struct AxisPieces {
     const StatePieces& all;
@@ -205,8 +212,7 @@ struct AxisPieces {
         AxisState s = state(0);
         for (int k = 0; k < half; ++k) {
             Phase f = phase(k);
-            if (k == 0 && all.has_jerk) f.a = s.a;
-            s.a = f.a;
+            f.a = s.a = k == 0 ? without_rounding(f.a, s.a) : f.a;
             write_piece(s, f.j, piece(std::size_t(k)));
             all.origins[axis * all.pieces + std::size_t(k)] = knots[std::size_t(k)];
             s = advance_axis(s, f);
@@ -216,7 +222,8 @@ struct AxisPieces {
         AxisState s = state(1);
         for (int k = count - 1; k >= half; --k) {
             const Phase f = phase(k);
-            if (k < count - 1 || !all.has_jerk) s.a = f.a + f.h * f.j;
+            const double a = f.a + f.h * f.j;
+            s.a = k == count - 1 ? without_rounding(a, s.a) : a;
             write_piece(s, f.j, piece(std::size_t(k)));
             all.origins[axis * all.pieces + std::size_t(k)] = knots[std::size_t(k) + 1];
             s = retreat_axis(s, f);
@@ -230,7 +237,7 @@ struct AxisPieces {
             if (count > 0 && !rests)
                 std::copy_n(piece(std::size_t(count) - 1), 4, piece(k));
             else
-                write_piece({goal.p, goal.v, all.has_jerk ? goal.a : 0}, 0, piece(k));
+                write_piece(goal, 0, piece(k));
             all.origins[axis * all.pieces + k] = knots[k + 1];
         }
     }

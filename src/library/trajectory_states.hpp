@@ -46,7 +46,6 @@ struct StatePieces {
     const std::int32_t* count;
     const double* phases;
     double duration;
-    bool has_jerk;
     double *knots, *coefficients, *origins;
 };
 void make_pieces(const StatePieces& made);

@@ -1,7 +1,9 @@
 """Trajectories: motions in time, their derivatives, and checks against the limits of joints."""
 
 from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
+from cspace.trajectory.move_to import move_to
 from cspace.trajectory.polynomials import PolynomialTrajectory
+from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
 
 __all__ = [
@@ -11,6 +13,9 @@ __all__ = [
     "PolynomialTrajectory",
     "Samples",
     "Trajectory",
+    "TrajectoryBatch",
     "TrajectoryCheck",
     "Violation",
+    "move_to",
+    "state_to_state",
 ]
