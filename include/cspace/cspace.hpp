@@ -67,4 +67,5 @@
 #include "cspace/shapes/cover.hpp"
 #include "cspace/shapes/triangle.hpp"
 #include "cspace/trajectory/speed_bounds.hpp"
+#include "cspace/trajectory/synchronize.hpp"
 #include "cspace/version.hpp"

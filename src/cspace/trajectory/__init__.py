@@ -3,9 +3,11 @@
 from cspace.trajectory.blends import blend
 from cspace.trajectory.fit_path import fit_path
 from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
+from cspace.trajectory.move_to import move_to
 from cspace.trajectory.path import Path
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.splines import b_spline, spline
+from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
 from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_path import TimedPath
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
@@ -19,11 +21,14 @@ __all__ = [
     "Samples",
     "TimedPath",
     "Trajectory",
+    "TrajectoryBatch",
     "TrajectoryCheck",
     "Violation",
     "b_spline",
     "blend",
     "fit_path",
+    "move_to",
     "spline",
+    "state_to_state",
     "time_parametrize",
 ]

@@ -58,8 +58,8 @@ def time_parametrize(
     place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. torque: one number, (dof,) [N·m or
     N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest ones of the frame of
     robot, by default its tip. robot: whose dynamics and kinematics those need, by default limits. gravity
-    (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends. grid: about so many intervals;
-    by default intervals are halved until that changes the duration by less than `tolerance`, relative.
+    (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends. grid: about so many
+    intervals; by default intervals are halved until that changes the duration by less than `tolerance`, relative.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits or the
     speeds at the ends are impossible.

@@ -23,7 +23,7 @@ elsewhere, by as much as its acceleration changes."""
 
 
 class Grid(NamedTuple):
-    """Intervals of a path in order: the piece (k,) of each, and where in it, from 0 to 1, it begins and ends."""
+    """Intervals of a path in order: the piece (k,) of each, and where in it, in 0 … 1, it begins and ends."""
 
     piece: npt.NDArray[np.int32]
     begin: Array
