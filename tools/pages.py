@@ -17,6 +17,7 @@ COURSE = ("spatial", "robots", "catalogue", "kinematics", "ik", "subproblems", "
 COURSE += (
     "differential-kinematics",
     "dynamics",
+    "trajectory",
     "export",
     "shapes",
     "collision",

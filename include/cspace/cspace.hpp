@@ -69,4 +69,5 @@
 #include "cspace/shapes/cover.hpp"
 #include "cspace/shapes/triangle.hpp"
 #include "cspace/trajectory/speed_bounds.hpp"
+#include "cspace/trajectory/synchronize.hpp"
 #include "cspace/version.hpp"

@@ -21,7 +21,7 @@ namespace {
 using Integers = Plain<const std::int32_t>;
 using Flags = Plain<const std::int8_t>;
 using GridArrays = std::tuple<Plain<std::int32_t>, Doubles, Doubles>;
-// along, across, offset, margin and limit of sampled limits, and the largest squared speed.
+// along, across, offset, margin and limit of sampled limits, and the inverse of the squared speed.
 using SampleArrays =
     std::tuple<std::optional<ConstDoubles>, std::optional<ConstDoubles>, std::optional<ConstDoubles>,
                std::optional<ConstDoubles>, std::optional<ConstDoubles>, std::optional<ConstDoubles>>;
@@ -83,7 +83,7 @@ Sampler make_sampler(const nb::object& sample, int joints) {
         samples.offset = read_samples(std::get<2>(given), rows);
         samples.margin = read_samples(std::get<3>(given), count * width);
         samples.limit = read_samples(std::get<4>(given), width);
-        samples.squared_speed = read_samples(std::get<5>(given), count);
+        samples.inverse_square = read_samples(std::get<5>(given), 3 * count);
         return samples;
     };
 }
@@ -113,7 +113,7 @@ void bind_trajectory_timing(nb::module_& m) {
             return show_grid(divide_evenly(read_path(controls, lengths, stops), intervals));
         },
         "controls"_a, "lengths"_a, "stops"_a, "intervals"_a,
-        "Pieces, from and to (k,) of about so many intervals of a path, none across a break.");
+        "Pieces, from and to (k,) of about so many intervals of a path, two or more in each piece.");
     m.def(
         "time_path",
         [](const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops,

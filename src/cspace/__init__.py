@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         Sphere,
     )
     from cspace.spatial import *  # noqa: F403
+    from cspace.trajectory import blend, spline, time_parametrize
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
@@ -80,6 +81,7 @@ __all__ = [
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
+__all__ += ["blend", "spline", "time_parametrize"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
     __all__ += spatial.__all__
@@ -109,6 +111,7 @@ _LATER = {
     "Scene": "cspace.collision",
     "Sphere": "cspace.shapes",
     "__version__": "cspace._core",
+    "blend": "cspace.trajectory",
     "collision": "",
     "configuration_space": "cspace.planning",
     "dynamics": "",
@@ -127,7 +130,9 @@ _LATER = {
     "robots": "",
     "shapes": "",
     "spatial": "",
+    "spline": "cspace.trajectory",
     "subproblems": "cspace.ik",
+    "time_parametrize": "cspace.trajectory",
     "tolerances": "",
     "trajectory": "",
 }

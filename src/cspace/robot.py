@@ -20,7 +20,7 @@ from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
-    from cspace import dynamics, ik
+    from cspace import dynamics, ik, trajectory
     from cspace.collision import RobotGeometry, checks
     from cspace.collision.escape import escape as escape_collision
     from cspace.export import Export
@@ -246,6 +246,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         resolved_rate = ik.resolved_rate
         task_velocity = ik.task_velocity
         track = ik.track
+        move_to = trajectory.move_to
 
         def export(
             self,
@@ -269,6 +270,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
         simulate = _Later("cspace.dynamics")
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
+        move_to = _Later("cspace.trajectory")
 
     @property
     def collision(self) -> RobotGeometry:

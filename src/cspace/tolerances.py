@@ -557,8 +557,8 @@ SAME_WAYPOINT: Final = 1e-9
 through points so close turns on the spot."""
 
 PATH_CORNER: Final = 1e-9
-"""Jump of a derivative of a path, relative to its size, up to which it is continuous: the slopes of neighbouring
-pieces are rounded differently."""
+"""Jump of a derivative of a path, relative to its size, up to which it is continuous: neighbouring pieces are
+rounded differently."""
 
 STRAIGHT_TURN: Final = 1e-10
 """Turn of a path at a waypoint [rad] up to which its legs are one line."""
@@ -566,7 +566,19 @@ STRAIGHT_TURN: Final = 1e-10
 REVERSED_TURN: Final = 0.02
 """Turn short of 180° [rad] from which on a path stops at a waypoint: a blend so sharp turns on the spot."""
 
-__all__ = [name for name in globals() if name.isupper()]
+STANDING_SPEED: Final = 1e-12
+"""Squared speed along a path, relative to the largest, below which the tangent of its root is not taken: it
+is vertical at zero."""
+
+STILL_JOINT: Final = 1e-12
+"""Slope of a joint along a path, relative to the largest one, up to which it does not move: a thousand
+roundings."""
+
+TIMED_WITHIN: Final = 1e-3
+"""Change of the duration of a motion along a path, relative, up to which its intervals are halved."""
+
+CURVE_FITTED: Final = 1e-6
+"""Distance [rad or m] of a fitted path from a curve, by default: controllers resolve no less."""
 
 TIME_ROUNDING: Final = 1e-12
 """Part of the duration of a trajectory by which a time may lie outside of it: sums of a million steps."""
@@ -584,3 +596,5 @@ LIMIT_BINDS: Final = 1e-6
 
 ROOT_CONVERGED: Final = 4e-16
 """Last step towards the root of a polynomial, relative to its interval: two units in the last place."""
+
+__all__ = [name for name in globals() if name.isupper()]

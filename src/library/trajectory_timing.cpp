@@ -10,13 +10,17 @@
 namespace cspace::trajectory {
 namespace {
 
-constexpr std::size_t intervals_between_polls = 256;  // some fifty microseconds
-constexpr int first_parts = 4;           // of a piece: halved once before anything is known of it
-constexpr double least_part = 0x1p-18;   // of a piece: beyond it rounding shows in the accelerations
+using std::size_t;
+
+constexpr size_t intervals_between_polls = 256;  // some fifty microseconds
+constexpr int first_parts = 4;                   // of a piece: halved once before anything is known of it
+constexpr double least_part = 0x1p-18;           // of a piece: beyond it rounding shows in the accelerations
 constexpr double share_of_change = 0.3;  // of the mean change of an interval, above which it is halved
 constexpr int most_rounds = 24;
-
-using std::size_t;
+constexpr size_t least_parts = 2;  // of a piece: with stops at both its ends it has to move between
+// Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
+// of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
+constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
 
 std::vector<double> pad_rows(std::span<const double> rows, int width, int padded) {
     std::vector<double> made(rows.size() / size_t(width) * size_t(padded), 0.0);
@@ -66,7 +70,8 @@ class PathTimer {
           padded_((path.joints + joint_padding - 1) / joint_padding * joint_padding),
           slopes_(find_slopes(path, path.degree <= 3 ? 2 : 4, padded_)),
           acceleration_(invert_limits(limits.acceleration, padded_)),
-          velocity_(invert_limits(limits.velocity, padded_)) {
+          velocity_(invert_limits(limits.velocity, padded_)),
+          least_inverse_square_(path.lengths.size(), 0.0) {
         rows_.degree = path.degree <= 3 ? 2 : 4;
         rows_.joints = path.joints;
         rows_.padded = padded_;
@@ -74,6 +79,8 @@ class PathTimer {
         rows_.lengths = path.lengths.data();
         rows_.inverse_acceleration = acceleration_.data();
         rows_.inverse_velocity = velocity_.data();
+        bound_noise();
+        rows_.least_inverse_square = least_inverse_square_.data();
         memory_.resize(size_t(3 * row_capacity(rows_)));
     }
 
@@ -101,6 +108,7 @@ class PathTimer {
             timing.where = size_t(blocked);
             return timing;
         }
+        if (start_ < range_[0].low && end_ > 0.0) return explain_end(timing);
         if (!(range_[0].low <= start_ && start_ <= range_[0].high))
             return report(timing, TimingOutcome::start, range_[0]);
         timing.squared_speed.assign(count + 1, 0.0);
@@ -114,10 +122,24 @@ class PathTimer {
     }
 
   private:
+    void bound_noise() {
+        const size_t width = size_t(padded_), rows = size_t(rows_.degree + 1);
+        for (size_t piece = 0; piece < least_inverse_square_.size(); ++piece) {
+            double& least = least_inverse_square_[piece];
+            for (size_t at = 0; at < rows * width; ++at) {
+                const double slope = std::fabs(slopes_[piece * rows * width + at]);
+                const double speed = slope * velocity_[at % width];
+                const double per_length = slope * acceleration_[at % width] / rows_.lengths[piece];
+                least = std::max({least, noise_of_velocity * speed * speed,
+                                  noise_of_acceleration * rows_.degree * per_length});
+            }
+        }
+    }
+
     void take_samples(TimingSamples&& given) {
         samples_ = std::move(given);
         SampledLimits& sampled = rows_.sampled;
-        if (!samples_.squared_speed.empty()) sampled.squared_speed = samples_.squared_speed.data();
+        if (!samples_.inverse_square.empty()) sampled.inverse_square = samples_.inverse_square.data();
         if (samples_.along.empty()) return;
         for (auto* rows : {&samples_.along, &samples_.across, &samples_.offset, &samples_.margin})
             *rows = pad_rows(*rows, path_.joints, padded_);
@@ -180,7 +202,7 @@ class PathTimer {
     const TimingPath& path_;
     double start_, end_;
     int padded_;
-    std::vector<double> slopes_, acceleration_, velocity_, memory_;
+    std::vector<double> slopes_, acceleration_, velocity_, least_inverse_square_, memory_;
     TimingSamples samples_;
     TimedRows rows_{};
     std::vector<Interval> intervals_;
@@ -255,7 +277,7 @@ TimingGrid divide_evenly(const TimingPath& path, std::size_t intervals) {
     for (const double length : path.lengths) whole += length;
     std::vector<size_t> parts;
     for (const double length : path.lengths)
-        parts.push_back(size_t(std::max(1.0, std::round(double(intervals) * length / whole))));
+        parts.push_back(std::max(least_parts, size_t(std::round(double(intervals) * length / whole))));
     return divide_pieces(path, parts);
 }
 

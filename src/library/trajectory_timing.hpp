@@ -30,9 +30,9 @@ struct TimingGrid {
 };
 
 // Limits that are sampled along the path, as of SampledLimits: along, across, offset (3 intervals, joints) or
-// empty, margin (intervals, joints) or empty, limit (joints,), squared_speed (intervals,) or empty.
+// empty, margin (intervals, joints) or empty, limit (joints,), inverse_square (intervals, 3) or empty.
 struct TimingSamples {
-    std::vector<double> along, across, offset, margin, limit, squared_speed;
+    std::vector<double> along, across, offset, margin, limit, inverse_square;
 };
 using Sampler = std::function<TimingSamples(const TimingGrid&)>;
 
@@ -55,7 +55,7 @@ struct Timing {
     bool converged;                     // the halving ended before its limits
 };
 
-// About so many intervals, no fewer than pieces, none across a break.
+// About so many intervals, two or more in each piece.
 TimingGrid divide_evenly(const TimingPath& path, std::size_t intervals);
 
 // The fastest motion on a grid. sample may be empty.

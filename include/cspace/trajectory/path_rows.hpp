@@ -35,7 +35,8 @@ struct SampledLimits {
     const double *along, *across, *offset;  // (3 intervals, padded joints) each, or null
     const double* margin;                   // (intervals, padded joints) or null
     const double* limit;                    // (padded joints,)
-    const double* squared_speed;            // (intervals,): the largest squared path speed, or null
+    // (intervals, 3): Bernstein coefficients of what bounds the inverse of the squared path speed, or null
+    const double* inverse_square;
 };
 
 // A path with its limits and the grid on which it is timed.
@@ -43,6 +44,7 @@ struct TimedRows {
     int degree, joints, padded;          // of q'; padded: joints rounded up
     const double* slopes;                // (pieces, degree + 1, padded): Bernstein coefficients of dq/ds
     const double* lengths;               // (pieces,): of their parameter
+    const double* least_inverse_square;  // (pieces,): of the squared path speed
     const double* inverse_acceleration;  // (padded,) [s²/rad or s²/m], 0 without a limit
     const double* inverse_velocity;      // (padded,)
     const Interval* intervals;
@@ -139,26 +141,38 @@ CSPACE_INLINE double largest_lane(V v) {
 
 // The rows of the velocities: with P_k no less than the coefficients of any (q' / limit)², those of degree
 // 2m + 1 of the largest q̇² are ((2m + 1 − k) P_k x + k P_{k−1} y) / (2m + 1).
-template <int m, class V>
-CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const V (&squares)[2 * m + 1], double least) {
+template <int m>
+CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const double (&P)[2 * m + 1]) {
+    using V = Pack<native_width>;
     constexpr int last = 2 * m + 1, padded = (last + joint_padding - 1) / joint_padding * joint_padding;
-    double P[padded + 1];  // of which P[k] stands at k + 1
-    P[0] = 0.0;
-    for (int k = 0; k < last; ++k) P[k + 1] = max(largest_lane(squares[k]), least);
-    rows.largest_x = 1.0 / max(P[1], 1.0 / no_end);
-    rows.largest_y = 1.0 / max(P[last], 1.0 / no_end);
-    for (int k = 1; k < padded; ++k) {  // row 0 is largest_x, row 2m + 1 largest_y
-        const double alpha = k < last ? (last - k) * P[k + 1] / last : 0.0;
-        const double beta = k < last ? k * P[k] / last : 0.0;
-        const double size = max(beta, no_row * alpha + no_size), inverse = 1.0 / size;
-        rows.slope[at + k - 1] = -alpha * inverse;
-        rows.low[at + k - 1] = -inverse;
-        rows.high[at + k - 1] = (1.0 - rounding_share) * inverse;
+    double alpha[padded] = {},
+           beta[padded] = {};  // of rows 1 to 2m; row 0 is largest_x, row 2m + 1 largest_y
+    for (int k = 1; k < last; ++k) {
+        alpha[k - 1] = (double(last - k) / last) * P[k];
+        beta[k - 1] = (double(k) / last) * P[k - 1];
     }
-    rows.slope[at + padded - 1] = 0.0;
-    rows.low[at + padded - 1] = -no_end;
-    rows.high[at + padded - 1] = no_end;
+    rows.largest_x = 1.0 / max(P[0], 1.0 / no_end);
+    rows.largest_y = 1.0 / max(P[2 * m], 1.0 / no_end);
+    for (int k = 0; k < padded; k += Lanes<V>::count) {
+        const V a = load<V>(alpha + k), b = load<V>(beta + k);
+        const V inverse = 1.0 / max(b, no_row * a + no_size);
+        store(rows.slope + at + k, -a * inverse);
+        store(rows.low + at + k, -inverse);
+        store(rows.high + at + k, (1.0 - rounding_share) * inverse);
+    }
     rows.count = at + padded;
+}
+
+// Raises P to the coefficients of a quadratic polynomial.
+template <int m>
+CSPACE_INLINE void raise_to_quadratic(double (&P)[2 * m + 1], const double* coefficients) {
+    for (int k = 0; k <= 2 * m; ++k) {
+        double sum = 0.0;
+        for (int j = 0; j <= 2; ++j)
+            if (k - j >= 0 && k - j <= 2 * m - 2)
+                sum += binomial(2, j) * binomial(2 * m - 2, k - j) / binomial(2 * m, k) * coefficients[j];
+        P[k] = max(P[k], sum);
+    }
 }
 
 // The rows of sampled limits of a pack of joints at the begin, the middle and the end of interval i.
@@ -201,8 +215,11 @@ CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memo
         for (int k = 0; k <= m; ++k) scaled[k] = d[k] * per_velocity;
         raise_squares<m>(scaled, squares);
     }
-    const double least = path.sampled.squared_speed ? 1.0 / path.sampled.squared_speed[i] : 0.0;
-    write_velocity_rows<m>(rows, (m + 1) * padded, squares, least);
+    double P[2 * m + 1];
+    for (int k = 0; k <= 2 * m; ++k)
+        P[k] = max(largest_lane(squares[k]), path.least_inverse_square[part.piece]);
+    if (path.sampled.inverse_square) raise_to_quadratic<m>(P, path.sampled.inverse_square + 3 * i);
+    write_velocity_rows<m>(rows, (m + 1) * padded, P);
     if (path.sampled.along) {
         for (int j = 0; j < padded; j += Lanes<V>::count)
             write_sampled_rows<V>(rows, rows.count + j, path, i, j, length);

@@ -22,6 +22,9 @@ inline constexpr double closed_width = 8e-16;
 // intervals are short and motions fast.
 inline constexpr double speed_rounding = 4.5e-16;
 
+// Share of the greatest speed from which a motion comes to a stand within an interval; any would do.
+inline constexpr double moving_share = 1e-2;
+
 }  // namespace cspace::trajectory
 
 namespace cspace::trajectory::inline CSPACE_ISA {
@@ -107,11 +110,19 @@ inline std::ptrdiff_t bound_speeds(const TimedRows& path, std::size_t begin, std
         const double most =
             find_end(rows, path.stops[i] ? 0.0 : min(rows.largest_x, range[i].high), -1.0, next);
         const bool may_stand = next.low == 0.0 && !path.sampled.along;
-        const double least = may_stand ? 0.0 : find_end(rows, 0.0, 1.0, next);
+        double least = may_stand ? 0.0 : find_end(rows, 0.0, 1.0, next);
+        if (next.high == 0.0) least = max(least, moving_share * most);  // or it would stand at both ends
         if (most < 0.0 || least < 0.0 || least > most) return std::ptrdiff_t(i);
         range[i] = {least, most};
     }
     return -1;
+}
+
+// The greatest y that edges leave. Where they cross by rounding it is on the less steep one: a row in which y
+// hardly counts knows its end only roughly.
+CSPACE_INLINE double greatest_next(const Edges& edges) {
+    if (edges.low.value <= edges.high.value) return edges.high.value;
+    return std::fabs(edges.low.slope) < std::fabs(edges.high.slope) ? edges.low.value : edges.high.value;
 }
 
 // Forwards through the intervals begin … end − 1: the greatest speed[i + 1] from speed[i], within the ranges.
@@ -121,7 +132,7 @@ inline void raise_speeds(const TimedRows& path, std::size_t begin, std::size_t e
     for (std::size_t i = begin; i < end; ++i) {
         const Rows rows = build_rows<m>(path, i, memory);
         const Edges edges = bound_next(rows, speed[i], range[i + 1]);
-        speed[i + 1] = max(range[i + 1].low, min(edges.high.value, range[i + 1].high));
+        speed[i + 1] = max(range[i + 1].low, min(greatest_next(edges), range[i + 1].high));
     }
 }
 

@@ -1,9 +1,17 @@
-"""Trajectories: motions in time, their derivatives, and checks against the limits of joints."""
+"""Trajectories: paths, motions in time, and checks against the limits of joints."""
 
+from cspace.trajectory.blends import blend
 from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path, screw_path
 from cspace.trajectory.cartesian_path import CartesianPath, CartesianPiece
+from cspace.trajectory.fit_path import fit_path
 from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
+from cspace.trajectory.move_to import move_to
+from cspace.trajectory.path import Path
 from cspace.trajectory.polynomials import PolynomialTrajectory
+from cspace.trajectory.splines import b_spline, spline
+from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
+from cspace.trajectory.time_parametrize import time_parametrize
+from cspace.trajectory.timed_path import TimedPath
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
 
 __all__ = [
@@ -12,13 +20,23 @@ __all__ = [
     "CartesianPiece",
     "Extremes",
     "JoinedTrajectory",
+    "Path",
     "PolynomialTrajectory",
     "Samples",
+    "TimedPath",
     "Trajectory",
+    "TrajectoryBatch",
     "TrajectoryCheck",
     "Violation",
     "arc_path",
+    "b_spline",
+    "blend",
+    "fit_path",
     "line_path",
+    "move_to",
     "pose_path",
     "screw_path",
+    "spline",
+    "state_to_state",
+    "time_parametrize",
 ]

@@ -68,9 +68,7 @@ def blend(waypoints: ArrayLike, deviation: ArrayLike, *, kind: str = "quintic") 
         at = corner + l * directions[i + 1]
     pieces.add_line(at, given.q[-1])
     reversals = int((turns >= np.pi - REVERSED_TURN).sum())
-    remarks = given.remarks + (
-        [f"stops at {count_things(reversals, 'turn')} near 180°"] if reversals else []
-    )
+    remarks = given.remarks + ([f"stops at {count_things(reversals, 'turn')} near 180°"] if reversals else [])
     return pieces.make_path(remarks)
 
 
@@ -132,14 +130,17 @@ class _Pieces:
         normal = (b - np.cos(turn) * a) / np.sin(turn)
         count = int(np.ceil(turn / ARC_PIECE))
         angle = turn * np.arange(count + 1.0)[:, None] / count
-        center = corner - l * a + radius * normal
-        out = np.sin(angle) * a - np.cos(angle) * normal
-        q, slope = center + radius * out, np.cos(angle) * a + np.sin(angle) * normal
+        bulge = 2.0 * np.sin(0.5 * angle) ** 2  # 1 − cos, exact for small turns
+        q = corner - l * a + radius * (np.sin(angle) * a + bulge * normal)
+        slope = np.cos(angle) * a + np.sin(angle) * normal
+        bend = (np.cos(angle) * normal - np.sin(angle) * a) / radius
         q[-1] = corner + l * b
         h = np.full(count, radius * turn / count)
-        self.controls.extend(hermite_quintics(h, q, slope, -out / radius))
+        self.controls.extend(hermite_quintics(h, q, slope, bend))
         self.lengths.extend(h.tolist())
 
     def make_path(self, remarks: list[str]) -> Path:
         """All pieces as a path."""
-        return Path(np.concatenate([[0.0], np.cumsum(self.lengths)]), np.array(self.controls), remarks=remarks)
+        return Path(
+            np.concatenate([[0.0], np.cumsum(self.lengths)]), np.array(self.controls), remarks=remarks
+        )

@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, InputTypeError
+from cspace.tolerances import CURVE_FITTED
 from cspace.trajectory.path import Path, hermite_quintics
 
 FIRST_PIECES: Final = 8
@@ -22,7 +23,7 @@ LOOKED_AT: Final = (0.25, 0.5, 0.75)
 middle."""
 
 
-def fit_path(curve: Callable[[Array, int], Array], length: float, *, tolerance: float = 1e-6) -> Path:
+def fit_path(curve: Callable[[Array, int], Array], length: float, *, tolerance: float = CURVE_FITTED) -> Path:
     """A curve as quintic pieces that attain its position, slope and bend at their ends.
 
     curve(s, order) → (..., dof) for s (...) from 0 to length and order 0, 1 and 2: the configuration [rad or
@@ -30,8 +31,8 @@ def fit_path(curve: Callable[[Array, int], Array], length: float, *, tolerance: 
     of the path from the curve at a quarter, the middle and three quarters of each piece, which are halved
     until it is attained; the error falls with the sixth power of their length.
 
-    Returns a Path, whose `remarks` state the error. Raises InputError where the curve is not finite, and where
-    halving does not attain the tolerance, such as at a corner.
+    Returns a Path, whose `remarks` state the error. Raises InputError where the curve is not finite, and
+    where halving does not attain the tolerance, such as at a corner.
     """
     if not callable(curve):
         raise InputTypeError(f"curve is a {type(curve).__name__}; give a function of s and order")
@@ -69,5 +70,7 @@ def _fit_pieces(curve: Callable[[Array, int], Array], breaks: Array) -> tuple[Pa
 def _read_curve(curve: Callable[[Array, int], Array], s: Array, order: int) -> Array:
     values = as_floats(curve(s, order), f"curve(s, {order})", last=(None,))
     if values.ndim != 2 or len(values) != len(s):
-        raise InputError(f"curve(s, {order}) has shape {values.shape} for s ({len(s)},); expected ({len(s)}, dof)")
+        raise InputError(
+            f"curve(s, {order}) has shape {values.shape} for s ({len(s)},); expected ({len(s)}, dof)"
+        )
     return values

@@ -93,12 +93,12 @@ class Path:
     @property
     def start(self) -> Array:
         """The first configuration (dof,)."""
-        return self.control_points[0, 0]
+        return np.asarray(self.control_points[0, 0])
 
     @property
     def end(self) -> Array:
         """The last configuration (dof,)."""
-        return self.control_points[-1, -1]
+        return np.asarray(self.control_points[-1, -1])
 
     @cached_property
     def lengths(self) -> Array:
@@ -171,13 +171,21 @@ class Path:
         return self.evaluate_pieces(piece, local, order).reshape((*given.shape, self.dof))
 
     def evaluate_pieces(self, piece: Any, local: Array, order: int = 0) -> Array:
-        """A derivative (m, dof) of pieces (m,) at places (m,) within them, in [0, 1], by de Casteljau."""
+        """A derivative (m, dof) of pieces (m,) at places (m,) within them, in [0, 1]: Σ Bᵢ(t) cᵢ."""
         control = self._derivatives[order]
-        t = local[:, None]
-        points = [control[piece, i] for i in range(control.shape[1])]
-        while len(points) > 1:
-            points = [a + t * (b - a) for a, b in zip(points[:-1], points[1:], strict=True)]
-        return points[0]
+        degree = control.shape[1] - 1
+        points = control.take(piece, axis=0)
+        if degree == 0:
+            return np.asarray(points[:, 0])
+        rest = 1.0 - local
+        weights = np.empty((len(local), degree + 1))
+        weights[:, 0] = 1.0
+        for i in range(1, degree + 1):  # from those of degree i − 1 to those of degree i
+            weights[:, i] = local * weights[:, i - 1]
+            for k in range(i - 1, 0, -1):
+                weights[:, k] = rest * weights[:, k] + local * weights[:, k - 1]
+            weights[:, 0] *= rest
+        return np.asarray(np.einsum("mi,mij->mj", weights, points))
 
     @cached_property
     def excursion(self) -> Array:
@@ -218,7 +226,10 @@ class Path:
 def _powers_to_bernstein(degree: int) -> Array:
     """The matrix from coefficients of powers on [0, 1] to those of Bernstein polynomials."""
     return np.array(
-        [[comb(j, i) / comb(degree, i) if i <= j else 0.0 for i in range(degree + 1)] for j in range(degree + 1)]
+        [
+            [comb(j, i) / comb(degree, i) if i <= j else 0.0 for i in range(degree + 1)]
+            for j in range(degree + 1)
+        ]
     )
 
 

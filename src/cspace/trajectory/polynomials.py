@@ -115,6 +115,23 @@ class PolynomialTrajectory(Trajectory):
             reason=self.reason or other.reason,
         )
 
+    @classmethod
+    def _trusted(
+        cls,
+        knots: Array,
+        coefficients: Array,
+        origins: Array,
+        duration: float,
+        joint_names: tuple[str, ...] | None,
+        reason: str,
+    ) -> PolynomialTrajectory:
+        """A motion of arrays that need no check."""
+        made = cls.__new__(cls)
+        made.joint_knots, made.coefficients, made.origins = knots, coefficients, origins
+        made.dof, made.duration, made.joint_names, made.reason = len(knots), duration, joint_names, reason
+        made._turning = {}
+        return made
+
     def _made_of(self, knots: Array, coefficients: Array, origins: Array) -> PolynomialTrajectory:
         return PolynomialTrajectory(
             knots, coefficients, origins, joint_names=self.joint_names, reason=self.reason

@@ -175,10 +175,10 @@ class Trajectory(ABC):
 
     def _find_jump(self, order: int) -> tuple[int, float] | None:
         """The joint and time of the first jump of a derivative beyond rounding."""
-        inner = self.knots[1:-1]
+        inner, most = self.knots[1:-1], self.extremes(order)
+        size = max(np.abs(most.lowest).max(initial=0.0), np.abs(most.highest).max(initial=0.0))
         for j in range(self.dof):
             before, after = (self._evaluate_joint(j, inner, order, side) for side in (True, False))
-            size = max(np.abs(before).max(initial=0.0), np.abs(after).max(initial=0.0))
             jumps = np.flatnonzero(np.abs(after - before) > CONTINUITY_ROUNDING * size)
             if jumps.size:
                 return j, float(inner[jumps[0]])
@@ -203,12 +203,10 @@ class Trajectory(ABC):
 
     def _check_joint_to(self, other: Trajectory, order: int) -> None:
         last, first = self(self.duration, order), other(0.0, order)
-        sizes = [
-            np.abs([each.lowest, each.highest]).max(axis=0)
-            for each in (self.extremes(order), other.extremes(order))
-        ]
+        ends = [each.extremes(order) for each in (self, other)]
+        size = max(np.abs([each.lowest, each.highest]).max(initial=0.0) for each in ends)
         gap = np.abs(first - last)
-        bad = np.flatnonzero(gap > CONTINUITY_ROUNDING * np.maximum(*sizes))
+        bad = np.flatnonzero(gap > CONTINUITY_ROUNDING * size)
         if bad.size:
             j = int(bad[0])
             raise InputError(
