@@ -14,10 +14,10 @@ from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
 from cspace.model import Limits
-from cspace.move.chain_search import FULL_TURN, ChainSearch, Stations
-from cspace.move.guided import smooth_rows
-from cspace.move.joint_branches import JointBranch, make_branch
-from cspace.move.redundant_path import (
+from cspace.cartesian.chain_search import FULL_TURN, ChainSearch, Stations
+from cspace.cartesian.guided import smooth_rows
+from cspace.cartesian.joint_branches import JointBranch, make_branch
+from cspace.cartesian.redundant_path import (
     SMOOTHINGS,
     choose_limits,
     end_of_chain,
@@ -25,7 +25,7 @@ from cspace.move.redundant_path import (
     is_within,
     leave_limits,
 )
-from cspace.move.refine import LeastMotion, first_nodes, refine_branches
+from cspace.cartesian.refine import LeastMotion, first_nodes, refine_branches
 from cspace.spatial import exp_so3, log_so3
 from cspace.spatial.vectors import AXES, cross, length_and_direction
 from cspace.trajectory.cartesian_path import CartesianPath, Indices

@@ -14,10 +14,10 @@ from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
 from cspace.model import Limits
-from cspace.move.chain_search import FULL_TURN, ROOMY, ChainSearch, Stations
-from cspace.move.guided import Guided, null_directions, smooth_rows
-from cspace.move.joint_branches import NO_DEVIATION, JointBranch, make_branch
-from cspace.move.refine import first_nodes, refine_branches
+from cspace.cartesian.chain_search import FULL_TURN, ROOMY, ChainSearch, Stations
+from cspace.cartesian.guided import Guided, null_directions, smooth_rows
+from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, make_branch
+from cspace.cartesian.refine import first_nodes, refine_branches
 from cspace.trajectory.cartesian_path import CartesianPath
 from cspace.trajectory.path import Path
 

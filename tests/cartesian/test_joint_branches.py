@@ -5,7 +5,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError
-from cspace.move import follow_cartesian
+from cspace.cartesian import follow_cartesian
 from cspace.trajectory import arc_path, line_path, pose_path
 
 ARMS = ("ur5e", "puma560", "crx10ia", "irb140", "panda", "iiwa14")

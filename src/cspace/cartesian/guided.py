@@ -10,7 +10,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.jacobian import jacobian_dot
-from cspace.move.refine import Nodes
+from cspace.cartesian.refine import Nodes
 from cspace.spatial import log_so3
 from cspace.trajectory.cartesian_path import CartesianPath, Indices
 from cspace.trajectory.path import Path

@@ -5,7 +5,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError
-from cspace.move import follow_cartesian, follow_free_turn, follow_redundant
+from cspace.cartesian import follow_cartesian, follow_free_turn, follow_redundant
 from cspace.trajectory import arc_path, line_path
 
 TOLERANCE = 1e-5
