@@ -8,6 +8,7 @@ from cspace.errors import CspaceError
 
 if TYPE_CHECKING:
     from cspace import (
+        cartesian,
         collision,
         dynamics,
         export,
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
-    from cspace.plan_motion import plan, plan_many
+    from cspace.plan_motion import move, plan, plan_many
     from cspace.planning import configuration_space
     from cspace.robot import Robot
     from cspace.robots import load_robot
@@ -64,6 +65,7 @@ __all__ = [
     "Robot",
     "Scene",
     "__version__",
+    "cartesian",
     "collision",
     "configuration_space",
     "dynamics",
@@ -73,6 +75,7 @@ __all__ = [
     "load_robot",
     "maps",
     "model",
+    "move",
     "navigate",
     "navigation",
     "plan",
@@ -112,6 +115,7 @@ _LATER = {
     "Sphere": "cspace.shapes",
     "__version__": "cspace._core",
     "blend": "cspace.trajectory",
+    "cartesian": "",
     "collision": "",
     "configuration_space": "cspace.planning",
     "dynamics": "",
@@ -121,6 +125,7 @@ _LATER = {
     "load_robot": "cspace.robots",
     "maps": "",
     "model": "",
+    "move": "cspace.plan_motion",
     "navigate": "cspace.navigation",
     "navigation": "",
     "plan": "cspace.plan_motion",

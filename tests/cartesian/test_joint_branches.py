@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import InputError
 from cspace.cartesian import follow_cartesian
+from cspace.errors import InputError
 from cspace.trajectory import arc_path, line_path, pose_path
 
 ARMS = ("ur5e", "puma560", "crx10ia", "irb140", "panda", "iiwa14")

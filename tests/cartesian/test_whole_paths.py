@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import InputError
 from cspace.cartesian import follow_cartesian, follow_free_turn, follow_redundant
+from cspace.errors import InputError
 from cspace.trajectory import arc_path, line_path
 
 TOLERANCE = 1e-5

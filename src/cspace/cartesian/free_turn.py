@@ -9,11 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array, positive_number
-from cspace.errors import InputError
-from cspace.ik.near_rows import solve_locked_redundant
-from cspace.ik.solver import Solver, as_solver
-from cspace.kinematics import KinematicModel
-from cspace.model import Limits
 from cspace.cartesian.chain_search import FULL_TURN, ChainSearch, Stations
 from cspace.cartesian.guided import smooth_rows
 from cspace.cartesian.joint_branches import JointBranch, make_branch
@@ -26,6 +21,11 @@ from cspace.cartesian.redundant_path import (
     leave_limits,
 )
 from cspace.cartesian.refine import LeastMotion, first_nodes, refine_branches
+from cspace.errors import InputError
+from cspace.ik.near_rows import solve_locked_redundant
+from cspace.ik.solver import Solver, as_solver
+from cspace.kinematics import KinematicModel
+from cspace.model import Limits
 from cspace.spatial import exp_so3, log_so3
 from cspace.spatial.vectors import AXES, cross, length_and_direction
 from cspace.trajectory.cartesian_path import CartesianPath, Indices

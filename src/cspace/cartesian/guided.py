@@ -8,9 +8,9 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.cartesian.refine import Nodes
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.jacobian import jacobian_dot
-from cspace.cartesian.refine import Nodes
 from cspace.spatial import log_so3
 from cspace.trajectory.cartesian_path import CartesianPath, Indices
 from cspace.trajectory.path import Path

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, positive_number
+from cspace.cartesian.refine import LeastMotion, Refined, first_nodes, refine_branches
 from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.tracking.track import track
 from cspace.kinematics import KinematicModel
-from cspace.cartesian.refine import LeastMotion, Refined, first_nodes, refine_branches
 from cspace.trajectory.cartesian_path import CartesianPath
 from cspace.trajectory.path import Path
 

@@ -12,7 +12,7 @@ from cspace.arrays import Array, one_array
 from cspace.cartesian.free_turn import follow_free_turn
 from cspace.cartesian.joint_branches import JointBranch, JointBranches, follow_cartesian
 from cspace.cartesian.redundant_path import follow_redundant
-from cspace.cartesian.scene_check import check_path
+from cspace.cartesian.scene_check import find_touches, space_of_curves
 from cspace.errors import InputError
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel
@@ -66,7 +66,8 @@ class CartesianMotion(TimedPath):
 
     def __repr__(self) -> str:
         arrived = sum(map(bool, self.branches))
-        text = f"{arrived} of {count_things(len(self.branches), 'branch', 'branches')} along {shown(self.cartesian.length)}"
+        branches = count_things(len(self.branches), "branch", "branches")
+        text = f"{arrived} of {branches} along {shown(self.cartesian.length)}"
         return one_line("CartesianMotion", f"{text}, {self.reason or shown(self.duration) + ' s'}")
 
 
@@ -186,8 +187,8 @@ def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, t
     turned = 0.0 if turns else float(np.linalg.norm(T[:3, :3] - first[:3, :3]) * np.sqrt(0.5))
     if max(off, turned) > START_DISTANCE:
         raise InputError(
-            f"start is {off:.3g} m and {turned:.3g} rad from the begin of the path; move there first, or leave"
-            " start out"
+            f"start is {off:.3g} m and {turned:.3g} rad from the begin of the path; move there first, or"
+            " leave start out"
         )
     return q
 
@@ -228,6 +229,7 @@ def _take_fastest(
     durations = np.full(len(branches), np.nan)
     arrived = [k for k, branch in enumerate(branches) if branch]
     refused: list[str] = []
+    space = None if scene is None else space_of_curves(robot, scene, margin)
     if len(arrived) > 1:
         for k in arrived:
             timed = time_parametrize(_joints(branches[k]), robot, grid=RANKING_GRID, **options)
@@ -235,8 +237,8 @@ def _take_fastest(
         arrived.sort(key=lambda k: durations[k])
     for k in arrived:
         joints = _joints(branches[k])
-        if scene is not None and (touch := check_path(robot, joints, scene, margin)) is not None:
-            refused.append(f"at s = {touch.s:.6g}: {touch.text}")
+        if space is not None and (touches := find_touches(space, joints, first=True)):
+            refused.append(f"at s = {touches[0].s:.6g}: {touches[0].text}")
             continue
         timed = time_parametrize(joints, robot, grid=grid, **options)
         if timed:

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array, positive_number
+from cspace.cartesian.chain_search import FULL_TURN, ROOMY, ChainSearch, Stations
+from cspace.cartesian.guided import Guided, null_directions, smooth_rows
+from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, make_branch
+from cspace.cartesian.refine import first_nodes, refine_branches
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
 from cspace.model import Limits
-from cspace.cartesian.chain_search import FULL_TURN, ROOMY, ChainSearch, Stations
-from cspace.cartesian.guided import Guided, null_directions, smooth_rows
-from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, make_branch
-from cspace.cartesian.refine import first_nodes, refine_branches
 from cspace.trajectory.cartesian_path import CartesianPath
 from cspace.trajectory.path import Path
 

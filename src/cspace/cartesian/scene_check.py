@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cspace.arrays import Array
-from cspace.kinematics import KinematicModel
 from cspace.planning import ArmSpace
 from cspace.trajectory.path import Path
-
-if TYPE_CHECKING:
-    from cspace.collision import Scene
 
 STRAIGHT: Final = 3e-4
 """[rad or m] Distance of the curve from a straight motion of the joints, at most, summed over the joints."""
@@ -24,40 +21,56 @@ MOST_PARTS: Final = 1 << 12
 
 @dataclass(frozen=True)
 class Touch:
-    """Where a path touches something, and what."""
+    """The piece of a path that is not proved free, where it touches something, and what."""
 
+    piece: int
     s: float
     text: str
 
 
-def check_path(robot: KinematicModel, path: Path, scene: Scene | None, margin: float = 0.0) -> Touch | None:
-    """The first motion of a joint path that is not proved free, or None if all of it is free.
+def space_of_curves(robot: Any, scene: Any, margin: float) -> ArmSpace:
+    """The space in which straight motions stand for curves that leave them by STRAIGHT.
 
-    The curve is replaced by straight motions of the joints; what lies between is covered by a margin: the
-    distance of the joints times the reach of the arm.
+    A point moves by the sum of the distances of the joints times the reach of the arm, at most: that much is
+    added to the margin.
     """
-    own: Any = robot
-    bare = ArmSpace(own, scene, margin)
-    space = ArmSpace(own, scene, margin + STRAIGHT * max(1.0, bare.reach))
-    s = straight_parts(path)
-    q = path(s)
-    for k in range(len(s) - 1):
-        found = space.edge(q[k], q[k + 1])
-        if not found:
-            return Touch(float(s[k]), found.reason)
-    return None
+    reach = ArmSpace(robot, scene, margin).reach
+    return ArmSpace(robot, scene, margin + STRAIGHT * max(1.0, reach))
 
 
-def straight_parts(path: Path) -> Array:
-    """Parameters (n,) of a path between which its curve is nearly a straight motion of the joints.
+def find_touches(
+    space: ArmSpace, path: Path, pieces: NDArray[np.bool_] | None = None, *, first: bool = False
+) -> list[Touch]:
+    """The pieces of a joint path that are not proved free; only the first of them if that is enough.
+
+    pieces (k,): which to look at; all, unless given.
+    """
+    touches = []
+    counts = straight_parts(path)
+    for k in range(len(path)):
+        if pieces is not None and not pieces[k]:
+            continue
+        s = np.linspace(path.breaks[k], path.breaks[k + 1], counts[k] + 1)
+        q = path.evaluate_pieces(np.full(len(s), k), np.linspace(0.0, 1.0, len(s)))
+        for i in range(counts[k]):
+            found = space.edge(q[i], q[i + 1])
+            if not found:
+                touches.append(Touch(k, float(s[i]), found.reason))
+                break
+        if touches and first:
+            break
+    return touches
+
+
+def straight_parts(path: Path) -> NDArray[np.intp]:
+    """Parts (k,) of each piece in which its curve is nearly a straight motion of the joints.
 
     A curve leaves its chord by at most h²/8 of its largest second derivative.
     """
-    bend = np.abs(path._derivatives[2]).max(axis=1).sum(axis=1) if path.degree > 1 else np.zeros(len(path))
-    parts = np.ceil(path.lengths * np.sqrt(bend / (8.0 * STRAIGHT)))
-    counts = np.clip(parts, 1, MOST_PARTS).astype(int)
-    inner = [
-        np.linspace(a, b, n, endpoint=False)
-        for a, b, n in zip(path.breaks[:-1], path.breaks[1:], counts, strict=True)
-    ]
-    return np.append(np.concatenate(inner), path.length)
+    parts = np.ceil(path.lengths * np.sqrt(bends(path) / (8.0 * STRAIGHT)))
+    return np.clip(parts, 1, MOST_PARTS).astype(np.intp)
+
+
+def bends(path: Path) -> Array:
+    """A bound (k,) of the second derivative on each piece, summed over the joints."""
+    return np.asarray(np.abs(path._derivatives[2]).max(axis=1).sum(axis=1))
