@@ -13,6 +13,7 @@ from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
 from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_path import TimedPath
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
+from cspace.trajectory.trajectory_files import from_csv, from_json, to_csv, to_json, to_ros
 
 __all__ = [
     "BindingLimit",
@@ -32,6 +33,8 @@ __all__ = [
     "b_spline",
     "blend",
     "fit_path",
+    "from_csv",
+    "from_json",
     "line_path",
     "move_to",
     "pose_path",
@@ -39,4 +42,7 @@ __all__ = [
     "spline",
     "state_to_state",
     "time_parametrize",
+    "to_csv",
+    "to_json",
+    "to_ros",
 ]
