@@ -833,14 +833,6 @@ def find_reach(checker: CollisionChecker) -> float:
     The farthest that a sphere may be from the axis of a joint that moves it [m].
     """
 
-def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], intervals: int) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
-    """
-    Pieces, from and to (k,) of about so many intervals of a path, two or more in each piece.
-    """
-
-def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], numpy.typing.NDArray[numpy.float64], bool]:
-    """
-    Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.
 PHASES_OF_AXIS: int = ...
 
 def solve_states(states: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], durations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cycle: float, mode: int, threads: int, verdict: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None, None), order='C', device='cpu')]) -> None:
@@ -853,6 +845,16 @@ def solve_states(states: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 
 def fill_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None), order='C', device='cpu', writable=False)], count: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], duration: float, knots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], origins: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
     """
     Polynomials of the phases of one motion: writes knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
+    """
+
+def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], intervals: int) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Pieces, from and to (k,) of about so many intervals of a path, two or more in each piece.
+    """
+
+def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], numpy.typing.NDArray[numpy.float64], bool]:
+    """
+    Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.
     """
 
 def _car_clear(*arguments: Any) -> bool: ...
