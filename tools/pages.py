@@ -18,6 +18,7 @@ COURSE += (
     "differential-kinematics",
     "dynamics",
     "trajectory",
+    "path-timing",
     "export",
     "shapes",
     "collision",

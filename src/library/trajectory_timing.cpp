@@ -22,6 +22,22 @@ constexpr size_t least_parts = 2;  // of a piece: with stops at both its ends it
 // of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
 constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
 
+// Numbers at an address that suits the widest pack.
+class Aligned {
+  public:
+    explicit Aligned(size_t size) : lines_((size + joint_padding - 1) / joint_padding) {}
+    double* data() { return lines_.empty() ? nullptr : lines_.front().values; }
+    const double* data() const { return lines_.empty() ? nullptr : lines_.front().values; }
+    double& operator[](size_t i) { return data()[i]; }
+    double operator[](size_t i) const { return data()[i]; }
+
+  private:
+    struct alignas(8 * joint_padding) Line {
+        double values[joint_padding] = {};
+    };
+    std::vector<Line> lines_;
+};
+
 std::vector<double> pad_rows(std::span<const double> rows, int width, int padded) {
     std::vector<double> made(rows.size() / size_t(width) * size_t(padded), 0.0);
     for (size_t r = 0; r * size_t(width) < rows.size(); ++r)
@@ -38,10 +54,10 @@ std::vector<double> invert_limits(std::span<const double> limits, int padded) {
 }
 
 // Bernstein coefficients of dq/ds of every piece, raised to degree 2 or 4, as TimedRows has them.
-std::vector<double> find_slopes(const TimingPath& path, int degree, int padded) {
+Aligned find_slopes(const TimingPath& path, int degree, int padded) {
     const int own = path.degree - 1, n = path.joints;
     const size_t width = size_t(padded);
-    std::vector<double> slopes(path.lengths.size() * size_t(degree + 1) * width, 0.0);
+    Aligned slopes(path.lengths.size() * size_t(degree + 1) * width);
     for (size_t piece = 0; piece < path.lengths.size(); ++piece) {
         const double* q = path.controls.data() + piece * size_t((path.degree + 1) * n);
         double* d = slopes.data() + piece * size_t(degree + 1) * width;
@@ -81,7 +97,7 @@ class PathTimer {
         rows_.inverse_velocity = velocity_.data();
         bound_noise();
         rows_.least_inverse_square = least_inverse_square_.data();
-        memory_.resize(size_t(3 * row_capacity(rows_)));
+        memory_ = Aligned(size_t(3 * row_capacity(rows_)));
     }
 
     void set_grid(const TimingGrid& grid, const Sampler& sample) {
@@ -202,7 +218,8 @@ class PathTimer {
     const TimingPath& path_;
     double start_, end_;
     int padded_;
-    std::vector<double> slopes_, acceleration_, velocity_, least_inverse_square_, memory_;
+    Aligned slopes_, memory_{0};
+    std::vector<double> acceleration_, velocity_, least_inverse_square_;
     TimingSamples samples_;
     TimedRows rows_{};
     std::vector<Interval> intervals_;

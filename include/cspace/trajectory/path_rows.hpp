@@ -66,10 +66,28 @@ constexpr double binomial(int n, int k) {
     for (int i = 1; i <= k; ++i) value = value * double(n - k + i) / double(i);
     return value;
 }
-// The weight of a_i b_j in coefficient i + j of the product of two polynomials of degree m.
-constexpr double product_weight(int m, int i, int j) {
-    return binomial(m, i) * binomial(m, j) / binomial(2 * m, i + j);
-}
+// The weights of a_i b_j in coefficient i + j of the product of polynomials of degrees m and n.
+template <int m, int n>
+struct ProductWeights {
+    double at[m + 1][n + 1];
+
+    constexpr ProductWeights() : at{} {
+        for (int i = 0; i <= m; ++i)
+            for (int j = 0; j <= n; ++j) at[i][j] = binomial(m, i) * binomial(n, j) / binomial(m + n, i + j);
+    }
+};
+// The weights of the coefficients of a quadratic polynomial in its coefficients of degree m.
+template <int m>
+struct RaisedWeights {
+    double at[m + 1][3];
+
+    constexpr RaisedWeights() : at{} {
+        for (int k = 0; k <= m; ++k)
+            for (int j = 0; j <= 2; ++j)
+                if (k - j >= 0 && k - j <= m - 2)
+                    at[k][j] = binomial(2, j) * binomial(m - 2, k - j) / binomial(m, k);
+    }
+};
 
 }  // namespace cspace::trajectory
 
@@ -122,21 +140,23 @@ CSPACE_INLINE void write_acceleration_rows(const Rows& rows, int at, int stride,
 // Raises squares to the Bernstein coefficients of (q' / limit)², of degree 2m, of a pack of joints.
 template <int m, class V>
 CSPACE_INLINE void raise_squares(const V (&c)[m + 1], V (&squares)[2 * m + 1]) {
-    for (int k = 0; k <= 2 * m; ++k) {
-        V sum = fill<V>(0.0);
-        for (int i = k < m ? 0 : k - m; 2 * i <= k; ++i) {
-            const double weight = (2 * i == k ? 1.0 : 2.0) * product_weight(m, i, k - i);
-            sum += (weight * c[i]) * c[k - i];
-        }
-        squares[k] = max(squares[k], sum);
-    }
+    constexpr ProductWeights<m, m> weights;
+    V sums[2 * m + 1];
+    for (int i = 0; i <= m; ++i) sums[2 * i] = weights.at[i][i] * c[i] * c[i];
+    for (int i = 0; i < m; ++i) sums[2 * i + 1] = (2.0 * weights.at[i][i + 1]) * c[i] * c[i + 1];
+    for (int apart = 2; apart <= m; ++apart)
+        for (int i = 0; i + apart <= m; ++i)
+            sums[2 * i + apart] += (2.0 * weights.at[i][i + apart]) * c[i] * c[i + apart];
+    for (int k = 0; k <= 2 * m; ++k) squares[k] = max(squares[k], sums[k]);
 }
 
+// The largest of all lanes, in every lane.
 template <class V>
-CSPACE_INLINE double largest_lane(V v) {
-    double most = lane(v, 0);
-    for (int k = 1; k < Lanes<V>::count; ++k) most = max(most, lane(v, k));
-    return most;
+CSPACE_INLINE V largest_lanes(V v) {
+    if constexpr (Lanes<V>::count > 4) v = max(v, swap_lanes<4>(v));
+    if constexpr (Lanes<V>::count > 2) v = max(v, swap_lanes<2>(v));
+    if constexpr (Lanes<V>::count > 1) v = max(v, swap_lanes<1>(v));
+    return v;
 }
 
 // The rows of the velocities: with P_k no less than the coefficients of any (q' / limit)², those of degree
@@ -166,11 +186,10 @@ CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const double (&P)[2 *
 // Raises P to the coefficients of a quadratic polynomial.
 template <int m>
 CSPACE_INLINE void raise_to_quadratic(double (&P)[2 * m + 1], const double* coefficients) {
+    constexpr RaisedWeights<2 * m> weights;
     for (int k = 0; k <= 2 * m; ++k) {
         double sum = 0.0;
-        for (int j = 0; j <= 2; ++j)
-            if (k - j >= 0 && k - j <= 2 * m - 2)
-                sum += binomial(2, j) * binomial(2 * m - 2, k - j) / binomial(2 * m, k) * coefficients[j];
+        for (int j = 0; j <= 2; ++j) sum += weights.at[k][j] * coefficients[j];
         P[k] = max(P[k], sum);
     }
 }
@@ -217,7 +236,7 @@ CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memo
     }
     double P[2 * m + 1];
     for (int k = 0; k <= 2 * m; ++k)
-        P[k] = max(largest_lane(squares[k]), path.least_inverse_square[part.piece]);
+        P[k] = max(lane(largest_lanes(squares[k]), 0), path.least_inverse_square[part.piece]);
     if (path.sampled.inverse_square) raise_to_quadratic<m>(P, path.sampled.inverse_square + 3 * i);
     write_velocity_rows<m>(rows, (m + 1) * padded, P);
     if (path.sampled.along) {

@@ -6,6 +6,7 @@
 // rows.
 #pragma once
 
+#include "cspace/math/float_lanes.hpp"
 #include "cspace/trajectory/path_rows.hpp"
 
 namespace cspace::trajectory {
@@ -37,18 +38,21 @@ struct Edges {
     Edge low, high;
 };
 
-// The greatest of the lanes of low and the least of those of high, with their lines.
+// The number of a lane that has the largest value, which every lane of `largest` has.
 template <class V>
-CSPACE_INLINE Edges reduce_edges(V low, V low_slope, V low_offset, V high, V high_slope, V high_offset) {
-    Edges edges{{lane(low, 0), lane(low_slope, 0), lane(low_offset, 0)},
-                {lane(high, 0), lane(high_slope, 0), lane(high_offset, 0)}};
-    for (int k = 1; k < Lanes<V>::count; ++k) {
-        if (lane(low, k) > edges.low.value)
-            edges.low = {lane(low, k), lane(low_slope, k), lane(low_offset, k)};
-        if (lane(high, k) < edges.high.value)
-            edges.high = {lane(high, k), lane(high_slope, k), lane(high_offset, k)};
-    }
-    return edges;
+CSPACE_INLINE int find_lane(V v, V largest) {
+    const unsigned bits = bits_of(v == largest);
+    return bits ? lowest_lane(bits) : 0;
+}
+// The line of the largest value among lanes.
+template <class V>
+CSPACE_INLINE Edge largest_edge(V value, V slope, V offset) {
+    double slopes[Lanes<V>::count], offsets[Lanes<V>::count];
+    store(slopes, slope);
+    store(offsets, offset);
+    const V largest = largest_lanes(value);
+    const int k = find_lane(value, largest);
+    return {lane(largest, 0), slopes[k], offsets[k]};
 }
 
 // What the rows and the range of the next place leave of y at x.
@@ -70,7 +74,8 @@ CSPACE_INLINE Edges bound_next(const Rows& rows, double x, const SpeedRange& nex
         high_slope = select(lower, slope, high_slope);
         high_offset = select(lower, other, high_offset);
     }
-    Edges edges = reduce_edges(low, low_slope, low_offset, high, high_slope, high_offset);
+    Edges edges{largest_edge(low, low_slope, low_offset), largest_edge(-high, high_slope, high_offset)};
+    edges.high.value = -edges.high.value;
     edges.low.value += speed_rounding * x;
     edges.low.slope += speed_rounding;
     edges.high.value -= speed_rounding * x;

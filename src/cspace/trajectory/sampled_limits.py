@@ -128,7 +128,7 @@ class SampledLimits:
         if self.expected is None:
             return np.zeros(len(pieces))
         s = self.path.breaks[pieces] + places * self.path.lengths[pieces]
-        return np.interp(s, *self.expected)
+        return np.asarray(np.interp(s, *self.expected))
 
     def tighten(self, timed: TimedPath) -> bool:
         """Whether no limit is exceeded at samples of each interval; else the limits there are tightened."""
