@@ -18,6 +18,8 @@ ROOMS = {
     "kinematics": "kinematics",
     "dynamics": "dynamics",
     "ik": "ik",
+    "trajectory": "trajectory",
+    "cartesian": "cartesian",
     "plot": "plot",
     "maps": "maps",
     "navigation": "navigation",

@@ -109,7 +109,7 @@ def _ended(branch: Branch, s_of_row: Array) -> JointBranch:
     row = min(int(branch.end), len(s_of_row) - 2)
     s = float(s_of_row[row] + (branch.end - row) * (s_of_row[row + 1] - s_of_row[row]))
     first = branch.q[0] if len(branch.q) else branch.last
-    text = f"at s = {s:.6g}: {branch.reason}"
+    text = f"at s = {s:.6g}: {branch.explain_cause()}"
     return JointBranch(None, first, s, branch.cause, branch.joint, text, NO_DEVIATION)
 
 
