@@ -19,6 +19,7 @@ COURSE += (
     "dynamics",
     "trajectory",
     "path-timing",
+    "cartesian",
     "export",
     "shapes",
     "collision",

@@ -7,8 +7,6 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "cspace/ik/tracking/cheapest_chain.hpp"
-#include "cspace/math/interrupts.hpp"
 #include "kinematics.hpp"
 
 namespace nb = nanobind;
@@ -57,8 +55,8 @@ nb::tuple cheapest_chain(Matrix q, Row cost, Array<const std::size_t, nb::ndim<1
     ik::LayerChain chain;
     {
         const nb::gil_scoped_release release;
-        chain = ik::find_cheapest_chain({dof, q.data(), cost.data(), begin.data(), layers, values,
-                                         stride.data(), period.data(), reach, is_ring, poll_interrupts});
+        chain = ik::cheapest_chain({dof, q.data(), cost.data(), begin.data(), layers, values, stride.data(),
+                                    period.data(), reach, is_ring, nullptr});
     }
     return nb::make_tuple(chain.states, chain.cost);
 }

@@ -597,4 +597,46 @@ LIMIT_BINDS: Final = 1e-6
 ROOT_CONVERGED: Final = 4e-16
 """Last step towards the root of a polynomial, relative to its interval: two units in the last place."""
 
+CHAIN_AT_LIMIT: Final = 1e-3
+"""What is left of 1 − x² at a limit."""
+
+CHAIN_LEAST_VOLUME: Final = 1e-6
+"""Of the best determinant: nearer to singularities all are equally bad."""
+
+POSE_ROUNDING: Final = 1e-13
+"""[m or rad] Of a pose that is reached."""
+
+PATH_START: Final = 1e-6
+"""[m or rad] Of a start from the begin of a path: solutions of inverse kinematics are closer."""
+
+SHORTEST_PATH_PIECE: Final = 1e-4
+"""[m or rad] A piece that is off and this short ends its branch: the joints would have to jump."""
+
+PATH_POSE_LEFT: Final = 1e-9
+"""Error of a corrected pose, lengths over that of the arm, above which it is not reached."""
+
+NEARLY_STRAIGHT: Final = 3e-4
+"""[rad or m] Distance of the curve from a straight motion of the joints, at most, summed over the joints."""
+
+LEAST_DEVIATION: Final = 1e-3
+"""[rad or m] A corner that has to be rounded less is not rounded: the motion stops there."""
+
+PATH_CURVED: Final = 1e-9
+"""Second derivative above which a piece is a blend, not a leg."""
+
+MOTION_CHECK_STEP: Final = 1e-3
+"""[s] Between the configurations at which the result is checked once more."""
+
+SMOOTH_CORNER: Final = 1e-9
+"""Change of direction that is rounding: the path goes straight on."""
+
+REPEATED_POSE: Final = 1e-12
+"""[m, rad] A leg that is shorter repeats its pose."""
+
+NEAR_HALF_TURN: Final = 1e-9
+"""[rad] How near to 180° a rotation has two shortest ways."""
+
+COLLINEAR_POINTS: Final = 1e-9
+"""Sine of the angle at the middle one of three points that are on a line."""
+
 __all__ = [name for name in globals() if name.isupper()]

@@ -60,4 +60,9 @@ void correct_joint_path(const JointPathRows& given) {
                            given.q, given.slope, given.bend, given.info, poll_interrupts});
 }
 
+LayerChain cheapest_chain(Layers layers) {
+    layers.poll = poll_interrupts;
+    return find_cheapest_chain(layers);
+}
+
 }  // namespace cspace::ik

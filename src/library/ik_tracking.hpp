@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "cspace/ik/tracking/cheapest_chain.hpp"
 #include "cspace/model/chain.hpp"
 
 namespace cspace::ik {
@@ -36,5 +37,8 @@ struct JointPathRows {
     double *q, *slope, *bend, *info;
 };
 void correct_joint_path(const JointPathRows& rows);
+
+// As find_cheapest_chain, heeding signals.
+LayerChain cheapest_chain(Layers layers);
 
 }  // namespace cspace::ik

@@ -10,7 +10,9 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.kinematics import KinematicModel
+from cspace.math.wrapping import TURN, wrap_near
 from cspace.model import Limits
+from cspace.tolerances import CHAIN_AT_LIMIT, CHAIN_LEAST_VOLUME
 from cspace.trajectory.cartesian_path import CartesianPath
 
 STATION_SPACING: Final = 0.04
@@ -32,18 +34,10 @@ LIMIT_WEIGHT: Final = 0.3
 """Of x²/(1 − x²), x the distance from the middle of the limits in half ranges, against joints that move by 1
 rad per unit of the path: a few degrees of detour keep a joint away from its limits."""
 
-AT_LIMIT: Final = 1e-3
-"""What is left of 1 − x² at a limit."""
-
 SINGULAR_WEIGHT: Final = 0.02
 """Of the inverse of det(J Jᵀ), relative to the best one on the path."""
 
-LEAST_VOLUME: Final = 1e-6
-"""Of the best determinant: nearer to singularities all are equally bad."""
-
-FULL_TURN: Final = 2 * np.pi
-
-ROOMY: Final = FULL_TURN + 2.0
+ROOMY: Final = TURN + 2.0
 """[rad] Range of a joint of which multiples of 2π count as one configuration; its limits are looked at
 afterwards."""
 
@@ -147,7 +141,7 @@ class ChainSearch:
             q, cell = np.concatenate([self.start[None], q[later]]), np.concatenate([[own], cell[later]])
         begin = np.searchsorted(cell, np.arange(n * m + 1)).astype(np.uint64)
         stride = np.where(self.revolute, LONGEST_STEP, np.inf)
-        period = np.where(self.wide, FULL_TURN, 0.0)
+        period = np.where(self.wide, TURN, 0.0)
         q = np.ascontiguousarray(q)
         states, _ = _core._ik_cheapest_chain(
             q, self._measure_cost(q), begin, m, stride, period, reach, is_ring
@@ -160,35 +154,34 @@ class ChainSearch:
     def _into_limits(self, q: Array) -> Array:
         """Angles of joints that cannot make a full turn, moved by the multiple of 2π that is nearest to the
         middle of their limits."""
-        turning = self.revolute & self.narrow
-        return np.asarray(q - FULL_TURN * np.where(turning, np.round((q - self.middle) / FULL_TURN), 0.0))
+        return np.asarray(np.where(self.revolute & self.narrow, wrap_near(q, self.middle), q))
 
     def _measure_cost(self, q: Array) -> Array:
         """Of the distance from the middle of the limits and from singularities."""
         off = np.where(self.narrow, (q - self.middle) / self.half, 0.0) ** 2
-        cost = LIMIT_WEIGHT * np.sum(off / (1.0 + AT_LIMIT - np.minimum(off, 1.0)), axis=1)
+        cost = LIMIT_WEIGHT * np.sum(off / (1.0 + CHAIN_AT_LIMIT - np.minimum(off, 1.0)), axis=1)
         J = self.robot.jacobian(q)
         volume = np.linalg.det(J @ np.swapaxes(J, 1, 2)) if len(q) else np.zeros(0)
         best = volume.max(initial=0.0)
         if best > 0.0:
-            cost += SINGULAR_WEIGHT * best / np.maximum(volume, LEAST_VOLUME * best)
+            cost += SINGULAR_WEIGHT * best / np.maximum(volume, CHAIN_LEAST_VOLUME * best)
         return np.asarray(cost * self.stations.spacing**2)
 
     def _unwrap(self, q: Array) -> Array:
         """The chain with continuous angles; without a start, each joint is moved by the multiple of 2π that
         keeps it within its limits, if there is one."""
         step = np.diff(q, axis=0)
-        step -= np.where(self.wide, FULL_TURN * np.round(step / FULL_TURN), 0.0)
+        step -= np.where(self.wide, TURN * np.round(step / TURN), 0.0)
         out: Array = q[0] + np.concatenate([np.zeros((1, q.shape[1])), np.cumsum(step, axis=0)])
         if self.start is not None:
             return out
         low, high = out.min(axis=0), out.max(axis=0)
         lower, upper = self.bounds.lower, self.bounds.upper
         limited = self.wide & np.isfinite(lower) & np.isfinite(upper)
-        turns = np.where(limited, np.ceil((np.where(limited, lower, 0.0) - low) / FULL_TURN), 0.0)
-        fits = high + FULL_TURN * turns <= upper
+        turns = np.where(limited, np.ceil((np.where(limited, lower, 0.0) - low) / TURN), 0.0)
+        fits = high + TURN * turns <= upper
         moved = limited & ((low < lower) | (high > upper)) & fits
-        return np.asarray(out + np.where(moved, FULL_TURN * turns, 0.0))
+        return np.asarray(out + np.where(moved, TURN * turns, 0.0))
 
     def _explain_end(self, chain: ConfigurationChain, has_next: bool) -> ConfigurationChain:
         s = self.stations.s[len(chain.q)]

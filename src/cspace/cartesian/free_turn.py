@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array, positive_number
-from cspace.cartesian.chain_search import FULL_TURN, ChainSearch, Stations
+from cspace.cartesian.chain_search import ChainSearch, Stations
 from cspace.cartesian.guided import smooth_rows
 from cspace.cartesian.joint_branches import JointBranch, make_branch
 from cspace.cartesian.redundant_path import (
@@ -25,6 +25,7 @@ from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
+from cspace.math.wrapping import TURN
 from cspace.model import Limits
 from cspace.spatial import exp_so3, log_so3
 from cspace.spatial.vectors import AXES, cross, length_and_direction
@@ -122,7 +123,7 @@ class FreeTurn:
 
     def spread_values(self) -> Array:
         """Angles (m,), evenly spaced."""
-        return FULL_TURN * (np.arange(ANGLES) / ANGLES - 0.5)
+        return TURN * (np.arange(ANGLES) / ANGLES - 0.5)
 
     def solve(self, T: Array, values: Array) -> tuple[Array, Any]:
         """The solutions of poses that are turned by angles."""
@@ -133,7 +134,7 @@ class FreeTurn:
             return found.q, found.count
         joint = self.solver.redundant_joints[0]
         lower, upper = self.bounds.lower[joint], self.bounds.upper[joint]
-        if not upper - lower < FULL_TURN:
+        if not upper - lower < TURN:
             lower, upper = -np.pi, np.pi
         tried = lower + (upper - lower) * (np.arange(JOINT_VALUES) + 0.5) / JOINT_VALUES
         every = np.repeat(turned, JOINT_VALUES, axis=0)

@@ -12,15 +12,13 @@ from cspace.cartesian.refine import Nodes
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.jacobian import jacobian_dot
 from cspace.spatial import log_so3
+from cspace.tolerances import POSE_ROUNDING
 from cspace.trajectory.cartesian_path import CartesianPath, Indices
 from cspace.trajectory.path import Path
 from cspace.trajectory.splines import quintic_controls
 
 ANCHOR: Final = 1e9
 """Weight of the start in the smoothing: it stays where it is."""
-
-ROUNDING: Final = 1e-13
-"""[m or rad] Of a pose that is reached."""
 
 CORRECTIONS: Final = 12
 """Of Newton's method from the spline between stations."""
@@ -68,7 +66,7 @@ class Guided:
         left = np.full(len(q), np.inf)
         for _ in range(CORRECTIONS):
             error, left = self._measure_error(q, T)
-            if not (left > ROUNDING).any():
+            if not (left > POSE_ROUNDING).any():
                 break
             q += self._solve(q, d[0], error, _dot(d[0], r[0] - q))
         twist, rate = self.path.twists_on(piece, u)

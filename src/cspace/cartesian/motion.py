@@ -19,6 +19,7 @@ from cspace.kinematics import KinematicModel
 from cspace.model import Limits
 from cspace.spatial.checks import PoseLike
 from cspace.tables import count_things, one_line, shown
+from cspace.tolerances import PATH_START
 from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path
 from cspace.trajectory.cartesian_path import CartesianPath
 from cspace.trajectory.path import Path
@@ -56,7 +57,7 @@ class CartesianMotion(TimedPath):
         chosen: int,
         durations: Array,
     ) -> CartesianMotion:
-        """A TimedPath with what it follows."""
+        """A TimedPath with what it follows; durations (k,) of the branches."""
         made = cls.__new__(cls)
         made.__dict__.update(timed.__dict__)
         made.cartesian, made.branches, made.chosen = cartesian, tuple(branches), chosen
@@ -185,16 +186,12 @@ def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, t
     T, first = robot.fk(q), path(0.0)
     off = float(np.linalg.norm(T[:3, 3] - first[:3, 3]))
     turned = 0.0 if turns else float(np.linalg.norm(T[:3, :3] - first[:3, :3]) * np.sqrt(0.5))
-    if max(off, turned) > START_DISTANCE:
+    if max(off, turned) > PATH_START:
         raise InputError(
             f"start is {off:.3g} m and {turned:.3g} rad from the begin of the path; move there first, or"
             " leave start out"
         )
     return q
-
-
-START_DISTANCE: Final = 1e-6
-"""[m or rad] Of a start from the begin of a path: solutions of inverse kinematics are closer."""
 
 
 def _follow(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array, positive_number
-from cspace.cartesian.chain_search import FULL_TURN, ROOMY, ChainSearch, Stations
+from cspace.cartesian.chain_search import ROOMY, ChainSearch, Stations
 from cspace.cartesian.guided import Guided, null_directions, smooth_rows
 from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, make_branch
 from cspace.cartesian.refine import first_nodes, refine_branches
@@ -17,6 +17,7 @@ from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
+from cspace.math.wrapping import wrap_near
 from cspace.model import Limits
 from cspace.trajectory.cartesian_path import CartesianPath
 from cspace.trajectory.path import Path
@@ -103,7 +104,7 @@ class RedundantJoint:
     def value_of(self, q: Array, T: Array) -> float:
         """The joint itself, in the ring where it is one."""
         value = float(q[self.solver.redundant_joints[0]])
-        return value - FULL_TURN * round(value / FULL_TURN) if self.is_ring else value
+        return float(wrap_near(value, 0.0)) if self.is_ring else value
 
 
 def choose_limits(robot: KinematicModel, limits: bool | Limits) -> Limits:

@@ -13,6 +13,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import frame_number
+from cspace.tolerances import PATH_POSE_LEFT, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices
 from cspace.trajectory.path import Path
 
@@ -21,12 +22,6 @@ FIRST_SPACING: Final = 0.1
 
 FEWEST_PIECES: Final = 4
 """Of each piece of the Cartesian path, so that a short one is compared with its joint path at all."""
-
-SHORTEST_PIECE: Final = 1e-4
-"""[m or rad] A piece that is off and this short ends its branch: the joints would have to jump."""
-
-POSE_LEFT: Final = 1e-9
-"""Error of a corrected pose, lengths over that of the arm, above which it is not reached."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +123,7 @@ class _Refiner:
 
     def _lose(self, branch: Indices, piece: Indices, u: Array, left: Array) -> None:
         """Ends branches at nodes whose pose is not reached."""
-        bad = ~(left <= POSE_LEFT)
+        bad = ~(left <= PATH_POSE_LEFT)
         np.minimum.at(self.lost, branch[bad], (self.path.breaks[piece] + u)[bad])
 
     def _measure_middles(self) -> tuple[Array, Sequence[Any]]:
@@ -154,7 +149,7 @@ class _Refiner:
         nodes = self.correct(piece, u, T, guess)
         branch = self.branch[a]
         self._lose(branch, piece, u, nodes.left)
-        short = self.u[b] - self.u[a] < SHORTEST_PIECE
+        short = self.u[b] - self.u[a] < SHORTEST_PATH_PIECE
         self._lose(branch[short], piece[short], u[short], np.full(int(short.sum()), np.inf))
         node = len(self.q) + np.arange(len(a))
         self.branch = np.concatenate([self.branch, branch])

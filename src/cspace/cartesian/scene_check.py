@@ -10,10 +10,8 @@ from numpy.typing import NDArray
 
 from cspace.arrays import Array
 from cspace.planning import ArmSpace
+from cspace.tolerances import NEARLY_STRAIGHT
 from cspace.trajectory.path import Path
-
-STRAIGHT: Final = 3e-4
-"""[rad or m] Distance of the curve from a straight motion of the joints, at most, summed over the joints."""
 
 MOST_PARTS: Final = 1 << 12
 """Of a piece."""
@@ -29,13 +27,13 @@ class Touch:
 
 
 def space_of_curves(robot: Any, scene: Any, margin: float) -> ArmSpace:
-    """The space in which straight motions stand for curves that leave them by STRAIGHT.
+    """The space in which straight motions stand for curves that leave them by NEARLY_STRAIGHT.
 
     A point moves by the sum of the distances of the joints times the reach of the arm, at most: that much is
     added to the margin.
     """
     reach = ArmSpace(robot, scene, margin).reach
-    return ArmSpace(robot, scene, margin + STRAIGHT * max(1.0, reach))
+    return ArmSpace(robot, scene, margin + NEARLY_STRAIGHT * max(1.0, reach))
 
 
 def find_touches(
@@ -67,10 +65,10 @@ def straight_parts(path: Path) -> NDArray[np.intp]:
 
     A curve leaves its chord by at most h²/8 of its largest second derivative.
     """
-    parts = np.ceil(path.lengths * np.sqrt(bends(path) / (8.0 * STRAIGHT)))
+    parts = np.ceil(path.lengths * np.sqrt(bound_bends(path) / (8.0 * NEARLY_STRAIGHT)))
     return np.clip(parts, 1, MOST_PARTS).astype(np.intp)
 
 
-def bends(path: Path) -> Array:
+def bound_bends(path: Path) -> Array:
     """A bound (k,) of the second derivative on each piece, summed over the joints."""
     return np.asarray(np.abs(path._derivatives[2]).max(axis=1).sum(axis=1))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, bounded_number
-from cspace.cartesian.scene_check import bends, find_touches, space_of_curves
+from cspace.cartesian.scene_check import bound_bends, find_touches, space_of_curves
 from cspace.collision import Scene
 from cspace.collision.checks import collides
 from cspace.plan_motion.goals import GoalLike
@@ -17,17 +17,9 @@ from cspace.plan_motion.plans import Seed, plan
 from cspace.planning import ArmPlanner, ArmSpace, Plan
 from cspace.robot import Robot
 from cspace.tables import one_line, shown
+from cspace.tolerances import LEAST_DEVIATION, MOTION_CHECK_STEP, PATH_CURVED
 from cspace.trajectory import Path, TimedPath, blend, time_parametrize
 from cspace.trajectory.time_parametrize import EMPTY_GRID
-
-LEAST_DEVIATION: Final = 1e-3
-"""[rad or m] A corner that has to be rounded less is not rounded: the motion stops there."""
-
-CURVED: Final = 1e-9
-"""Second derivative above which a piece is a blend, not a leg."""
-
-CHECK_STEP: Final = 1e-3
-"""[s] Between the configurations at which the result is checked once more."""
 
 MOST_CHECKED: Final = 20_000
 """Of them; a longer motion is checked in larger steps."""
@@ -82,7 +74,7 @@ def move(
     A free way is planned, its corners are rounded, the path is timed, and the result is checked once more at
     configurations along it.
 
-    start, goal, scene, planner, margin, rng, options: as of plan. deviation [rad or m, L2 norm]: how far the
+    start (dof,) [rad or m], or a named pose. goal, scene, planner, margin, rng, options: as of plan. deviation [rad or m, L2 norm]: how far the
     motion may pass from the corners of the plan; less where something is near, and it stops at corners that
     cannot be rounded. Straight legs are proved by the plan, and rounded corners with 0.3 mm and more to
     spare. velocity, acceleration, torque, speed, turn_rate: as of time_parametrize; torque=True takes the
@@ -123,7 +115,7 @@ def round_corners(
     checked: set[tuple[int, float]] = set()
     while True:
         path = blend(corners, allowed)
-        curved = bends(path) > CURVED
+        curved = bound_bends(path) > PATH_CURVED
         nearest = _corner_of_pieces(path, corners)
         for k in np.flatnonzero(curved):
             curved[k] = (int(nearest[k]), float(allowed[nearest[k]])) not in checked
@@ -149,7 +141,7 @@ def _corner_of_pieces(path: Path, corners: Array) -> Any:
 
 def check_once_more(robot: Robot, timed: TimedPath, scene: Scene | None) -> tuple[int, str]:
     """How many configurations of a motion were checked for contacts, and what is wrong, if anything."""
-    count = int(np.clip(np.ceil(timed.duration / CHECK_STEP), 1, MOST_CHECKED)) + 1
+    count = int(np.clip(np.ceil(timed.duration / MOTION_CHECK_STEP), 1, MOST_CHECKED)) + 1
     t = np.linspace(0.0, timed.duration, count)
     touching = np.flatnonzero(collides(robot, timed(t), scene))
     if touching.size:

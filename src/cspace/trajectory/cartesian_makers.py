@@ -12,6 +12,7 @@ from cspace.arrays import Array, bounded_number, one_array, one_number
 from cspace.errors import InputError
 from cspace.spatial import as_pose, inverse_pose, log_so3, screw_of
 from cspace.spatial.checks import PoseLike, one_pose
+from cspace.tolerances import COLLINEAR_POINTS, NEAR_HALF_TURN, REPEATED_POSE, SMOOTH_CORNER
 from cspace.trajectory.cartesian_path import DEGREE, CartesianPath, CartesianPiece
 
 ROTATIONS: Final = ("interpolate", "keep", "follow")
@@ -24,20 +25,8 @@ peak curvature of a circle up to 90°."""
 BLEND_MISS: Final = (16 - 25 * BLEND_SPACING) / 32
 """How far a blend passes from its corner, per length on each leg and per change of direction."""
 
-SMOOTH_CORNER: Final = 1e-9
-"""Change of direction that is rounding: the path goes straight on."""
-
 REVERSAL: Final = 0.1
 """Sum of the directions before and after a corner below which no blend turns the path around: it stops."""
-
-REPEATED: Final = 1e-12
-"""[m, rad] A leg that is shorter repeats its pose."""
-
-HALF_TURN: Final = 1e-9
-"""[rad] How near to 180° a rotation has two shortest ways."""
-
-COLLINEAR: Final = 1e-9
-"""Sine of the angle at the middle one of three points that are on a line."""
 
 NO_POLYNOMIAL: Final = np.zeros((DEGREE + 1, 3))
 Z: Final = np.array([0.0, 0.0, 1.0])
@@ -175,7 +164,7 @@ class _Legs:
             last = T[rows[-1]]
             _check_turn(last, T[k], f"poses {rows[-1]} and {k}")
             step = np.concatenate([T[k, :3, 3] - last[:3, 3], log_so3(T[k, :3, :3] @ last[:3, :3].T)])
-            if np.abs(step).max() > REPEATED:
+            if np.abs(step).max() > REPEATED_POSE:
                 rows.append(k)
                 steps.append(step)
         if not steps:
@@ -257,12 +246,12 @@ def _circle_through(first: Array, via: Array, last: Array) -> tuple[Array, Array
     """Axis, centre and angle of the arc through three points; None if they are on a line."""
     a, b = via - first, last - first
     sizes = np.linalg.norm(a), np.linalg.norm(b), np.linalg.norm(last - via)
-    if sizes[0] <= REPEATED or sizes[2] <= REPEATED:
+    if sizes[0] <= REPEATED_POSE or sizes[2] <= REPEATED_POSE:
         raise InputError("via is an end of the arc; it must lie between start and goal")
-    if sizes[1] <= REPEATED:
+    if sizes[1] <= REPEATED_POSE:
         raise InputError("the goal of the arc is its start; give center=, axis= and angle= for a full circle")
     normal = np.cross(a, b)
-    if np.linalg.norm(normal) <= COLLINEAR * sizes[0] * sizes[2]:
+    if np.linalg.norm(normal) <= COLLINEAR_POINTS * sizes[0] * sizes[2]:
         if a @ (last - via) < 0.0:
             raise InputError("start, via and goal are on a line, and via is not between the others")
         return None
@@ -276,7 +265,7 @@ def _circle_through(first: Array, via: Array, last: Array) -> tuple[Array, Array
 
 def _check_turn(first: Array, second: Array, subject: str) -> None:
     angle = float(np.linalg.norm(log_so3(second[:3, :3] @ first[:3, :3].T)))
-    if angle > np.pi - HALF_TURN:
+    if angle > np.pi - NEAR_HALF_TURN:
         raise InputError(
             f"{subject} are 180° apart, so the direction of rotation between them is not unique; insert a"
             " pose between them"

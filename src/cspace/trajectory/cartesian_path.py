@@ -14,15 +14,13 @@ from cspace.errors import InputError
 from cspace.spatial import exp_so3
 from cspace.spatial.vectors import cross
 from cspace.tables import count_things, one_line
+from cspace.tolerances import TIME_ROUNDING
 from cspace.trajectory.rotation_rates import angular_rates
 
 DEGREE: Final = 5
 """Of the polynomials of a piece."""
 
 Indices: TypeAlias = NDArray[np.intp]
-
-S_ROUNDING: Final = 1e-12
-"""Relative, by which a parameter may leave the path."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +109,7 @@ class CartesianPath:
     def _locate(self, s: ArrayLike) -> tuple[Indices, Array, tuple[int, ...]]:
         """The piece of each parameter, how far into it, and the shape of s."""
         values = as_floats(s, "s")
-        slack = S_ROUNDING * self.length
+        slack = TIME_ROUNDING * self.length
         outside = (values < -slack) | (values > self.length + slack)
         if outside.any():
             raise InputError(
