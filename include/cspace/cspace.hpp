@@ -66,6 +66,7 @@
 #include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/cover.hpp"
 #include "cspace/shapes/triangle.hpp"
+#include "cspace/trajectory/jerk_rows.hpp"
 #include "cspace/trajectory/speed_bounds.hpp"
 #include "cspace/trajectory/synchronize.hpp"
 #include "cspace/version.hpp"

@@ -2,6 +2,7 @@
 
 from cspace.trajectory.blends import blend
 from cspace.trajectory.fit_path import fit_path
+from cspace.trajectory.jerk_timed_path import JerkTimedPath
 from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
 from cspace.trajectory.move_to import move_to
 from cspace.trajectory.path import Path
@@ -15,6 +16,7 @@ from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Tr
 __all__ = [
     "BindingLimit",
     "Extremes",
+    "JerkTimedPath",
     "JoinedTrajectory",
     "Path",
     "PolynomialTrajectory",

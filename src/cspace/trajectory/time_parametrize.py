@@ -15,6 +15,15 @@ from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.tables import join_words
 from cspace.tolerances import STILL_JOINT, TIMED_WITHIN
+from cspace.trajectory.jerk_timed_path import JerkTimedPath
+from cspace.trajectory.jerk_timing import (
+    JerkLimits,
+    SectionLaw,
+    default_intervals,
+    find_sections,
+    refuse_jumps,
+    time_section,
+)
 from cspace.trajectory.path import Path
 from cspace.trajectory.sampled_limits import (
     MOST_ROUNDS,
@@ -37,6 +46,7 @@ def time_parametrize(
     *,
     velocity: ArrayLike | None = None,
     acceleration: ArrayLike | None = None,
+    jerk: ArrayLike | bool | None = None,
     torque: ArrayLike | bool | None = None,
     speed: float | None = None,
     turn_rate: float | None = None,
@@ -50,21 +60,25 @@ def time_parametrize(
 ) -> TimedPath:
     """The fastest motion along a path within limits of velocity, acceleration, torque and tip speed.
 
-    The squared speed of the parameter is linear on each interval of a grid. Limits of velocity and
-    acceleration hold everywhere on an interval, which is proved by Bernstein coefficients. Limits of torque
-    and of a frame are sampled at three places of an interval, checked at ten and tightened where exceeded.
+    The squared speed of the parameter is linear on each interval of a grid, and quadratic under jerk limits.
+    Limits of velocity, acceleration and jerk hold everywhere on an interval, which is proved by Bernstein
+    coefficients. Limits of torque and of a frame are sampled at three places of an interval, checked at ten
+    and tightened where exceeded; they do not go with jerk limits.
 
     path: a Path, such as of spline or blend. limits: Limits or a robot. velocity, acceleration: in their
-    place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. torque: one number, (dof,) [N·m or
-    N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest ones of the frame of
-    robot, by default its tip. robot: whose dynamics and kinematics those need, by default limits. gravity
-    (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends. grid: about so many
-    intervals; by default intervals are halved until that changes the duration by less than `tolerance`, relative.
+    place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. jerk: likewise, per s², or True for
+    those of limits; the acceleration is then continuous, and the motion rests at both ends. torque: one
+    number, (dof,) [N·m or N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest
+    ones of the frame of robot, by default its tip. robot: whose dynamics and kinematics those need, by
+    default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends. grid: about so many
+    intervals; by default intervals are halved until that changes the duration by less than `tolerance`,
+    relative. Under jerk limits there are 30 of a piece, 150 or more.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits or the
     speeds at the ends are impossible.
-    Raises InputError for a wrong shape, NaN, negative limits, and joints without a limit of acceleration.
-    Source: Pham and Pham 2018, with bounds over whole intervals.
+    Raises InputError for a wrong shape, NaN, negative limits, joints without a limit of acceleration, and
+    jerk limits on a path whose second derivative jumps.
+    Source: Pham and Pham 2018, with bounds over whole intervals; a barrier method under jerk limits.
     """
     if not isinstance(path, Path):
         raise InputTypeError(
@@ -90,10 +104,13 @@ def time_parametrize(
         positive_number(tolerance, "tolerance"),
         labels,
         None if own is None else own.joint_names,
+        _read_jerk(jerk, given, labels),
     )
     if (still := timer.find_locked_joint()) is not None:
         return still
     count = None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS)
+    if timer.jerk is not None:
+        return timer.time_with_jerk(count)
     return timer.time(None if count is None else timer.divide(count))
 
 
@@ -111,12 +128,14 @@ class _Timer:
         tolerance: float,
         labels: tuple[str, ...],
         joint_names: tuple[str, ...] | None,
+        jerk: Array | None,
     ) -> None:
+        self.jerk = jerk
         self.path, self.velocity, self.acceleration = path, velocity, acceleration
         self.sampled, self.ends, self.tolerance = sampled, (start, end), tolerance
         self.labels, self.joint_names = labels, joint_names
         torque, frame = (None, None) if sampled is None else (sampled.torque, sampled.frame)
-        self.ratios = LimitShares(labels, velocity, acceleration, torque, frame)
+        self.ratios = LimitShares(labels, velocity, acceleration, jerk, torque, frame)
         stops = np.zeros(len(path) + 1, dtype=np.int8)
         stops[1:-1] = path._jumps(1)
         self.arrays = np.ascontiguousarray(path.control_points), np.ascontiguousarray(path.lengths), stops
@@ -129,7 +148,10 @@ class _Timer:
         """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
         slopes = np.abs(self.path._derivatives[1]).max(axis=1)
         moves = slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True)
-        for name, limit in (("velocity", self.velocity), ("acceleration", self.acceleration)):
+        limits = {"velocity": self.velocity, "acceleration": self.acceleration}
+        if self.jerk is not None:
+            limits["jerk"] = self.jerk
+        for name, limit in limits.items():
             locked = np.argwhere(moves & (limit == 0.0))
             if locked.size:
                 piece, j = map(int, locked[0])
@@ -160,6 +182,36 @@ class _Timer:
         if timed and not self.sampled.tighten(timed):
             return self._refuse(f"limits are still exceeded after {MOST_ROUNDS} rounds; pass a finer grid=")
         return timed
+
+    def time_with_jerk(self, count: int | None) -> TimedPath:
+        """The fastest motion with limits of jerk too, from rest to rest."""
+        if self.sampled is not None:
+            raise InputTypeError("jerk= cannot be combined with torque=, speed= and turn_rate=")
+        if any(self.ends):
+            raise InputError("jerk= is for motions from rest to rest; leave out start_speed= and end_speed=")
+        assert self.jerk is not None
+        refuse_jumps(self.path)
+        plain = self._solve(None, None)
+        if not plain:
+            return plain
+        limits = JerkLimits(self.velocity, self.acceleration, self.jerk)
+        laws: list[SectionLaw] = []
+        for section in find_sections(self.path):
+            number = default_intervals(self.path) if count is None else count
+            found = time_section(self.path, section, self.arrays, limits, number, plain)
+            if found is None:
+                s = float(self.path.breaks[section.first])
+                return self._refuse(f"no motion from s = {s:.6g} on keeps the limits", s)
+            laws.append(found)
+        return JerkTimedPath(
+            self.path,
+            Grid(*(np.concatenate([each.grid[k] for each in laws]) for k in range(3))),
+            np.concatenate([each.squares for each in laws]),
+            np.concatenate([each.law for each in laws]),
+            np.concatenate([each.jerk for each in laws]),
+            ratios=self.ratios,
+            joint_names=self.joint_names,
+        )
 
     def _solve(self, grid: Grid | None, sample: SampledLimits | None) -> TimedPath:
         outcome, where, least, most, intervals, squared_speed, converged = time_path(
@@ -261,6 +313,15 @@ def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, 
         which = "" if len(absent) == n else f" of {join_words(absent)}"
         raise InputError(f"there are no {name} limits{which}; pass {name}=, with inf for none")
     return own
+
+
+def _read_jerk(jerk: Any, limits: Any, labels: tuple[str, ...]) -> Array | None:
+    if jerk is None or jerk is False:
+        return None
+    row = _read_limit("jerk", None if jerk is True else jerk, limits, labels, required=True)
+    if np.isinf(row).all():
+        raise InputError("jerk is infinite for all joints; leave it out for none")
+    return row
 
 
 def _read_torque(
