@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "cspace/math/banded.hpp"
 #include "cspace/math/interrupts.hpp"
 #include "kernels/trajectory_jerk.hpp"
 #include "trajectory_aligned.hpp"
@@ -27,38 +28,6 @@ constexpr std::array<double, 3> gauss_weight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18
 
 // x(s) = C s^(4/3) of the motion s = jerk t³ / 6.
 double launch_factor(double jerk) { return 0.25 * jerk * jerk * std::pow(6.0 / jerk, 4.0 / 3.0); }
-
-// A symmetric matrix with two diagonals beside the main one, row by row: (i, i), (i, i − 1), (i, i − 2).
-class Banded {
-  public:
-    explicit Banded(size_t size) : rows_(size) {}
-    void clear() { std::fill(rows_.begin(), rows_.end(), Row{}); }
-    void add(size_t row, size_t below, double value) { rows_[row][below] += value; }
-    // Factors it by Cholesky and solves for b in place; false if it is not positive definite.
-    bool solve(std::vector<double>& b) {
-        const size_t n = rows_.size();
-        for (size_t i = 0; i < n; ++i) {
-            Row& row = rows_[i];
-            if (i >= 2) row[2] /= rows_[i - 2][0];
-            if (i >= 1) row[1] = (row[1] - (i >= 2 ? row[2] * rows_[i - 1][1] : 0.0)) / rows_[i - 1][0];
-            const double pivot = row[0] - row[1] * row[1] - row[2] * row[2];
-            if (!(pivot > 0.0)) return false;
-            row[0] = std::sqrt(pivot);
-            b[i] -= (i >= 1 ? row[1] * b[i - 1] : 0.0) + (i >= 2 ? row[2] * b[i - 2] : 0.0);
-            b[i] /= row[0];
-        }
-        for (size_t i = n; i-- > 0;) {
-            if (i + 1 < n) b[i] -= rows_[i + 1][1] * b[i + 1];
-            if (i + 2 < n) b[i] -= rows_[i + 2][2] * b[i + 2];
-            b[i] /= rows_[i][0];
-        }
-        return true;
-    }
-
-  private:
-    using Row = std::array<double, 3>;
-    std::vector<Row> rows_;
-};
 
 // Log-barrier method for the middle coefficients of the squared speed.
 class JerkTimer {
@@ -247,13 +216,13 @@ class JerkTimer {
             kernels::sum_all_barriers(path_, begin, end, rows_.data(), x_.data(), tangents_.data(),
                                       terms_.data());
         });
-        Banded hessian(count_);
+        Pentadiagonal hessian(count_);
         std::vector<double> gradient(count_, 0.0);
         for (size_t i = 0; i < count_; ++i) add_interval(i, add_terms(i, weight), gradient, hessian);
         const auto bound = [&](size_t i, double largest) {
             const double inverse = 1.0 / (largest - middle_[i]);
             gradient[i] += inverse;
-            hessian.add(i, 0, inverse * inverse);
+            hessian.at(i, 0) += inverse * inverse;
         };
         bound(0, start_.largest);
         bound(count_ - 1, end_.largest);
@@ -275,7 +244,7 @@ class JerkTimer {
 
     // From the coefficients of an interval to the middle ones that they are made of.
     void add_interval(size_t i, const BarrierTerms& terms, std::vector<double>& gradient,
-                      Banded& hessian) const {
+                      Pentadiagonal& hessian) const {
         double map[3][3] = {{0, 0, 0}, {0, 1, 0}, {0, 0, 0}};  // coefficient by middle i − 1, i, i + 1
         if (i == 0) {
             map[0][1] = start_.ratio;
@@ -300,7 +269,7 @@ class JerkTimer {
                 double value = 0.0;
                 for (size_t k = 0; k < 3; ++k)
                     for (size_t l = 0; l < 3; ++l) value += map[k][a] * full[k][l] * map[l][b];
-                hessian.add(row, a - b, value);
+                hessian.at(row, a - b) += value;
             }
         }
     }

@@ -70,9 +70,9 @@ def time_parametrize(
     those of limits; the acceleration is then continuous, and the motion rests at both ends. torque: one
     number, (dof,) [N·m or N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest
     ones of the frame of robot, by default its tip. robot: whose dynamics and kinematics those need, by
-    default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends. grid: about so many
-    intervals; by default intervals are halved until that changes the duration by less than `tolerance`,
-    relative. Under jerk limits there are 30 of a piece, 150 or more.
+    default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends.
+    grid: about so many intervals; by default they are halved until that changes the duration by less than
+    `tolerance`, relative. Under jerk limits there are 30 of a piece, 150 or more.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits or the
     speeds at the ends are impossible.
@@ -106,12 +106,7 @@ def time_parametrize(
         None if own is None else own.joint_names,
         _read_jerk(jerk, given, labels),
     )
-    if (still := timer.find_locked_joint()) is not None:
-        return still
-    count = None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS)
-    if timer.jerk is not None:
-        return timer.time_with_jerk(count)
-    return timer.time(None if count is None else timer.divide(count))
+    return timer.run(None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS))
 
 
 class _Timer:
@@ -140,9 +135,13 @@ class _Timer:
         stops[1:-1] = path._jumps(1)
         self.arrays = np.ascontiguousarray(path.control_points), np.ascontiguousarray(path.lengths), stops
 
-    def divide(self, count: int) -> Grid:
-        """About so many intervals."""
-        return Grid(*divide_path(*self.arrays, count))
+    def run(self, count: int | None) -> TimedPath:
+        """The fastest motion on a grid of so many intervals, or on one of its own."""
+        if (still := self.find_locked_joint()) is not None:
+            return still
+        if self.jerk is not None:
+            return self.time_with_jerk(count)
+        return self.time(None if count is None else Grid(*divide_path(*self.arrays, count)))
 
     def find_locked_joint(self) -> TimedPath | None:
         """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
