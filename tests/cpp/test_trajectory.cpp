@@ -95,7 +95,8 @@ TEST(slopes_and_bends_are_those_of_differences) {
         const VelocityChange q{s.v, s.a, g.v, g.a, l};
         const Domain d = find_domain(q);
         const double T = (d.has_gap ? d.gap_end : d.first) + random.uniform(0.01, 6), h = 1e-4;
-        const Reach before = find_farthest(q, T - h), at = find_farthest(q, T), after = find_farthest(q, T + h);
+        const Reach before = find_farthest(q, T - h), at = find_farthest(q, T),
+                    after = find_farthest(q, T + h);
         if (before.regime != at.regime || after.regime != at.regime) continue;
         ++compared;
         CHECK_NEAR((after.displacement - before.displacement) / (2 * h), at.slope, 2e-6);
