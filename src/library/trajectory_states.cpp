@@ -174,13 +174,6 @@ void write_piece(const AxisState& s, double jerk, double* c) {
     c[3] = jerk / 6;
 }
 
-// An acceleration at an end of a motion: the one of the state there if they differ by rounding alone, else
-// the acceleration jumps.
-double without_rounding(double a, double of_state) {
-    const double gap = std::fabs(a - of_state);
-    return gap <= parallel_rounding * std::fmax(std::fabs(a), std::fabs(of_state)) ? of_state : a;
-}
-
 // The phases of one axis, and where its pieces are written to.
 struct AxisPieces {
     const StatePieces& all;
@@ -202,6 +195,13 @@ struct AxisPieces {
         const double* f = all.phases + (axis * most_phases + std::size_t(k)) * phase_numbers;
         return {f[0], f[1], f[2]};
     }
+    // An acceleration at an end of the motion: that of the state there if they differ by rounding alone, else
+    // the acceleration jumps.
+    double attain(double a, double of_state) const {
+        double most = std::fabs(of_state);
+        for (int k = 0; k < count; ++k) most = std::max(most, std::fabs(phase(k).a));
+        return std::fabs(a - of_state) <= parallel_rounding * most ? of_state : a;
+    }
     AxisState state(std::size_t end) const {
         const double* s = all.states + end * 3 * all.dof + axis;
         return {s[0], s[all.dof], s[2 * all.dof]};
@@ -212,7 +212,7 @@ struct AxisPieces {
         AxisState s = state(0);
         for (int k = 0; k < half; ++k) {
             Phase f = phase(k);
-            f.a = s.a = k == 0 ? without_rounding(f.a, s.a) : f.a;
+            f.a = s.a = k == 0 ? attain(f.a, s.a) : f.a;
             write_piece(s, f.j, piece(std::size_t(k)));
             all.origins[axis * all.pieces + std::size_t(k)] = knots[std::size_t(k)];
             s = advance_axis(s, f);
@@ -223,7 +223,7 @@ struct AxisPieces {
         for (int k = count - 1; k >= half; --k) {
             const Phase f = phase(k);
             const double a = f.a + f.h * f.j;
-            s.a = k == count - 1 ? without_rounding(a, s.a) : a;
+            s.a = k == count - 1 ? attain(a, s.a) : a;
             write_piece(s, f.j, piece(std::size_t(k)));
             all.origins[axis * all.pieces + std::size_t(k)] = knots[std::size_t(k) + 1];
             s = retreat_axis(s, f);

@@ -79,31 +79,6 @@ inline double top_of_head(const VelocityChange& q, double P, double low, double 
 
 }  // namespace crossing
 
-// The first time from A to B at which P_max(T) ≥ P, where P_max(A) < P and A … B lies in the domain.
-inline double first_reached(const VelocityChange& q, double P, double A, double B) {
-    using namespace crossing;
-    if (q.limits.has_jerk()) {
-        if (const Reach r = find_farthest(q, A); r.bend < 0) {
-            const double end = std::min(std::max(end_of_head(q), A), B), top = top_of_head(q, P, A, end);
-            if (find_farthest(q, top).displacement >= P) return find_crossing(q, P, A, top);
-            A = end;
-            if (A >= B) return never;
-        }
-    }
-    if (B < never) return find_farthest(q, B).displacement < P ? never : find_crossing(q, P, A, B);
-    if (q.limits.v_max < never) {
-        const SevenPhases touch = reach::touch_cruise(q);
-        const double on = touch.duration();
-        if (on <= A) return A + (P - find_farthest(q, A).displacement) / q.limits.v_max;
-        const double at = displace_axis(q, touch);
-        return P >= at ? on + (P - at) / q.limits.v_max : find_crossing(q, P, A, on);
-    }
-    double far = 2 * A;
-    if (!(far > 0)) far = 1;
-    while (find_farthest(q, far).displacement < P) far *= 2;
-    return find_crossing(q, P, A, far);
-}
-
 // An axis that is to change its state and to be displaced by P meanwhile.
 struct AxisTask {
     VelocityChange up, down;  // the change and its mirror image
@@ -127,24 +102,51 @@ inline double displacement_rounding(const AxisTask& x, double T) {
     return roundings * (std::fabs(x.P) + T * fastest);
 }
 
-inline bool is_in_domain(const Domain& d, double T) {
-    return T >= d.first && !(d.has_gap && T > d.gap_begin && T < d.gap_end);
+// The first time from A to B at which P_max(T) ≥ P, where P_max(A) < P and A … B lies in the domain. slack:
+// by how much P_max may fall short of P at the end of a part of the domain, and where it turns back.
+inline double first_reached(const VelocityChange& q, double P, double A, double B, double slack) {
+    using namespace crossing;
+    if (q.limits.has_jerk()) {
+        if (const Reach r = find_farthest(q, A); r.bend < 0) {
+            const double end = std::min(std::max(end_of_head(q), A), B), top = top_of_head(q, P, A, end);
+            const double most = find_farthest(q, top).displacement;
+            if (most >= P) return find_crossing(q, P, A, top);
+            if (most >= P - slack) return top;
+            A = end;
+            if (A >= B) return never;
+        }
+    }
+    if (B < never) {
+        const double most = find_farthest(q, B).displacement;
+        return most >= P ? find_crossing(q, P, A, B) : most >= P - slack ? B : never;
+    }
+    if (q.limits.v_max < never) {
+        const SevenPhases touch = reach::touch_cruise(q);
+        const double on = touch.duration();
+        if (on <= A) return A + (P - find_farthest(q, A).displacement) / q.limits.v_max;
+        const double at = displace_axis(q, touch);
+        return P >= at ? on + (P - at) / q.limits.v_max : find_crossing(q, P, A, on);
+    }
+    double far = 2 * A;
+    if (!(far > 0)) far = 1;
+    while (find_farthest(q, far).displacement < P) far *= 2;
+    return find_crossing(q, P, A, far);
 }
 
 // The first time from A to B, in the domain, in which P can be attained.
 inline double next_in_part(const AxisTask& x, double A, double B) {
     const double up = find_farthest(x.up, A).displacement, down = -find_farthest(x.down, A).displacement;
     const double slack = displacement_rounding(x, A);
-    if (x.P > up + slack) return first_reached(x.up, x.P, A, B);
-    if (x.P < down - slack) return first_reached(x.down, -x.P, A, B);
+    if (x.P > up + slack) return first_reached(x.up, x.P, A, B, slack);
+    if (x.P < down - slack) return first_reached(x.down, -x.P, A, B, slack);
     return A;
 }
 
 // Likewise from the beginning of a part of the domain on, where the axis is displaced by P0.
 inline double first_in_part(const AxisTask& x, double A, double B, double P0) {
     const double slack = displacement_rounding(x, A);
-    if (x.P > P0 + slack) return first_reached(x.up, x.P, A, B);
-    if (x.P < P0 - slack) return first_reached(x.down, -x.P, A, B);
+    if (x.P > P0 + slack) return first_reached(x.up, x.P, A, B, slack);
+    if (x.P < P0 - slack) return first_reached(x.down, -x.P, A, B, slack);
     return A;
 }
 

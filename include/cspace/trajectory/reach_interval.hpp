@@ -218,6 +218,10 @@ struct Domain {
     bool has_gap;
 };
 
+inline bool is_in_domain(const Domain& d, double T) {
+    return T >= d.first && !(d.has_gap && T > d.gap_begin && T < d.gap_end);
+}
+
 namespace reach {
 
 // The change by +J, hold, −J (p above both accelerations).

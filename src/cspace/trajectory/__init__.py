@@ -12,6 +12,7 @@ from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
 from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_path import TimedPath
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
+from cspace.trajectory.trajectory_files import from_csv, from_json, to_csv, to_json, to_ros
 
 __all__ = [
     "BindingLimit",
@@ -29,8 +30,13 @@ __all__ = [
     "b_spline",
     "blend",
     "fit_path",
+    "from_csv",
+    "from_json",
     "move_to",
     "spline",
     "state_to_state",
     "time_parametrize",
+    "to_csv",
+    "to_json",
+    "to_ros",
 ]

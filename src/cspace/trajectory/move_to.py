@@ -49,7 +49,7 @@ def move_to(
     of which the duration is to be a multiple. velocity, acceleration, jerk () or (n,): in place of the limits
     of the robot; polynomials need no jerk limit, and with a duration none at all. start_velocity,
     start_acceleration, goal_velocity, goal_acceleration (n,): zero unless given; trapezoidal and cubic
-    motions attain no accelerations. synchronize: as in state_to_state. limits: look at those of position.
+    motions attain no accelerations. synchronize: as in state_to_state. limits: check those of position.
 
     Returns a PolynomialTrajectory. It is falsy, with a reason, where the motion leaves the limits of
     position, where a polynomial exceeds a limit in the duration that was asked for, and where double-S or

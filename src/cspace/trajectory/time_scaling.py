@@ -13,7 +13,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Limits
 from cspace.tolerances import LIMIT_ROUNDING
-from cspace.trajectory.polynomials import PolynomialTrajectory
+from cspace.trajectory.polynomials import PolynomialTrajectory, attain_end
 
 BOUNDARY_ORDERS: Final = {"cubic": 2, "quintic": 3, "septic": 4, "minimum_jerk": 3}
 """How many derivatives each polynomial attains at both ends, the position among them. Of all motions with
@@ -36,18 +36,31 @@ HALVINGS: Final = 40
 """Of the interval between a duration that is too short and one that is not: to twelve digits."""
 
 
-def state_polynomials(states: Array, h: float) -> Array:
-    """The coefficients (dof, 2 m) of the polynomials that attain states at both ends.
+def state_polynomials(states: Array, h: Array) -> Array:
+    """The coefficients (..., dof, 2 m) of the polynomials that attain states at both ends.
 
-    states (2, m, dof): derivatives 0 … m − 1 at times 0 and h.
+    states (..., 2, m, dof): derivatives 0 … m − 1 at times 0 and h (...).
     """
-    m = states.shape[1]
+    m = states.shape[-2]
     n = 2 * m
-    scale = np.array([h**k / math.factorial(k) for k in range(m)])
-    low, ends = scale[:, None] * states[0], scale[:, None] * states[1]
+    scale = np.stack([h**k / math.factorial(k) for k in range(m)], axis=-1)[..., None]
+    low, ends = scale * states[..., 0, :, :], scale * states[..., 1, :, :]
     binomials = np.array([[math.comb(i, k) for i in range(n)] for k in range(m)], dtype=float)
-    high = np.linalg.solve(binomials[:, m:], ends - binomials[:, :m] @ low)
-    return np.concatenate([low, high]).T / h ** np.arange(n)
+    high = np.linalg.inv(binomials[:, m:]) @ (ends - binomials[:, :m] @ low)
+    powers = h[..., None, None] ** np.arange(n)
+    coefficients: Array = np.swapaxes(np.concatenate([low, high], axis=-2), -1, -2) / powers
+    factorials = np.array([math.factorial(k) for k in range(m)], dtype=float)
+    coefficients[..., :m] = np.swapaxes(states[..., 0, :, :], -1, -2) / factorials  # without rounding
+    return coefficients
+
+
+def connect_samples(times: Array, states: Array, joint_names: Sequence[str] | None) -> PolynomialTrajectory:
+    """The polynomials through states (k, m, dof) at times (k,), from 0 on."""
+    if len(times) == 1:
+        return connect_states(states[[0, 0]], 0.0, joint_names)
+    pieces = state_polynomials(np.stack([states[:-1], states[1:]], axis=1), np.diff(times))
+    parts = attain_end(times, np.swapaxes(pieces, 0, 1), states[-1])
+    return PolynomialTrajectory(*parts, joint_names=joint_names)
 
 
 def connect_states(
@@ -63,8 +76,9 @@ def connect_states(
         still[:, 0, 0] = states[1, 0]
         return PolynomialTrajectory([0.0, 0.0], still, joint_names=joint_names, reason=reason)
     signs = (-1.0) ** np.arange(m)
-    back = state_polynomials(signs[:, None] * states[::-1], h) * (-1.0) ** np.arange(2 * m)
-    pieces = np.stack([state_polynomials(states, h), back], axis=1)
+    length = np.array(h)
+    back = state_polynomials(signs[:, None] * states[::-1], length) * (-1.0) ** np.arange(2 * m)
+    pieces = np.stack([state_polynomials(states, length), back], axis=1)
     origins = np.broadcast_to([0.0, h], (dof, 2))
     return PolynomialTrajectory([0.0, h / 2, h], pieces, origins, joint_names=joint_names, reason=reason)
 
