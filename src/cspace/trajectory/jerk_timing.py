@@ -59,7 +59,7 @@ class SectionLaw(NamedTuple):
 
 def refuse_jumps(path: Path) -> None:
     """InputError where the second derivative of a path jumps at other places than its stops."""
-    jumps = np.logical_and(path._jumps(2), np.logical_not(path._jumps(1)))
+    jumps = np.logical_and(path._jumps(2), np.equal(path.stop_flags[1:-1], 0))
     if jumps.any():
         s = float(path.breaks[1:-1][jumps][0])
         raise InputError(
@@ -70,7 +70,7 @@ def refuse_jumps(path: Path) -> None:
 
 def find_sections(path: Path) -> list[Section]:
     """The pieces between the stops of a path."""
-    stops = [0, *(np.flatnonzero(path._jumps(1)) + 1).tolist(), len(path)]
+    stops = [0, *(np.flatnonzero(path.stop_flags)).tolist(), len(path)]
     return [Section(a, b) for a, b in pairwise(stops)]
 
 

@@ -14,7 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.tables import join_words
-from cspace.tolerances import STILL_JOINT, TIMED_WITHIN
+from cspace.tolerances import FARTHEST, TIMED_WITHIN
 from cspace.trajectory.jerk_timed_path import JerkTimedPath
 from cspace.trajectory.jerk_timing import (
     JerkLimits,
@@ -99,8 +99,8 @@ def time_parametrize(
         v,
         a,
         sampled if sampled.torque is not None or sampled.frame is not None else None,
-        bounded_number(start_speed, "start_speed", 0.0, "it must be 0 or more"),
-        bounded_number(end_speed, "end_speed", 0.0, "it must be 0 or more"),
+        bounded_number(start_speed, "start_speed", 0.0, "it must be 0 or more", FARTHEST),
+        bounded_number(end_speed, "end_speed", 0.0, "it must be 0 or more", FARTHEST),
         positive_number(tolerance, "tolerance"),
         labels,
         None if own is None else own.joint_names,
@@ -131,9 +131,7 @@ class _Timer:
         self.labels, self.joint_names = labels, joint_names
         torque, frame = (None, None) if sampled is None else (sampled.torque, sampled.frame)
         self.ratios = LimitShares(labels, velocity, acceleration, jerk, torque, frame)
-        stops = np.zeros(len(path) + 1, dtype=np.int8)
-        stops[1:-1] = path._jumps(1)
-        self.arrays = np.ascontiguousarray(path.control_points), np.ascontiguousarray(path.lengths), stops
+        self.arrays = path.control_points, path.lengths, path.stop_flags
 
     def run(self, count: int | None) -> TimedPath:
         """The fastest motion on a grid of so many intervals, or on one of its own."""
@@ -145,8 +143,7 @@ class _Timer:
 
     def find_locked_joint(self) -> TimedPath | None:
         """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
-        slopes = np.abs(self.path._derivatives[1]).max(axis=1)
-        moves = slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True)
+        moves = self.path.moving
         limits = {"velocity": self.velocity, "acceleration": self.acceleration}
         if self.jerk is not None:
             limits["jerk"] = self.jerk
@@ -298,7 +295,7 @@ def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, 
             raise InputError(f"{name} has shape {row.shape}, expected () or ({n},), one per joint")
         if not (row >= 0.0).all():
             raise InputError(f"{name} contains {float(row[~(row >= 0.0)].flat[0]):g}; it must be 0 or more")
-        return np.array(np.broadcast_to(row, (n,)))
+        return np.full(n, row) if row.ndim == 0 else np.array(row)
     if limits is None:
         own = np.full(n, np.inf)
     elif isinstance(limits, Limits):
