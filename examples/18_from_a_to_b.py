@@ -14,10 +14,8 @@ b = np.radians([60, 10, -20, -90, 15, 110, 0])
 for profile in ("double_s", "trapezoidal", "cubic", "quintic", "septic"):
     jerk = {} if profile == "trapezoidal" else {"jerk": 400}
     motion = robot.move_to(b, start=a, profile=profile, **jerk)
-    peaks = [np.abs(np.stack(motion.extremes(order)[::2])).max() for order in (1, 2, 3)]
-    print(
-        f"{profile:12} {motion.duration:.3f} s, at most {peaks[0]:.2f} rad/s, {peaks[1]:.1f} rad/s², {peaks[2]:.0f} rad/s³"
-    )
+    v, a_most, j = (np.abs(np.stack(motion.extremes(order)[::2])).max() for order in (1, 2, 3))
+    print(f"{profile:12} {motion.duration:.3f} s, at most {v:.2f} rad/s, {a_most:.1f} rad/s², {j:.0f} rad/s³")
     assert motion.check(robot)
 
 motion = robot.move_to(b, start=a, jerk=400)
