@@ -3,7 +3,8 @@
 Usage: python benchmarks/path_timing.py [--paths 20] [--rounds 7] [--write]
 
 Random cubic splines of seven joints, |q̇| ≤ 2, |q̈| ≤ 8. For each contender the coarsest uniform grid whose
-duration is within 0.1 % of that of 20,000 intervals, then its automatic grid, then torque limits of the panda.
+duration is within 0.1 % of that of 20,000 intervals, then its automatic grid, then torque limits of
+the panda.
 Processor time per call from Python, medians over rounds in turns; the limits that each answer exceeds at ten
 places of every interval stand beside it.
 """

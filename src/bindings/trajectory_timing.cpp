@@ -1,6 +1,5 @@
 // The fastest motion along a path, for cspace.trajectory.time_parametrize.
-#include "library/trajectory_timing.hpp"
-
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
@@ -11,6 +10,7 @@
 
 #include "arrays_in_place.hpp"
 #include "bindings.hpp"
+#include "library/trajectory_jerk.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -138,4 +138,30 @@ void bind_trajectory_timing(nb::module_& m) {
         "tolerance"_a, "grid"_a.none(), "sample"_a.none(),
         "Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether "
         "converged.");
+    m.def(
+        "time_path_with_jerk",
+        [](const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops,
+           const ConstDoubles& velocity, const ConstDoubles& acceleration, const ConstDoubles& jerk,
+           const std::tuple<Integers, ConstDoubles, ConstDoubles>& grid, const std::array<double, 2>& start,
+           const std::array<double, 2>& end, double duration, double tolerance) {
+            const TimingPath path = read_path(controls, lengths, stops);
+            const TimingLimits limits = read_limits(path, velocity, acceleration);
+            require_size(jerk.size == path.joints);
+            const TimingGrid given = read_grid(path, std::get<0>(grid), std::get<1>(grid), std::get<2>(grid));
+            const JerkOptions options = {{start[0], start[1]}, {end[0], end[1]}, duration, tolerance};
+            JerkTiming timing;
+            {
+                const nb::gil_scoped_release release;
+                timing =
+                    time_path_with_jerk(path, limits, {jerk.data, std::size_t(jerk.size)}, given, options);
+            }
+            return std::make_tuple(timing.found,
+                                   Doubles({npy_intp(timing.squares.size() / 3), 3}, timing.squares.data()),
+                                   timing.start_jerk, timing.end_jerk, timing.duration, timing.steps);
+        },
+        "controls"_a, "lengths"_a, "stops"_a, "velocity"_a, "acceleration"_a, "jerk"_a, "grid"_a, "start"_a,
+        "end"_a, "duration"_a, "tolerance"_a,
+        "Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, "
+        "seconds,"
+        " steps.");
 }

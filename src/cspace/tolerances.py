@@ -574,6 +574,12 @@ STILL_JOINT: Final = 1e-12
 """Slope of a joint along a path, relative to the largest one, up to which it does not move: a thousand
 roundings."""
 
+LAUNCH_PART: Final = 1e-6
+"""Length of the launch of a motion from rest, relative to its path: it takes a hundredth of the time."""
+
+BARRIER_GAP: Final = 1e-4
+"""Of the duration of a motion under jerk limits, relative, to that of the best one on its grid."""
+
 TIMED_WITHIN: Final = 1e-3
 """Change of the duration of a motion along a path, relative, up to which its intervals are halved."""
 

@@ -6,45 +6,11 @@
 
 #include "cspace/math/interrupts.hpp"
 #include "kernels/trajectory_timing.hpp"
+#include "trajectory_aligned.hpp"
 
 namespace cspace::trajectory {
-namespace {
 
 using std::size_t;
-
-constexpr size_t intervals_between_polls = 256;  // some fifty microseconds
-constexpr int first_parts = 4;                   // of a piece: halved once before anything is known of it
-constexpr double least_part = 0x1p-18;           // of a piece: beyond it rounding shows in the accelerations
-constexpr double share_of_change = 0.3;  // of the mean change of an interval, above which it is halved
-constexpr int most_rounds = 24;
-constexpr size_t least_parts = 2;  // of a piece: with stops at both its ends it has to move between
-// Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
-// of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
-constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
-
-// Numbers at an address that suits the widest pack.
-class Aligned {
-  public:
-    explicit Aligned(size_t size) : lines_((size + joint_padding - 1) / joint_padding) {}
-    double* data() { return lines_.empty() ? nullptr : lines_.front().values; }
-    const double* data() const { return lines_.empty() ? nullptr : lines_.front().values; }
-    double& operator[](size_t i) { return data()[i]; }
-    double operator[](size_t i) const { return data()[i]; }
-
-  private:
-    struct alignas(8 * joint_padding) Line {
-        double values[joint_padding] = {};
-    };
-    std::vector<Line> lines_;
-};
-
-std::vector<double> pad_rows(std::span<const double> rows, int width, int padded) {
-    std::vector<double> made(rows.size() / size_t(width) * size_t(padded), 0.0);
-    for (size_t r = 0; r * size_t(width) < rows.size(); ++r)
-        std::copy_n(rows.begin() + std::ptrdiff_t(r) * width, width,
-                    made.begin() + std::ptrdiff_t(r) * padded);
-    return made;
-}
 
 // 1 / limit, 0 where there is none and where the joint may not move.
 std::vector<double> invert_limits(std::span<const double> limits, int padded) {
@@ -76,6 +42,26 @@ Aligned find_slopes(const TimingPath& path, int degree, int padded) {
     return slopes;
 }
 
+namespace {
+
+constexpr size_t intervals_between_polls = 256;  // some fifty microseconds
+constexpr int first_parts = 4;                   // of a piece: halved once before anything is known of it
+constexpr double least_part = 0x1p-18;           // of a piece: beyond it rounding shows in the accelerations
+constexpr double share_of_change = 0.3;  // of the mean change of an interval, above which it is halved
+constexpr int most_rounds = 24;
+constexpr size_t least_parts = 2;  // of a piece: with stops at both its ends it has to move between
+// Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
+// of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
+constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
+
+std::vector<double> pad_rows(std::span<const double> rows, int width, int padded) {
+    std::vector<double> made(rows.size() / size_t(width) * size_t(padded), 0.0);
+    for (size_t r = 0; r * size_t(width) < rows.size(); ++r)
+        std::copy_n(rows.begin() + std::ptrdiff_t(r) * width, width,
+                    made.begin() + std::ptrdiff_t(r) * padded);
+    return made;
+}
+
 // A path that is timed on one grid after another.
 class PathTimer {
   public:
@@ -83,12 +69,12 @@ class PathTimer {
         : path_(path),
           start_(options.start * options.start),
           end_(options.end * options.end),
-          padded_((path.joints + joint_padding - 1) / joint_padding * joint_padding),
-          slopes_(find_slopes(path, path.degree <= 3 ? 2 : 4, padded_)),
+          padded_(padded_joints(path.joints)),
+          slopes_(find_slopes(path, slope_degree(path), padded_)),
           acceleration_(invert_limits(limits.acceleration, padded_)),
           velocity_(invert_limits(limits.velocity, padded_)),
           least_inverse_square_(path.lengths.size(), 0.0) {
-        rows_.degree = path.degree <= 3 ? 2 : 4;
+        rows_.degree = slope_degree(path);
         rows_.joints = path.joints;
         rows_.padded = padded_;
         rows_.slopes = slopes_.data();

@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "check.hpp"
+#include "cspace/math/banded.hpp"
 #include "cspace/trajectory/speed_bounds.hpp"
-#include "library/trajectory_timing.hpp"
+#include "library/trajectory_jerk.hpp"
 #include "random.hpp"
 
 using namespace cspace;
@@ -112,4 +113,55 @@ TEST(speeds_at_the_ends_that_are_impossible_are_answered_with_the_possible_ones)
     CHECK(slow.outcome == TimingOutcome::end);
     CHECK_NEAR(slow.most, 2.0, 1e-9);
     CHECK(time_path(path, {v, a}, {1.999, 0.0, 1e-3}, {}).outcome == TimingOutcome::timed);
+}
+
+// On a straight line from rest to rest the best motion has seven phases: T = d / v + v / a + a / j.
+TEST(a_straight_line_under_jerk_limits_takes_little_longer_than_seven_phases) {
+    const double controls[] = {0.0, 5.0}, lengths[] = {5.0}, v[] = {1.0}, a[] = {2.0}, j[] = {8.0};
+    const signed char stops[] = {0, 0};
+    const TimingPath path = {1, 1, controls, lengths, stops};
+    TimingGrid grid;
+    const double margin = 1e-6;
+    for (double from = margin, size = margin; from < 1.0 - margin; size = std::min(1.4 * size, 0.005)) {
+        const double left = 1.0 - margin - from;  // it shrinks towards the end as it grew
+        const double to =
+            left < 1.5 * margin ? 1.0 - margin : from + std::min(size, std::max(0.3 * left, margin));
+        grid.piece.push_back(0);
+        grid.from.push_back(from);
+        grid.to.push_back(to);
+        from = to;
+    }
+    const Launch launch = {5.0 * margin, 0.97 * 8.0};
+    const JerkTiming timing = time_path_with_jerk(path, {v, a}, j, grid, {launch, launch, 9.0, 1e-4});
+    const double best = 5.0 / 1.0 + 1.0 / 2.0 + 2.0 / 8.0;
+    CHECK(timing.found && timing.duration >= best && timing.duration < 1.03 * best);
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        const double* x = timing.squares.data() + 3 * i;
+        const double length = 5.0 * (grid.to[i] - grid.from[i]),
+                     u = std::max(std::fabs(x[1] - x[0]), std::fabs(x[2] - x[1]));
+        const double change = std::fabs(x[0] - 2.0 * x[1] + x[2]) / (length * length);
+        const double most = std::max({x[0], x[1], x[2]});
+        CHECK(most <= 1.0 + 1e-9 && u / length <= 2.0 + 1e-9 &&
+              change * std::sqrt(most) <= 8.0 * (1.0 + 1e-9));
+    }
+}
+
+TEST(pentadiagonal_systems_are_solved) {
+    const std::size_t n = 7;
+    Pentadiagonal matrix(n);
+    double full[n][n] = {};
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t left = 0; left <= std::min<std::size_t>(i, 2); ++left) {
+            const double value = left == 0 ? 4.0 + draw(0.0, 1.0) : draw(-1.0, 1.0);
+            matrix.at(i, left) = full[i][i - left] = full[i - left][i] = value;
+        }
+    std::vector<double> x(n), b(n, 0.0);
+    for (double& each : x) each = draw(-1.0, 1.0);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < n; ++k) b[i] += full[i][k] * x[k];
+    CHECK(matrix.solve(b));
+    for (std::size_t i = 0; i < n; ++i) CHECK_NEAR(b[i], x[i], 1e-14);
+    Pentadiagonal indefinite(2);
+    std::vector<double> c(2, 1.0);
+    CHECK(!indefinite.solve(c));
 }

@@ -9,7 +9,7 @@ from cspace.trajectory.move_to import PROFILES
 from cspace.trajectory.time_scaling import BOUNDARY_ORDERS, PEAKS, connect_states
 
 Q0 = np.array([0.0, -0.7, 0.0, -2.0, 0.0, 1.5, 0.7])
-Q1 = Q0 + [0.5, 0.3, -0.4, 0.2, 0.0, 0.1, -0.6]
+Q1 = Q0 + np.array([0.5, 0.3, -0.4, 0.2, 0.0, 0.1, -0.6])
 
 
 @pytest.fixture(scope="module")
@@ -22,13 +22,9 @@ def limits_for(profile):
 
 
 def bounds(robot, profile):
-    free = np.full(robot.dof, np.inf)
     given = {key: np.full(robot.dof, value) for key, value in limits_for(profile).items()}
-    return (
-        cs.Limits(robot.limits.lower, robot.limits.upper, velocity=robot.limits.velocity, **given)
-        if given
-        else free
-    )
+    own = robot.limits
+    return cs.Limits(own.lower, own.upper, velocity=own.velocity, **given)
 
 
 @pytest.mark.parametrize("profile", PROFILES)

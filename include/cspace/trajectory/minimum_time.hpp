@@ -61,7 +61,8 @@ inline double end_of_head(const VelocityChange& q) {
     // p is held at a_max up to where l = p / 4 or p is no longer held; likewise l.
     const double held = kappa > 0 ? q.limits.a_max : -q.limits.a_min, size = std::fabs(kappa);
     const double until = (held * (9.0 / 16 * held + af - a0) + size) / (J * held);
-    return std::min(until, time_of(held - reach::root(held * held - size)));
+    const double beyond = held * held - size;  // below zero: it is held for ever
+    return beyond < 0 ? until : std::min(until, time_of(held - std::sqrt(beyond)));
 }
 
 // A time in low … high, within the head, at which P_max ≥ P, if there is one; else where it is largest.

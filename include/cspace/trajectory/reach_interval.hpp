@@ -56,8 +56,11 @@ inline double displace_axis(const VelocityChange& q, const SevenPhases& phases) 
 namespace reach {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
-// Relative rounding of a time that may be negative by it.
-inline constexpr double time_rounding = 1e-14;
+// Relative rounding of a hold that may be negative by it.
+inline constexpr double time_rounding = 1e-12;
+// Relative rounding of accelerations, up to which a peak is at its limit and not above it, and up to which a
+// change is one by a single phase.
+inline constexpr double acceleration_rounding = 1e-14;
 
 inline double square(double x) { return x * x; }
 inline double root(double x) { return std::sqrt(std::max(x, 0.0)); }
@@ -108,7 +111,8 @@ inline Peaks find_peaks(const VelocityChange& q, double T) {
     const double least = a0, most = std::max(af + w, a0);
     const double p = w > 0 ? std::clamp((w + kappa / w) / 2, least, most) : a0;
     Peaks found{p, w > 0 ? p - w : a0};
-    const bool high = found.p > q.limits.a_max, low = found.l < q.limits.a_min;
+    const double slack = acceleration_rounding * (std::fabs(found.p) + std::fabs(found.l));
+    const bool high = found.p > q.limits.a_max + slack, low = found.l < q.limits.a_min - slack;
     if (!high && !low) return found;
     if (high && hold_peak(q, T, found)) return found;
     if (low && hold_trough(q, T, found)) return found;
@@ -218,6 +222,10 @@ struct Domain {
     bool has_gap;
 };
 
+inline bool is_in_domain(const Domain& d, double T) {
+    return T >= d.first && !(d.has_gap && T > d.gap_begin && T < d.gap_end);
+}
+
 namespace reach {
 
 // The change by +J, hold, −J (p above both accelerations).
@@ -269,7 +277,10 @@ inline Domain find_domain(const VelocityChange& q) {
     }
     const double J = q.limits.jerk, dv = q.vf - q.v0, a0 = q.a0, af = q.af;
     const double ramp = (af >= a0 ? 1 : -1) * (af - a0) * (af + a0) / (2 * J);
-    const bool upwards = dv >= ramp;
+    // A single phase is the shortest change both ways, but upwards not between negative accelerations.
+    const double gap = J * (dv - ramp), size = J * std::fabs(dv) + a0 * a0 + af * af;
+    const bool is_ramp = std::fabs(gap) <= acceleration_rounding * size;
+    const bool upwards = is_ramp ? !(a0 < 0 && af < 0) : gap > 0;
     const VelocityChange u = upwards ? q : mirror_change(q);
     const double sign = upwards ? 1 : -1;
     const SevenPhases f = change_upwards(u);

@@ -4,6 +4,7 @@ from cspace.trajectory.blends import blend
 from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path, screw_path
 from cspace.trajectory.cartesian_path import CartesianPath, CartesianPiece
 from cspace.trajectory.fit_path import fit_path
+from cspace.trajectory.jerk_timed_path import JerkTimedPath
 from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
 from cspace.trajectory.move_to import move_to
 from cspace.trajectory.path import Path
@@ -20,6 +21,7 @@ __all__ = [
     "CartesianPath",
     "CartesianPiece",
     "Extremes",
+    "JerkTimedPath",
     "JoinedTrajectory",
     "Path",
     "PolynomialTrajectory",

@@ -8,13 +8,14 @@ from math import comb, perm
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
 from cspace.tables import count_things, one_line, shown
-from cspace.tolerances import PATH_CORNER, SAME_WAYPOINT, TIME_ROUNDING
+from cspace.tolerances import PATH_CORNER, SAME_WAYPOINT, STILL_JOINT, TIME_ROUNDING
 from cspace.trajectory.piece_roots import find_piece_roots
 
 HIGHEST_DEGREE: Final = 5
@@ -129,7 +130,21 @@ class Path:
     @cached_property
     def stops(self) -> Array:
         """Breaks (m,) inside the path at which the slope jumps."""
-        return freeze_array(self.breaks[1:-1][self._jumps(1)])
+        return freeze_array(self.breaks[self.stop_flags == 1])
+
+    @cached_property
+    def stop_flags(self) -> npt.NDArray[np.int8]:
+        """1 at the breaks (k + 1,) that are stops, else 0, as the core reads them."""
+        flags = np.zeros(len(self.breaks), dtype=np.int8)
+        flags[1:-1] = self._jumps(1)
+        flags.flags.writeable = False
+        return flags
+
+    @cached_property
+    def moving(self) -> npt.NDArray[np.bool_]:
+        """Which joints move on which piece (k, dof)."""
+        slopes = np.abs(self._derivatives[1]).max(axis=1)
+        return np.asarray(slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True))
 
     @cached_property
     def continuity(self) -> int:

@@ -14,7 +14,7 @@ from cspace.kinematics import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED
 from cspace.trajectory.path import Path
-from cspace.trajectory.timed_path import Places, TimedPath, move_along_path
+from cspace.trajectory.timed_path import Places, TimedPath, move_along, move_along_path
 
 CHECKED_PLACES: Final = 10
 """Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss."""
@@ -172,6 +172,7 @@ class LimitShares:
     labels: tuple[str, ...]
     velocity: Array
     acceleration: Array
+    jerk: Array | None
     torque: TorqueLimits | None
     frame: FrameLimits | None
 
@@ -181,6 +182,8 @@ class LimitShares:
         q, qd, qdd = move_along_path(path, at)
         rows += self._joint_rows("velocity", qd, self.velocity)
         rows += self._joint_rows("acceleration", qdd, self.acceleration)
+        if self.jerk is not None:
+            rows += self._joint_rows("jerk", move_along(path, at, 3), self.jerk)
         if self.torque is not None:
             rows += self._joint_rows("torque", self.torque.torques(q, qd, qdd), self.torque.limit)
         if self.frame is not None:

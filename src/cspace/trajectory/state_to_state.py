@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
@@ -18,8 +19,6 @@ from cspace.trajectory.states import (
     check_accelerations,
     check_goal,
     read_duration,
-    read_lowest,
-    read_magnitudes,
     read_states,
 )
 
@@ -75,7 +74,7 @@ class TrajectoryBatch:
     def _solve(self, limits: AxisLimits, cycle: float, synchronize: str, threads: int) -> None:
         _core.solve_states(
             self._states,
-            limits.stacked(),
+            limits.rows,
             self._asked,
             cycle,
             SYNCHRONIZE.index(synchronize),
@@ -167,13 +166,7 @@ def state_to_state(
     first = read_states(start, start_velocity, start_acceleration, "start")
     dof = first.shape[-1]
     last = read_states(goal, goal_velocity, goal_acceleration, "goal", dof)
-    limits = AxisLimits(
-        highest := read_magnitudes(velocity, "velocity", dof),
-        read_lowest(lowest_velocity, "lowest_velocity", highest),
-        strongest := read_magnitudes(acceleration, "acceleration", dof),
-        read_lowest(lowest_acceleration, "lowest_acceleration", strongest),
-        read_magnitudes(jerk, "jerk", dof),
-    )
+    limits = AxisLimits(velocity, acceleration, jerk, lowest_velocity, lowest_acceleration, dof)
     labels = tuple(joint_names) if joint_names is not None else tuple(f"joint {j}" for j in range(dof))
     if len(labels) != dof:
         raise InputError(f"joint_names has {len(labels)} names, start {dof} joints")
@@ -182,7 +175,9 @@ def state_to_state(
     asked = read_durations(duration, cycle, synchronize)
     check_alone(last, synchronize)
     threads = whole_number(threads, "threads", 0, MOST_THREADS)
-    shape = leading_axes(start=first.shape[:-2], goal=last.shape[:-2], duration=asked.shape)
+    shape: tuple[int, ...] = ()
+    if first.ndim > 2 or last.ndim > 2 or asked.ndim:
+        shape = leading_axes(start=first.shape[:-2], goal=last.shape[:-2], duration=asked.shape)
     batch = solve_batch(
         first, last, limits, asked, shape, read_duration(cycle, "cycle"), synchronize, threads
     )
@@ -223,18 +218,24 @@ def solve_batch(
     threads: int,
 ) -> TrajectoryBatch:
     """The motions between checked states (..., 3, dof), as rows."""
-    dof, rows = first.shape[-1], int(np.prod(shape))
+    dof, rows = first.shape[-1], math.prod(shape)
     with guard_memory("start", f"{rows} rows", 70.0 * rows * dof, "solve fewer at once"):
         states = np.empty((*shape, 2, 3, dof))
         states[..., 0, :, :], states[..., 1, :, :] = first, last
-        durations = np.array(np.broadcast_to(asked, shape), dtype=float).reshape(rows)
-        batch = TrajectoryBatch(states.reshape(rows, 2, 3, dof), None, durations)
+        durations = np.empty(shape)
+        durations[...] = asked
+        batch = TrajectoryBatch(states.reshape(rows, 2, 3, dof), None, durations.reshape(rows))
     batch._solve(limits, cycle or 0.0, synchronize, threads)
+    check_parallel(batch, bool(shape))
+    return batch
+
+
+def check_parallel(batch: TrajectoryBatch, has_rows: bool) -> None:
+    """InputError for boundary states that no straight line connects."""
     bad = np.flatnonzero(batch._verdict == NOT_PARALLEL)
     if bad.size:
-        where = f" of row {bad[0]}" if shape else ""
+        where = f" of row {bad[0]}" if has_rows else ""
         raise InputError(
             f"displacement, velocities and accelerations{where} are not parallel, so no straight line"
             " connects the states; use synchronize='time'"
         )
-    return batch

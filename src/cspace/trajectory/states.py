@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,22 +12,28 @@ from cspace.arrays import Array, as_floats, leading_axes, positive_number
 from cspace.errors import InputError
 from cspace.tolerances import FARTHEST
 
+PARTS: Final = ("", "velocity", "acceleration")
+"""What the names of arguments end with, by order of the derivative."""
 
-@dataclass(frozen=True, eq=False)
+
 class AxisLimits:
-    """Limits of all joints, each (dof,): highest and lowest velocities and accelerations, jerks."""
+    """Limits of all joints, rows (5, dof): highest and lowest velocities, likewise accelerations, jerks."""
 
-    velocity: Array
-    lowest_velocity: Array
-    acceleration: Array
-    lowest_acceleration: Array
-    jerk: Array
-
-    def stacked(self) -> Array:
-        """All limits (5, dof)."""
-        return np.stack(
-            [self.velocity, self.lowest_velocity, self.acceleration, self.lowest_acceleration, self.jerk]
-        )
+    def __init__(
+        self,
+        velocity: ArrayLike,
+        acceleration: ArrayLike,
+        jerk: ArrayLike,
+        lowest_velocity: ArrayLike | None,
+        lowest_acceleration: ArrayLike | None,
+        dof: int,
+    ) -> None:
+        self.rows = np.empty((5, dof))
+        read_magnitudes(velocity, "velocity", self.rows[0])
+        read_lowest(lowest_velocity, "lowest_velocity", self.rows[0], self.rows[1])
+        read_magnitudes(acceleration, "acceleration", self.rows[2])
+        read_lowest(lowest_acceleration, "lowest_acceleration", self.rows[2], self.rows[3])
+        read_magnitudes(jerk, "jerk", self.rows[4])
 
 
 def read_states(
@@ -36,40 +41,52 @@ def read_states(
 ) -> Array:
     """Positions, velocities and accelerations of a boundary as one array (..., 3, dof); None is zero."""
     q = as_floats(positions, subject, last=(dof,), largest=FARTHEST)
-    n = q.shape[-1]
-    rows = [q]
-    for value, name in ((velocities, "velocity"), (accelerations, "acceleration")):
-        row = np.zeros(n) if value is None else as_floats(value, f"{subject}_{name}", largest=FARTHEST)
+    n, parts = q.shape[-1], {subject: q}
+    for order, value in enumerate((velocities, accelerations), 1):
+        if value is None:
+            continue
+        name = f"{subject}_{PARTS[order]}"
+        row = as_floats(value, name, largest=FARTHEST)
         if row.ndim and row.shape[-1] != n:
-            raise InputError(f"{subject}_{name} has shape {row.shape}, expected (..., {n}), one per joint")
-        rows.append(row if row.ndim else np.full(n, float(row)))
-    shape = leading_axes(**{f"part {i}": row.shape[:-1] for i, row in enumerate(rows)})
-    return np.stack([np.broadcast_to(row, (*shape, n)) for row in rows], axis=-2)
+            raise InputError(f"{name} has shape {row.shape}, expected (..., {n}), one per joint")
+        parts[name] = row
+    shape = q.shape[:-1]
+    if any(row.ndim > 1 for row in parts.values()):
+        shape = leading_axes(**{name: row.shape[:-1] for name, row in parts.items()})
+    states = np.zeros((*shape, 3, n))
+    for name, row in parts.items():
+        states[..., PARTS.index(name.removeprefix(subject).lstrip("_")), :] = row
+    return states
 
 
-def read_magnitudes(value: ArrayLike, subject: str, dof: int) -> Array:
-    """Limits above zero (dof,); infinity is none. One number is that of all joints."""
+def read_magnitudes(value: ArrayLike, subject: str, out: Array) -> None:
+    """Write limits above zero into out (dof,); infinity is none. One number is that of all joints."""
     row = as_floats(value, subject, finite=False)
-    if row.shape not in ((), (dof,)):
-        raise InputError(f"{subject} has shape {row.shape}, expected () or ({dof},), one per joint")
-    if not (row > 0.0).all():
+    if row.shape not in ((), out.shape):
+        raise InputError(f"{subject} has shape {row.shape}, expected () or {out.shape}, one per joint")
+    out[...] = row
+    if not (out > 0.0).all():
         raise InputError(f"{subject} contains {float(row[~(row > 0.0)].flat[0]):g}; it must be above zero")
-    return np.array(np.broadcast_to(row, (dof,)))
 
 
-def read_lowest(value: ArrayLike | None, subject: str, highest: Array) -> Array:
-    """Lowest velocities or accelerations (dof,), below zero; by default the highest ones mirrored."""
+def read_lowest(value: ArrayLike | None, subject: str, highest: Array, out: Array) -> None:
+    """Write lowest velocities or accelerations, below zero, into out (dof,); None mirrors the highest."""
     if value is None:
-        return -highest
+        np.negative(highest, out=out)
+        return
     row = as_floats(value, subject, finite=False)
     if not (row < 0.0).all():
         raise InputError(f"{subject} contains {float(row[~(row < 0.0)].flat[0]):g}; it must be below zero")
-    return -read_magnitudes(-row, subject, len(highest))
+    read_magnitudes(-row, subject, out)
+    np.negative(out, out=out)
 
 
 def check_accelerations(limits: AxisLimits, labels: Sequence[str]) -> None:
     """InputError for a joint with neither a limit of acceleration nor one of jerk."""
-    free = np.isinf(limits.jerk) & (np.isinf(limits.acceleration) | np.isinf(limits.lowest_acceleration))
+    rows = limits.rows
+    if np.isfinite(rows[2:4]).all():
+        return
+    free = np.isinf(rows[4]) & np.isinf(rows[2:4]).any(axis=0)
     if free.any():
         name = labels[int(np.flatnonzero(free)[0])]
         raise InputError(f"{name} has no limit of acceleration and none of jerk; give at least one")
@@ -77,12 +94,15 @@ def check_accelerations(limits: AxisLimits, labels: Sequence[str]) -> None:
 
 def check_goal(goal: Array, limits: AxisLimits, labels: Sequence[str]) -> None:
     """InputError for a goal (..., 3, dof) that is beyond limits, or that no motion within them leads to."""
-    v, a = goal[..., 1, :], np.where(np.isfinite(limits.jerk), goal[..., 2, :], 0.0)
-    before = a * np.abs(a) / (2.0 * limits.jerk)  # the velocity that a jerk at its limit adds since a = 0
+    if not goal[..., 1:, :].any():
+        return
+    v_max, v_min, a_max, a_min, jerk = limits.rows
+    v, a = goal[..., 1, :], np.where(np.isfinite(jerk), goal[..., 2, :], 0.0)
+    before = a * np.abs(a) / (2.0 * jerk)  # the velocity that a jerk at its limit adds since a = 0
     for name, value, low, high in (
-        ("goal_velocity", v, limits.lowest_velocity, limits.velocity),
-        ("goal_acceleration", a, limits.lowest_acceleration, limits.acceleration),
-        ("the velocity before goal_acceleration", v - before, limits.lowest_velocity, limits.velocity),
+        ("goal_velocity", v, v_min, v_max),
+        ("goal_acceleration", a, a_min, a_max),
+        ("the velocity before goal_acceleration", v - before, v_min, v_max),
     ):
         bad = np.argwhere((value > high) | (value < low))
         if bad.size:

@@ -14,7 +14,16 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.tables import join_words
-from cspace.tolerances import STILL_JOINT, TIMED_WITHIN
+from cspace.tolerances import FARTHEST, TIMED_WITHIN
+from cspace.trajectory.jerk_timed_path import JerkTimedPath
+from cspace.trajectory.jerk_timing import (
+    JerkLimits,
+    SectionLaw,
+    default_intervals,
+    find_sections,
+    refuse_jumps,
+    time_section,
+)
 from cspace.trajectory.path import Path
 from cspace.trajectory.sampled_limits import (
     MOST_ROUNDS,
@@ -37,6 +46,7 @@ def time_parametrize(
     *,
     velocity: ArrayLike | None = None,
     acceleration: ArrayLike | None = None,
+    jerk: ArrayLike | bool | None = None,
     torque: ArrayLike | bool | None = None,
     speed: float | None = None,
     turn_rate: float | None = None,
@@ -50,21 +60,25 @@ def time_parametrize(
 ) -> TimedPath:
     """The fastest motion along a path within limits of velocity, acceleration, torque and tip speed.
 
-    The squared speed of the parameter is linear on each interval of a grid. Limits of velocity and
-    acceleration hold everywhere on an interval, which is proved by Bernstein coefficients. Limits of torque
-    and of a frame are sampled at three places of an interval, checked at ten and tightened where exceeded.
+    The squared speed of the parameter is linear on each interval of a grid, and quadratic under jerk limits.
+    Limits of velocity, acceleration and jerk hold everywhere on an interval, which is proved by Bernstein
+    coefficients. Limits of torque and of a frame are sampled at three places of an interval, checked at ten
+    and tightened where exceeded; they do not go with jerk limits.
 
     path: a Path, such as of spline or blend. limits: Limits or a robot. velocity, acceleration: in their
-    place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. torque: one number, (dof,) [N·m or
-    N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest ones of the frame of
-    robot, by default its tip. robot: whose dynamics and kinematics those need, by default limits. gravity
-    (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends. grid: about so many
-    intervals; by default intervals are halved until that changes the duration by less than `tolerance`, relative.
+    place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. jerk: likewise, per s², or True for
+    those of limits; the acceleration is then continuous, and the motion rests at both ends. torque: one
+    number, (dof,) [N·m or N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest
+    ones of the frame of robot, by default its tip. robot: whose dynamics and kinematics those need, by
+    default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends.
+    grid: about so many intervals; by default they are halved until that changes the duration by less than
+    `tolerance`, relative. Under jerk limits there are 30 of a piece, 150 or more.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits or the
     speeds at the ends are impossible.
-    Raises InputError for a wrong shape, NaN, negative limits, and joints without a limit of acceleration.
-    Source: Pham and Pham 2018, with bounds over whole intervals.
+    Raises InputError for a wrong shape, NaN, negative limits, joints without a limit of acceleration, and
+    jerk limits on a path whose second derivative jumps.
+    Source: Pham and Pham 2018, with bounds over whole intervals; a barrier method under jerk limits.
     """
     if not isinstance(path, Path):
         raise InputTypeError(
@@ -85,16 +99,14 @@ def time_parametrize(
         v,
         a,
         sampled if sampled.torque is not None or sampled.frame is not None else None,
-        bounded_number(start_speed, "start_speed", 0.0, "it must be 0 or more"),
-        bounded_number(end_speed, "end_speed", 0.0, "it must be 0 or more"),
+        bounded_number(start_speed, "start_speed", 0.0, "it must be 0 or more", FARTHEST),
+        bounded_number(end_speed, "end_speed", 0.0, "it must be 0 or more", FARTHEST),
         positive_number(tolerance, "tolerance"),
         labels,
         None if own is None else own.joint_names,
+        _read_jerk(jerk, given, labels),
     )
-    if (still := timer.find_locked_joint()) is not None:
-        return still
-    count = None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS)
-    return timer.time(None if count is None else timer.divide(count))
+    return timer.run(None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS))
 
 
 class _Timer:
@@ -111,25 +123,31 @@ class _Timer:
         tolerance: float,
         labels: tuple[str, ...],
         joint_names: tuple[str, ...] | None,
+        jerk: Array | None,
     ) -> None:
+        self.jerk = jerk
         self.path, self.velocity, self.acceleration = path, velocity, acceleration
         self.sampled, self.ends, self.tolerance = sampled, (start, end), tolerance
         self.labels, self.joint_names = labels, joint_names
         torque, frame = (None, None) if sampled is None else (sampled.torque, sampled.frame)
-        self.ratios = LimitShares(labels, velocity, acceleration, torque, frame)
-        stops = np.zeros(len(path) + 1, dtype=np.int8)
-        stops[1:-1] = path._jumps(1)
-        self.arrays = np.ascontiguousarray(path.control_points), np.ascontiguousarray(path.lengths), stops
+        self.ratios = LimitShares(labels, velocity, acceleration, jerk, torque, frame)
+        self.arrays = path.control_points, path.lengths, path.stop_flags
 
-    def divide(self, count: int) -> Grid:
-        """About so many intervals."""
-        return Grid(*divide_path(*self.arrays, count))
+    def run(self, count: int | None) -> TimedPath:
+        """The fastest motion on a grid of so many intervals, or on one of its own."""
+        if (still := self.find_locked_joint()) is not None:
+            return still
+        if self.jerk is not None:
+            return self.time_with_jerk(count)
+        return self.time(None if count is None else Grid(*divide_path(*self.arrays, count)))
 
     def find_locked_joint(self) -> TimedPath | None:
         """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
-        slopes = np.abs(self.path._derivatives[1]).max(axis=1)
-        moves = slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True)
-        for name, limit in (("velocity", self.velocity), ("acceleration", self.acceleration)):
+        moves = self.path.moving
+        limits = {"velocity": self.velocity, "acceleration": self.acceleration}
+        if self.jerk is not None:
+            limits["jerk"] = self.jerk
+        for name, limit in limits.items():
             locked = np.argwhere(moves & (limit == 0.0))
             if locked.size:
                 piece, j = map(int, locked[0])
@@ -160,6 +178,36 @@ class _Timer:
         if timed and not self.sampled.tighten(timed):
             return self._refuse(f"limits are still exceeded after {MOST_ROUNDS} rounds; pass a finer grid=")
         return timed
+
+    def time_with_jerk(self, count: int | None) -> TimedPath:
+        """The fastest motion with limits of jerk too, from rest to rest."""
+        if self.sampled is not None:
+            raise InputTypeError("jerk= cannot be combined with torque=, speed= and turn_rate=")
+        if any(self.ends):
+            raise InputError("jerk= is for motions from rest to rest; leave out start_speed= and end_speed=")
+        assert self.jerk is not None
+        refuse_jumps(self.path)
+        plain = self._solve(None, None)
+        if not plain:
+            return plain
+        limits = JerkLimits(self.velocity, self.acceleration, self.jerk)
+        laws: list[SectionLaw] = []
+        for section in find_sections(self.path):
+            number = default_intervals(self.path) if count is None else count
+            found = time_section(self.path, section, self.arrays, limits, number, plain)
+            if found is None:
+                s = float(self.path.breaks[section.first])
+                return self._refuse(f"no motion from s = {s:.6g} on keeps the limits", s)
+            laws.append(found)
+        return JerkTimedPath(
+            self.path,
+            Grid(*(np.concatenate([each.grid[k] for each in laws]) for k in range(3))),
+            np.concatenate([each.squares for each in laws]),
+            np.concatenate([each.law for each in laws]),
+            np.concatenate([each.jerk for each in laws]),
+            ratios=self.ratios,
+            joint_names=self.joint_names,
+        )
 
     def _solve(self, grid: Grid | None, sample: SampledLimits | None) -> TimedPath:
         outcome, where, least, most, intervals, squared_speed, converged = time_path(
@@ -247,7 +295,7 @@ def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, 
             raise InputError(f"{name} has shape {row.shape}, expected () or ({n},), one per joint")
         if not (row >= 0.0).all():
             raise InputError(f"{name} contains {float(row[~(row >= 0.0)].flat[0]):g}; it must be 0 or more")
-        return np.array(np.broadcast_to(row, (n,)))
+        return np.full(n, row) if row.ndim == 0 else np.array(row)
     if limits is None:
         own = np.full(n, np.inf)
     elif isinstance(limits, Limits):
@@ -261,6 +309,15 @@ def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, 
         which = "" if len(absent) == n else f" of {join_words(absent)}"
         raise InputError(f"there are no {name} limits{which}; pass {name}=, with inf for none")
     return own
+
+
+def _read_jerk(jerk: Any, limits: Any, labels: tuple[str, ...]) -> Array | None:
+    if jerk is None or jerk is False:
+        return None
+    row = _read_limit("jerk", None if jerk is True else jerk, limits, labels, required=True)
+    if np.isinf(row).all():
+        raise InputError("jerk is infinite for all joints; leave it out for none")
+    return row
 
 
 def _read_torque(

@@ -49,6 +49,8 @@ def state_polynomials(states: Array, h: Array) -> Array:
     high = np.linalg.inv(binomials[:, m:]) @ (ends - binomials[:, :m] @ low)
     powers = h[..., None, None] ** np.arange(n)
     coefficients: Array = np.swapaxes(np.concatenate([low, high], axis=-2), -1, -2) / powers
+    factorials = np.array([math.factorial(k) for k in range(m)], dtype=float)
+    coefficients[..., :m] = np.swapaxes(states[..., 0, :, :], -1, -2) / factorials  # without rounding
     return coefficients
 
 

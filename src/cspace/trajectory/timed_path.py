@@ -23,7 +23,7 @@ elsewhere, by as much as its acceleration changes."""
 
 
 class Grid(NamedTuple):
-    """Intervals of a path in order: the piece (k,) of each, and where in it, in 0 … 1, it begins and ends."""
+    """Intervals of a path in order: the piece (k,) of each, and where in it, in 0 … 1, its ends are."""
 
     piece: npt.NDArray[np.int32]
     begin: Array
@@ -36,12 +36,13 @@ class Grid(NamedTuple):
 
 
 class Places(NamedTuple):
-    """Where a motion is: pieces (m,) of the path, places in them, speed and acceleration of the parameter."""
+    """Where a motion is: pieces (m,) of the path, places in them, and the derivatives of the parameter."""
 
     piece: npt.NDArray[np.int64]
     local: Array
     speed: Array
     acceleration: Array
+    jerk: Array | None = None
 
 
 Ratios = Callable[[Path, Places], list[tuple[str, str, Array]]]
@@ -178,8 +179,8 @@ class TimedPath(Trajectory):
         """Which limit determines the speed, when: on each interval the one of which most is used.
 
         Without limits those that the path was timed with; their names are "velocity", "acceleration",
-        "torque", "speed" and "turn_rate", the last two of a frame. Intervals that use no limit fully are
-        left out. With limits (Limits or a robot) as of Trajectory.binding. Returns BindingLimits.
+        "jerk", "torque", "speed" and "turn_rate", the last two of a frame. Intervals that use no limit
+        fully are left out. With limits (Limits or a robot) as of Trajectory.binding. Returns BindingLimits.
         """
         if limits is not None or self._ratios is None:
             return super().binding(limits)
@@ -241,10 +242,12 @@ class TimedPath(Trajectory):
 
     def __repr__(self) -> str:
         if self.reason:
-            return one_line("TimedPath", self.reason)
+            return one_line(type(self).__name__, self.reason)
         text = f"of {count_things(self.dof, 'joint')}, {shown(self.duration)} s,"
         text += f" {count_things(len(self.intervals.piece), 'interval')}"
-        return one_line("TimedPath", text + (", limits proved" if self.proved else ", limits checked"))
+        return one_line(
+            type(self).__name__, text + (", limits proved" if self.proved else ", limits checked")
+        )
 
 
 def move_along(path: Path, at: Places, order: int) -> Array:
@@ -259,7 +262,8 @@ def move_along(path: Path, at: Places, order: int) -> Array:
     if order == 2:
         return bend * (v * v) + slope * u
     twist = path.evaluate_pieces(at.piece, at.local, HIGHEST_ORDER)
-    return twist * v**3 + bend * (3.0 * v * u)
+    own = 0.0 if at.jerk is None else slope * at.jerk[:, None]
+    return twist * v**3 + bend * (3.0 * v * u) + own
 
 
 def move_along_path(path: Path, at: Places) -> tuple[Array, Array, Array]:
