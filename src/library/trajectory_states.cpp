@@ -55,7 +55,7 @@ struct Problem {
 };
 
 // The duration of axes that move together; refused if another one was asked for.
-double choose_duration(const Problem& problem, const Axis* axes, std::size_t n) {
+double choose_duration(const Problem& problem, Axis* axes, std::size_t n) {
     double least = 0;
     for (std::size_t i = 0; i < n; ++i) least = std::max(least, axes[i].shortest);
     if (!problem.is_timed()) {

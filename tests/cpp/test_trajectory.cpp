@@ -143,11 +143,11 @@ TEST(axes_agree_on_the_first_common_duration) {
             least = std::fmax(least, axis.shortest);
         }
         const double T = common_duration(axes, 3, least, 0);
-        for (const Axis& axis : axes) CHECK(next_duration(axis, T) == T);
+        for (Axis& axis : axes) CHECK(next_duration(axis, T) == T);
         for (int i = 0; i < 20; ++i) {
             const double t = least + (T - least) * i / 20;
             bool agreed = t < T * (1 - 1e-9);
-            for (const Axis& axis : axes) agreed = agreed && next_duration(axis, t) <= t;
+            for (Axis& axis : axes) agreed = agreed && next_duration(axis, t) <= t;
             CHECK(!agreed);
         }
         const double ticks = common_duration(axes, 3, least, 0.01) / 0.01;

@@ -134,9 +134,16 @@ inline double first_reached(const VelocityChange& q, double P, double A, double 
     return find_crossing(q, P, A, far);
 }
 
-// The first time from A to B, in the domain, in which P can be attained.
-inline double next_in_part(const AxisTask& x, double A, double B) {
-    const double up = find_farthest(x.up, A).displacement, down = -find_farthest(x.down, A).displacement;
+// The two extreme motions for a time.
+struct ExtremeMotions {
+    double T = -1;
+    Reach up, down;
+};
+
+// The first time from A to B, in the domain, in which P can be attained; the extreme motions for A.
+inline double next_in_part(const AxisTask& x, double A, double B, ExtremeMotions& at) {
+    at = {A, find_farthest(x.up, A), find_farthest(x.down, A)};
+    const double up = at.up.displacement, down = -at.down.displacement;
     const double slack = displacement_rounding(x, A);
     if (x.P > up + slack) return first_reached(x.up, x.P, A, B, slack);
     if (x.P < down - slack) return first_reached(x.down, -x.P, A, B, slack);
@@ -158,16 +165,16 @@ inline double minimum_time(const AxisTask& x) {
     return T < never ? T : first_in_part(x, d.gap_end, never, d.displacement_after_gap);
 }
 
-// The next time not before T in which P can be attained.
-inline double next_time(const AxisTask& x, double T) {
+// The next time not before T in which P can be attained; the extreme motions for T, if they were needed.
+inline double next_time(const AxisTask& x, double T, ExtremeMotions& at) {
     const Domain& d = x.domain;
     if (T <= d.first) return minimum_time(x);
     if (d.has_gap && T <= d.gap_begin) {
-        const double found = next_in_part(x, T, d.gap_begin);
+        const double found = next_in_part(x, T, d.gap_begin, at);
         if (found < never) return found;
     }
     if (d.has_gap && T <= d.gap_end) return first_in_part(x, d.gap_end, never, d.displacement_after_gap);
-    return next_in_part(x, T, never);
+    return next_in_part(x, T, never, at);
 }
 
 namespace crossing {
@@ -201,11 +208,13 @@ inline bool is_still(const AxisTask& x) {
 }
 
 // The motion that attains P in T: the combination θ up + (1 − θ) down of the two extreme motions, which keeps
-// all limits because they are convex. Appends its phases.
-inline void append_motion(const AxisTask& x, double T, Phases& out) {
+// all limits because they are convex. Appends its phases. known: the extreme motions, if they are for T.
+inline void append_motion(const AxisTask& x, double T, const ExtremeMotions& known, Phases& out) {
     using namespace crossing;
     if (is_still(x)) return out.append({T, 0, 0});
-    const Reach up = find_farthest(x.up, T), down = find_farthest(x.down, T);
+    const bool is_known = known.T == T;
+    const Reach up = is_known ? known.up : find_farthest(x.up, T);
+    const Reach down = is_known ? known.down : find_farthest(x.down, T);
     const double width = up.displacement + down.displacement;
     const double theta = width > 0 ? std::clamp((x.P + down.displacement) / width, 0.0, 1.0) : 1.0;
     const double jerk = x.up.limits.jerk;

@@ -25,10 +25,12 @@ struct Axis {
     double brake_time = 0;
     AxisTask task;
     double shortest = 0;
+    ExtremeMotions last{};  // those for the duration that was asked last
 };
 
 inline void set_axis(Axis& axis, const AxisState& start, const AxisState& goal, const AxisLimits& limits) {
     axis.phases.count = 0;
+    axis.last.T = -1;
     const AxisState within = append_brake({0, start.v, start.a}, limits, axis.phases);
     axis.brake_time = axis.phases.duration();
     const double af = limits.has_jerk() ? goal.a : 0;
@@ -37,13 +39,13 @@ inline void set_axis(Axis& axis, const AxisState& start, const AxisState& goal, 
 }
 
 // The next time from T on in which the axis can attain its goal. An axis without motion can wait.
-inline double next_duration(const Axis& axis, double T) {
-    const double next = axis.brake_time + next_time(axis.task, T - axis.brake_time);
+inline double next_duration(Axis& axis, double T) {
+    const double next = axis.brake_time + next_time(axis.task, T - axis.brake_time, axis.last);
     return next <= T * (1 + 4 * crossing::epsilon) ? T : next;
 }
 
 // The next duration from T on that no axis refuses; cycle: of which it is a multiple, or 0.
-inline double common_duration(const Axis* axes, std::size_t n, double T, double cycle) {
+inline double common_duration(Axis* axes, std::size_t n, double T, double cycle) {
     const auto round_up = [&](double t) {
         if (!(cycle > 0)) return t;
         const double count = std::ceil(t / cycle * (1 - 4 * crossing::epsilon));
@@ -65,7 +67,7 @@ inline double common_duration(const Axis* axes, std::size_t n, double T, double 
 
 inline void finish_axis(Axis& axis, double T) {
     const double time = T - axis.brake_time;
-    if (time > 0) append_motion(axis.task, time, axis.phases);
+    if (time > 0) append_motion(axis.task, time, axis.last, axis.phases);
 }
 
 }  // namespace cspace::trajectory
