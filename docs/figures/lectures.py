@@ -295,6 +295,42 @@ def forces():
     return axes
 
 
+def draw_motion(above, below, robot, motion, title, color):
+    """Snapshots of an arm along a motion, the path of its tip, and the velocities of its joints."""
+    t = np.linspace(0, motion.duration, 400)
+    for k, share in enumerate(np.linspace(0, 1, 9)):
+        draw_arm(above, robot, motion(share * motion.duration), color=color, alpha=0.15 + 0.1 * k)
+    above.plot(*robot.fk(motion(t))[:, :2, 3].T, color=RED, lw=1.6)
+    bare(above, title)
+    for joint, shade in enumerate((INK, BLUE, GREEN)):
+        below.plot(t, motion(t, 1)[:, joint], color=shade, label=f"joint {joint + 1}")
+    for sign in (-1, 1):
+        below.axhline(sign * 2.0, color=FAINT, ls="--", lw=1)
+    below.set_xlabel("time [s]")
+    below.spines[["top", "right"]].set_visible(False)
+
+
+def from_a_to_b():
+    """The same two configurations joined in joint coordinates, by a straight line, and around an obstacle."""
+    robot = cs.load_robot("planar_3r", geometry="skeleton")
+    start, goal = np.array([2.2, -1.2, -0.6]), np.array([0.2, 1.1, 0.5])
+    limits = {"velocity": 2.0, "acceleration": 6.0}
+    post = cs.Sphere(0.15, (0.75, 2.2, 0.0))
+    joints = robot.move_to(goal, start=start, jerk=40.0, **limits)
+    line = robot.move_linear(robot.fk(goal), start=start, **limits)
+    around = cs.move(robot, start, goal, cs.Scene([post]), deviation=0.3, **limits)
+    figure, axes = plt.subplots(2, 3, figsize=(11.0, 6.0), layout="constrained", height_ratios=(2, 1))
+    titles = ("straight in joint coordinates", "straight in the world", "around an obstacle")
+    for column, (motion, title) in enumerate(zip((joints, line, around), titles, strict=True)):
+        draw_motion(axes[0, column], axes[1, column], robot, motion, title, BLUE)
+    axes[0, 2].add_patch(plt.Circle((0.75, 2.2), 0.15, color=FAINT))
+    axes[1, 0].set_ylabel("joint velocity [rad/s]")
+    axes[1, 0].legend(fontsize=8)
+    for ax in axes[0]:
+        ax.set(xlim=(-1.0, 1.7), ylim=(-0.1, 2.6))
+    return axes.ravel()
+
+
 PICTURES: tuple[Callable[[], Any], ...] = (
     one_point_two_frames,
     turned_tip,
@@ -310,6 +346,7 @@ PICTURES: tuple[Callable[[], Any], ...] = (
     elbow_solutions,
     descents,
     forces,
+    from_a_to_b,
 )
 
 

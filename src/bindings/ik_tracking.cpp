@@ -1,6 +1,10 @@
 // Branches along a path of poses: plain checked arrays in, filled arrays out, the interpreter free meanwhile.
 #include "library/ik_tracking.hpp"
 
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "kinematics.hpp"
@@ -25,8 +29,43 @@ void track_rows(nb::handle robot, int frame, Goals poses, Matrix starts,
                         q.data(), last.data(), info.data()});
 }
 
+// See cspace::ik::JointPathRows.
+void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Matrix rates,
+                     Array<double, nb::ndim<2>> q, Array<double, nb::ndim<2>> slope,
+                     Array<double, nb::ndim<2>> bend, Array<double, nb::shape<-1, 2>> info) {
+    const model::Chain& chain = chain_on(robot, frame);
+    const std::size_t count = poses.shape(0), dof = std::size_t(chain.n_coordinates);
+    require_sizes(has_shape(twists, count, std::size_t(6)) && has_shape(rates, count, std::size_t(6)) &&
+                  has_shape(q, count, dof) && has_shape(slope, count, dof) && has_shape(bend, count, dof) &&
+                  info.shape(0) == count);
+    const nb::gil_scoped_release release;
+    ik::correct_joint_path({chain, poses.data(), twists.data(), rates.data(), count, q.data(), slope.data(),
+                            bend.data(), info.data()});
+}
+
+// See cspace::ik::Layers. Returns the states of the chain and its cost.
+nb::tuple cheapest_chain(Matrix q, Row cost, Array<const std::size_t, nb::ndim<1>> begin, int values,
+                         Row stride, Row period, int reach, bool is_ring) {
+    const std::size_t states = q.shape(0), dof = q.shape(1), cells = begin.shape(0) - 1;
+    require_sizes(begin.shape(0) > 1 && values > 0 && cells % std::size_t(values) == 0 &&
+                  cost.shape(0) == states && stride.shape(0) == dof && period.shape(0) == dof &&
+                  begin.data()[0] == 0 && begin.data()[cells] == states &&
+                  std::is_sorted(begin.data(), begin.data() + cells + 1));
+    const std::size_t layers = cells / std::size_t(values);
+    ik::LayerChain chain;
+    {
+        const nb::gil_scoped_release release;
+        chain = ik::cheapest_chain({dof, q.data(), cost.data(), begin.data(), layers, values, stride.data(),
+                                    period.data(), reach, is_ring, nullptr});
+    }
+    return nb::make_tuple(chain.states, chain.cost);
+}
+
 }  // namespace
 
 void bind_ik_tracking(nb::module_& m) {
     m.def("_ik_track", track_rows, "Follows branches along poses; q, last and info take the results.");
+    m.def("_ik_path_rows", joint_path_rows,
+          "Corrects q to the poses of a path; slope, bend and info take the results.");
+    m.def("_ik_cheapest_chain", cheapest_chain, "The cheapest chain of states, one of each layer.");
 }

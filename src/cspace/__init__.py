@@ -8,6 +8,7 @@ from cspace.errors import CspaceError
 
 if TYPE_CHECKING:
     from cspace import (
+        cartesian,
         collision,
         dynamics,
         export,
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
         robots,
         shapes,
         spatial,
+        trajectory,
     )
     from cspace._core import __version__
     from cspace.collision import Scene
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
     from cspace.mechanisms import Mechanism
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
-    from cspace.plan_motion import plan, plan_many
+    from cspace.plan_motion import move, plan, plan_many
     from cspace.planning import configuration_space
     from cspace.robot import Robot
     from cspace.robots import load_robot
@@ -53,6 +55,7 @@ if TYPE_CHECKING:
         Sphere,
     )
     from cspace.spatial import *  # noqa: F403
+    from cspace.trajectory import blend, spline, time_parametrize
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
@@ -65,6 +68,7 @@ __all__ = [
     "Robot",
     "Scene",
     "__version__",
+    "cartesian",
     "collision",
     "configuration_space",
     "dynamics",
@@ -75,14 +79,16 @@ __all__ = [
     "maps",
     "mechanisms",
     "model",
+    "move",
     "navigate",
     "navigation",
     "plan",
     "plan_many",
     "planning",
 ]
-__all__ += ["plot", "robots", "shapes", "spatial", "subproblems"]
+__all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
+__all__ += ["blend", "spline", "time_parametrize"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
     __all__ += spatial.__all__
@@ -113,6 +119,8 @@ _LATER = {
     "Scene": "cspace.collision",
     "Sphere": "cspace.shapes",
     "__version__": "cspace._core",
+    "blend": "cspace.trajectory",
+    "cartesian": "",
     "collision": "",
     "configuration_space": "cspace.planning",
     "dynamics": "",
@@ -123,6 +131,7 @@ _LATER = {
     "maps": "",
     "mechanisms": "",
     "model": "",
+    "move": "cspace.plan_motion",
     "navigate": "cspace.navigation",
     "navigation": "",
     "plan": "cspace.plan_motion",
@@ -132,8 +141,11 @@ _LATER = {
     "robots": "",
     "shapes": "",
     "spatial": "",
+    "spline": "cspace.trajectory",
     "subproblems": "cspace.ik",
+    "time_parametrize": "cspace.trajectory",
     "tolerances": "",
+    "trajectory": "",
 }
 
 

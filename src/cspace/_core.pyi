@@ -932,6 +932,34 @@ class Simulator:
         """
         The steps of the adaptive method (k, width), and where those of each row begin.
         """
+PHASES_OF_AXIS: int = ...
+
+def solve_states(states: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], durations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cycle: float, mode: int, threads: int, verdict: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None, None), order='C', device='cpu')]) -> None:
+    """
+    Motions of axes from state to state.
+
+    states (rows, 2, 3, dof): q, qd, qdd at the start and the goal. limits (5, dof): highest and lowest velocity and acceleration, jerk. durations (rows,): NaN for the shortest. mode: 0 in time, 1 in phase, 2 each axis alone. Writes verdict (rows,): 0 found, 1 another duration, 2 not parallel; duration (rows,), shortest (rows, dof), count (rows, dof), phases (rows, dof, PHASES_OF_AXIS, 3).
+    """
+
+def fill_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None), order='C', device='cpu', writable=False)], count: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], duration: float, knots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], origins: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+    """
+    Polynomials of the phases of one motion: writes knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
+    """
+
+def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], intervals: int) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Pieces, from and to (k,) of about so many intervals of a path, two or more in each piece.
+    """
+
+def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], numpy.typing.NDArray[numpy.float64], bool]:
+    """
+    Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.
+    """
+
+def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], jerk: numpy.typing.NDArray[numpy.float64], grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], start: Sequence[float], end: Sequence[float], duration: float, tolerance: float) -> tuple[bool, numpy.typing.NDArray[numpy.float64], float, float, float, int]:
+    """
+    Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, seconds, steps.
+    """
 
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...
@@ -1008,6 +1036,8 @@ def _ik_descend(*arguments: Any) -> None: ...
 def _ik_sample(*arguments: Any) -> int: ...
 def _ik_moving(robot: Any, frame: int) -> int: ...
 def _ik_track(*arguments: Any) -> None: ...
+def _ik_path_rows(*arguments: Any) -> None: ...
+def _ik_cheapest_chain(*arguments: Any) -> tuple[list[int], float]: ...
 def _task_velocity(*arguments: Any) -> bool: ...
 def _task_serve(*arguments: Any) -> tuple[int, bool, float]: ...
 def _resolved_rate(*arguments: Any) -> None: ...

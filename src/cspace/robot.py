@@ -20,7 +20,7 @@ from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
-    from cspace import dynamics, ik
+    from cspace import cartesian, dynamics, ik, trajectory
     from cspace.collision import RobotGeometry, checks
     from cspace.collision.escape import escape as escape_collision
     from cspace.export import Export
@@ -242,6 +242,10 @@ class Robot(Renamed, RobotBase, KinematicModel):
         resolved_rate = ik.resolved_rate
         task_velocity = ik.task_velocity
         track = ik.track
+        move_to = trajectory.move_to
+        move_arc = cartesian.move_arc
+        move_linear = cartesian.move_linear
+        move_through = cartesian.move_through
 
         def export(
             self,
@@ -262,6 +266,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
         simulate = _Later("cspace.dynamics")
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
+        move_to = _Later("cspace.trajectory")
+        move_arc, move_linear, move_through = (_Later("cspace.cartesian") for _ in range(3))
 
     @property
     def collision(self) -> RobotGeometry:

@@ -578,4 +578,97 @@ SHORTEST_PART: Final = 1e-9
 """Shortest part of a step along the motion of a mechanism: there joints move a million times as fast as the
 driven ones, which is the neighbourhood of a dead point."""
 
+SAME_WAYPOINT: Final = 1e-9
+"""Distance of neighbouring waypoints, relative to the length of the path, up to which they are one: a spline
+through points so close turns on the spot."""
+
+PATH_CORNER: Final = 1e-9
+"""Jump of a derivative of a path, relative to its size, up to which it is continuous: neighbouring pieces are
+rounded differently."""
+
+STRAIGHT_TURN: Final = 1e-10
+"""Turn of a path at a waypoint [rad] up to which its legs are one line."""
+
+REVERSED_TURN: Final = 0.02
+"""Turn short of 180° [rad] from which on a path stops at a waypoint: a blend so sharp turns on the spot."""
+
+STANDING_SPEED: Final = 1e-12
+"""Squared speed along a path, relative to the largest, below which the tangent of its root is not taken: it
+is vertical at zero."""
+
+STILL_JOINT: Final = 1e-12
+"""Slope of a joint along a path, relative to the largest one, up to which it does not move: a thousand
+roundings."""
+
+LAUNCH_PART: Final = 1e-6
+"""Length of the launch of a motion from rest, relative to its path: it takes a hundredth of the time."""
+
+BARRIER_GAP: Final = 1e-4
+"""Of the duration of a motion under jerk limits, relative, to that of the best one on its grid."""
+
+TIMED_WITHIN: Final = 1e-3
+"""Change of the duration of a motion along a path, relative, up to which its intervals are halved."""
+
+CURVE_FITTED: Final = 1e-6
+"""Distance [rad or m] of a fitted path from a curve, by default: controllers resolve no less."""
+
+TIME_ROUNDING: Final = 1e-12
+"""Part of the duration of a trajectory by which a time may lie outside of it: sums of a million steps."""
+
+CONTINUITY_ROUNDING: Final = 1e-9
+"""Jump of a derivative, relative to its largest value, up to which it is continuous: polynomials evaluated
+from both ends of a piece differ by their rounding, a thousandth of this."""
+
+LIMIT_ROUNDING: Final = 1e-9
+"""Part of a limit (of positions at least of 1 rad or m) by which a motion may exceed it: the rounding of the
+sums of its pieces, which controllers do not notice."""
+
+LIMIT_BINDS: Final = 1e-6
+"""Part of a limit, as above, within which a motion is at it."""
+
+ROOT_CONVERGED: Final = 4e-16
+"""Last step towards the root of a polynomial, relative to its interval: two units in the last place."""
+
+CHAIN_AT_LIMIT: Final = 1e-3
+"""What is left of 1 − x² at a limit."""
+
+CHAIN_LEAST_VOLUME: Final = 1e-6
+"""Of the best determinant: nearer to singularities all are equally bad."""
+
+POSE_ROUNDING: Final = 1e-13
+"""[m or rad] Of a pose that is reached."""
+
+PATH_START: Final = 1e-6
+"""[m or rad] Of a start from the begin of a path: solutions of inverse kinematics are closer."""
+
+SHORTEST_PATH_PIECE: Final = 1e-4
+"""[m or rad] A piece that is off and this short ends its branch: the joints would have to jump."""
+
+PATH_POSE_LEFT: Final = 1e-9
+"""Error of a corrected pose, lengths over that of the arm, above which it is not reached."""
+
+NEARLY_STRAIGHT: Final = 3e-4
+"""[rad or m] Distance of the curve from a straight motion of the joints, at most, summed over the joints."""
+
+LEAST_DEVIATION: Final = 1e-3
+"""[rad or m] A corner that has to be rounded less is not rounded: the motion stops there."""
+
+PATH_CURVED: Final = 1e-9
+"""Second derivative above which a piece is a blend, not a leg."""
+
+MOTION_CHECK_STEP: Final = 1e-3
+"""[s] Between the configurations at which the result is checked once more."""
+
+SMOOTH_CORNER: Final = 1e-9
+"""Change of direction that is rounding: the path goes straight on."""
+
+REPEATED_POSE: Final = 1e-12
+"""[m, rad] A leg that is shorter repeats its pose."""
+
+NEAR_HALF_TURN: Final = 1e-9
+"""[rad] How near to 180° a rotation has two shortest ways."""
+
+COLLINEAR_POINTS: Final = 1e-9
+"""Sine of the angle at the middle one of three points that are on a line."""
+
 __all__ = [name for name in globals() if name.isupper()]

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cspace/ik/goal.hpp"
+#include "cspace/ik/tracking/along.hpp"
 #include "cspace/ik/tracking/follow.hpp"
 #include "cspace/math/interrupts.hpp"
 #include "kernels/ik.hpp"
@@ -45,6 +46,23 @@ void track_branches(const TrackRows& given) {
                                            end.weakest};
         std::copy_n(values, track_info, given.info + track_info * b);
     }
+}
+
+void correct_joint_path(const JointPathRows& given) {
+    const RobotPath on(given.chain);
+    std::vector<Posed> poses(given.count);
+    visit_range(0, given.count, [&](std::size_t k) { poses[k] = read_goal(given.poses + 16 * k).T; });
+    const std::size_t dof = std::size_t(on.coordinates);
+    std::fill_n(given.slope, dof * given.count, 0.0);
+    std::fill_n(given.bend, dof * given.count, 0.0);
+    if (given.count == 0) return;
+    kernels::ik_path_rows({&on.path, on.number, dof, given.count, poses.data(), given.twists, given.rates,
+                           given.q, given.slope, given.bend, given.info, poll_interrupts});
+}
+
+LayerChain cheapest_chain(Layers layers) {
+    layers.poll = poll_interrupts;
+    return find_cheapest_chain(layers);
 }
 
 }  // namespace cspace::ik

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "cspace/ik/tracking/cheapest_chain.hpp"
 #include "cspace/model/chain.hpp"
 
 namespace cspace::ik {
@@ -25,5 +26,19 @@ struct TrackRows {
     double* info;
 };
 void track_branches(const TrackRows& rows);
+
+// poses (count, 16); twists and rates (count, 6): their first two derivatives along the path, [v; ω] in base.
+// q (count, dof): guesses, corrected to the poses; slope and bend (count, dof) take the derivatives of the
+// joints, info (count, 2) the pose error that is left and how singular the arm is.
+struct JointPathRows {
+    const model::Chain& chain;
+    const double *poses, *twists, *rates;
+    std::size_t count;
+    double *q, *slope, *bend, *info;
+};
+void correct_joint_path(const JointPathRows& rows);
+
+// As find_cheapest_chain, heeding signals.
+LayerChain cheapest_chain(Layers layers);
 
 }  // namespace cspace::ik

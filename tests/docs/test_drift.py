@@ -19,6 +19,8 @@ ROOMS = {
     "dynamics": "dynamics",
     "mechanisms": "closed-loops",
     "ik": "ik",
+    "trajectory": "trajectory",
+    "cartesian": "cartesian",
     "plot": "plot",
     "maps": "maps",
     "navigation": "navigation",

@@ -23,7 +23,7 @@ TIERS: list[set[str]] = [
     {"kinematics", "maps", "mobile"},
     {"dynamics", "collision", "search"},
     {"ik", "planning", "trajectory", "navigation", "localization"},
-    {"export", "move"},
+    {"export", "cartesian"},
     {"robot"},
     {"robots", "reach", "plan_motion", "mechanisms"},
     {"plot", "lab"},

@@ -1,5 +1,6 @@
-"""Plans of a robot to configurations, poses, partial goals and regions: to all their IK solutions."""
+"""Plans and motions of a robot to configurations, poses, partial goals and regions: to all IK solutions."""
 
+from cspace.plan_motion.motions import Motion, move
 from cspace.plan_motion.plans import plan, plan_many
 
-__all__ = ["plan", "plan_many"]
+__all__ = ["Motion", "move", "plan", "plan_many"]

@@ -59,7 +59,7 @@ inline Outside meet_limit(const Track& t, Walker& w) {
         const Posed goal = pose_on(way, u);
         Motion<double> motion;
         for (int k = 0; k < track::most_corrections; ++k) {
-            measure_motion(*t.path, goal, twist_of(way, t.path->length), q, motion);
+            measure_motion<double>(*t.path, goal, twist_of(way, t.path->length), nullptr, q, motion);
             for (int j = 0; j < n; ++j) q[j] += unit_of(*t.path, j) * motion.correction[j];
             if (largest_of(motion.correction, n) < track::small) break;
         }
@@ -234,7 +234,7 @@ void follow_branches(const Track& t) {
     unsigned rounds = 0;
     for (bool alive = true; alive;) {
         if (t.poll && ++rounds % between_polls == 0) t.poll();
-        measure_motion(*t.path, at.goal, at.twist, at.q, at.motion);
+        measure_motion<V>(*t.path, at.goal, at.twist, nullptr, at.q, at.motion);
         alive = false;
         for (int l = 0; l < lanes; ++l) {
             Walker& w = walker[l];

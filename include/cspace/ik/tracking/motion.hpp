@@ -2,7 +2,8 @@
 // second derivative q'' of the joints along the path.
 //
 // With the twist t = [v; ω] of the pose, constant on each segment,
-//     J q' = t,    J q'' = −J' q'.
+//     J q' = t,    J q'' = −J' q',
+// or t' − J' q' where the twist has a rate t'.
 // With redundant joints q' is the minimum-norm solution, q' = J⁺ t, and q'' has the additional term (I − J⁺J)
 // J'ᵀ (J Jᵀ)⁻¹ t, the rate of J⁺ perpendicular to the rows of J (Golub and Pereyra 1973). With fewer than six
 // coordinates all three are solved by least squares.
@@ -205,7 +206,7 @@ CSPACE_INLINE Twist<V> error_of(const Pose<V>& tip, const Pose<V>& goal, double 
 
 template <class V>
 CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& goal, const Twist<V>& twist,
-                                       const V* q, Motion<V>& out) {
+                                       const Twist<V>* rate, const V* q, Motion<V>& out) {
     const PlacedJoints<V> at = place_joints(path, q);
     Twist<V> J[max_joints], turning;
     columns_of(path, n, at, J);
@@ -218,6 +219,7 @@ CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& g
     solve_for(f, twist.entry, out.slope, y);
     column_rates(path, n, at, out.slope, J);
     clear_twist(turning);
+    if (rate) turning = *rate;
     for (int j = 0; j < n; ++j)
         for (int r = 0; r < 6; ++r)
             turning.entry[r] = mul_add(-out.slope[j], J[j].entry[r], turning.entry[r]);
@@ -225,13 +227,14 @@ CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& g
     if (n > 6) add_rate_of_inverse(f, J, y, out.bend);
 }
 
-// slope and bend are derivatives by the fraction of the segment whose twist is given.
+// slope and bend are derivatives by the parameter of which twist and rate are the first two derivatives of
+// the pose; without a rate, the twist is constant.
 template <class V>
-CSPACE_NOINLINE void measure_motion(const Path& path, const Pose<V>& goal, const Twist<V>& twist, const V* q,
-                                    Motion<V>& out) {
+CSPACE_NOINLINE void measure_motion(const Path& path, const Pose<V>& goal, const Twist<V>& twist,
+                                    const Twist<V>* rate, const V* q, Motion<V>& out) {
     // A number that the compiler knows unrolls the loops of most arms.
-    if (path.n == 6) return measure_coordinates(path, 6, goal, twist, q, out);
-    measure_coordinates(path, path.n, goal, twist, q, out);
+    if (path.n == 6) return measure_coordinates(path, 6, goal, twist, rate, q, out);
+    measure_coordinates(path, path.n, goal, twist, rate, q, out);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -59,9 +59,10 @@ class Branch(Renamed):
         """Where it ends and why, as one sentence."""
         if self:
             return f"follows {all_of(len(self.poses))}"
-        return f"ends {describe_place(self.end, len(self.q))}: {self._cause()}"
+        return f"ends {describe_place(self.end, len(self.q))}: {self.explain_cause()}"
 
-    def _cause(self) -> str:
+    def explain_cause(self) -> str:
+        """Why it ends, as a clause."""
         if self.cause == "limit":
             return f"{self.joint} would leave its limits"
         if self.cause == "unreachable":

@@ -1,0 +1,205 @@
+// Limits of acceleration and jerk along a path as rows over whole intervals.
+//
+// The squared path speed x(s) is a quadratic B-spline: on an interval of length D it has Bernstein
+// coefficients X_0, X_1, X_2, so that the path acceleration u = x'/2 is linear and κ = u' constant. Then
+// q̈ = q''x + q'u is a polynomial of degree m + 1, where q' has degree m, and the jerk is √x (q'''x + 3q''u +
+// q'κ), whose second factor has degree m. |second factor| ≤ J x^(−1/2) is not convex, but x^(−1/2) is: its
+// tangent at any x̂ is below it, and linear. Speeds that keep the tangent keep the limit.
+#pragma once
+
+#include "cspace/trajectory/path_rows.hpp"
+
+namespace cspace::trajectory {
+
+inline constexpr int most_slopes = 5;  // coefficients of q' at most
+
+// A path, its limits and its grid; as of TimedRows.
+struct JerkPath {
+    int degree, padded;
+    const double *slopes, *lengths;
+    const double *inverse_velocity, *inverse_acceleration, *inverse_jerk;
+    const Interval* intervals;
+
+    double length(std::size_t i) const {
+        return (intervals[i].to - intervals[i].from) * lengths[intervals[i].piece];
+    }
+    // Numbers of one interval: three factors of X for every row of the accelerations, then of the jerks.
+    std::size_t row_size() const { return std::size_t(3 * (2 * degree + 3) * padded); }
+};
+
+// The squared speed on an interval: its Bernstein coefficients, or changes of them.
+struct Squares {
+    double at[3];
+};
+
+// What a barrier adds to the gradient (0, 1, 2) and the Hessian (00, 01, 02, 11, 12, 22) by the coefficients.
+struct BarrierTerms {
+    double gradient[3], hessian[6];
+};
+
+// The tangent of x^(−1/2) at x̂ is level − slope x.
+struct Tangent {
+    double level, slope;
+};
+inline Tangent tangent_at(double x) {
+    const double root = std::sqrt(x);
+    return {1.5 / root, 0.5 / (x * root)};
+}
+
+}  // namespace cspace::trajectory
+
+namespace cspace::trajectory::inline CSPACE_ISA {
+
+// Adds factor · product of a polynomial p of degree m with one that is linear in X: parts[j] are the factors
+// of X in its coefficient j.
+template <int m, int n, class V>
+CSPACE_INLINE void add_product(const V* p, const double (&parts)[n + 1][3], double factor, V (*rows)[3]) {
+    constexpr ProductWeights<m, n> weights;
+    for (int i = 0; i <= m; ++i)
+        for (int j = 0; j <= n; ++j) {
+            const double weight = factor * weights.at[i][j];
+            for (int a = 0; a < 3; ++a)
+                if (parts[j][a] != 0.0) rows[i + j][a] += (weight * parts[j][a]) * p[i];
+        }
+}
+
+// The rows of interval i, each divided by its limit, and the largest squared speed that keeps the velocities.
+template <int m>
+inline double build_jerk_rows(const JerkPath& path, std::size_t i, double* rows) {
+    using V = Pack<native_width>;
+    const double length = path.length(i), per = 1.0 / length;
+    const Interval& part = path.intervals[i];
+    const double* slopes = path.slopes + std::size_t(part.piece) * std::size_t((m + 1) * path.padded);
+    const double squares[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double accelerations[2][3] = {{-per, per, 0}, {0, -per, per}};
+    const double changes[1][3] = {{per * per, -2 * per * per, per * per}};
+    V most = fill<V>(1.0 / no_end);
+    for (int j = 0; j < path.padded; j += Lanes<V>::count) {
+        V d[m + 1], e[m], f[m - 1], made[2 * m + 3][3];
+        for (auto& row : made)
+            for (V& each : row) each = fill<V>(0.0);
+        for (int k = 0; k <= m; ++k) d[k] = load<V>(slopes + k * path.padded + j);
+        restrict_to<m>(d, part.from, part.to);
+        const V per_velocity = load<V>(path.inverse_velocity + j);
+        for (int k = 0; k <= m; ++k) most = max(most, (d[k] * per_velocity) * (d[k] * per_velocity));
+        for (int k = 0; k < m; ++k) e[k] = (m * per) * (d[k + 1] - d[k]);
+        for (int k = 0; k + 1 < m; ++k) f[k] = ((m - 1) * per) * (e[k + 1] - e[k]);
+        add_product<m - 1, 2>(e, squares, 1.0, made);
+        add_product<m, 1>(d, accelerations, 1.0, made);
+        add_product<m - 2, 2>(f, squares, 1.0, made + m + 2);
+        add_product<m - 1, 1>(e, accelerations, 3.0, made + m + 2);
+        add_product<m, 0>(d, changes, 1.0, made + m + 2);
+        const V per_acceleration = load<V>(path.inverse_acceleration + j);
+        const V per_jerk = load<V>(path.inverse_jerk + j);
+        for (int r = 0; r < 2 * m + 3; ++r)
+            for (int a = 0; a < 3; ++a)
+                store(rows + (3 * r + a) * path.padded + j,
+                      made[r][a] * (r < m + 2 ? per_acceleration : per_jerk));
+    }
+    return (1.0 - rounding_share) / lane(largest_lanes(most), 0);
+}
+
+// Adds the terms of the barrier of |c·X| ≤ limit − fall·X for a pack of rows: fall(a) by coefficient a.
+template <class V>
+struct BarrierSum {
+    V g[3], h[6];
+
+    CSPACE_INLINE void clear() {
+        for (V& each : g) each = fill<V>(0.0);
+        for (V& each : h) each = fill<V>(0.0);
+    }
+    CSPACE_INLINE void add(const V (&row)[3], V slack) {
+        const V inverse = 1.0 / slack;
+        const V a = row[0] * inverse, b = row[1] * inverse, c = row[2] * inverse;
+        g[0] += a, g[1] += b, g[2] += c;
+        h[0] += a * a, h[1] += a * b, h[2] += a * c;
+        h[3] += b * b, h[4] += b * c, h[5] += c * c;
+    }
+};
+template <class V>
+CSPACE_INLINE double sum_lanes(V v) {
+    double sum = 0.0;
+    for (int k = 0; k < Lanes<V>::count; ++k) sum += lane(v, k);
+    return sum;
+}
+
+// Calls visit(row, limit, fall) for each pack of rows of an interval: |row · X| ≤ limit, where limit is that
+// at X and falls by fall · dX.
+template <int m, class Visit>
+CSPACE_INLINE void visit_rows(const JerkPath& path, const double* rows, const Squares& x,
+                              const Tangent& tangent, const Visit& visit) {
+    using V = Pack<native_width>;
+    constexpr RaisedWeights<m> weights;
+    for (int r = 0; r < 2 * m + 3; ++r) {
+        double fall[3] = {0.0, 0.0, 0.0}, limit = 1.0 - rounding_share;
+        if (r >= m + 2) {
+            limit = tangent.level * (1.0 - rounding_share);
+            for (int a = 0; a < 3; ++a) {
+                fall[a] = tangent.slope * weights.at[r - m - 2][a];
+                limit -= fall[a] * x.at[a];
+            }
+        }
+        for (int j = 0; j < path.padded; j += Lanes<V>::count) {
+            V row[3];
+            for (int a = 0; a < 3; ++a) row[a] = load<V>(rows + (3 * r + a) * path.padded + j);
+            visit(row, limit, fall);
+        }
+    }
+}
+
+// The terms of the barriers of all rows of an interval.
+template <int m>
+inline BarrierTerms sum_barriers(const JerkPath& path, const double* rows, const Squares& x,
+                                 const Tangent& tangent) {
+    using V = Pack<native_width>;
+    BarrierSum<V> sum;
+    sum.clear();
+    visit_rows<m>(path, rows, x, tangent, [&](const V(&row)[3], double limit, const double (&fall)[3]) {
+        const V value = row[0] * x.at[0] + row[1] * x.at[1] + row[2] * x.at[2];
+        const V above[3] = {fall[0] + row[0], fall[1] + row[1], fall[2] + row[2]};
+        const V below[3] = {fall[0] - row[0], fall[1] - row[1], fall[2] - row[2]};
+        sum.add(above, limit - value);
+        sum.add(below, limit + value);
+    });
+    BarrierTerms terms;
+    for (int a = 0; a < 3; ++a) terms.gradient[a] = sum_lanes(sum.g[a]);
+    for (int a = 0; a < 6; ++a) terms.hessian[a] = sum_lanes(sum.h[a]);
+    return terms;
+}
+
+// The longest step along a change after which no row of an interval is exceeded; 0 if one is already.
+template <int m>
+inline double bound_step(const JerkPath& path, const double* rows, const Squares& x, const Squares& change,
+                         const Tangent& tangent) {
+    using V = Pack<native_width>;
+    V most = fill<V>(0.0);  // of decrease over slack: the inverse of the step
+    V least = fill<V>(1.0);
+    visit_rows<m>(path, rows, x, tangent, [&](const V(&row)[3], double limit, const double (&fall)[3]) {
+        const V value = row[0] * x.at[0] + row[1] * x.at[1] + row[2] * x.at[2];
+        const V moved = row[0] * change.at[0] + row[1] * change.at[1] + row[2] * change.at[2];
+        const double lower = fall[0] * change.at[0] + fall[1] * change.at[1] + fall[2] * change.at[2];
+        const V above = limit - value, below = limit + value;
+        least = min(least, min(above, below));
+        most = max(most, max((lower + moved) / above, (lower - moved) / below));
+    });
+    if (lane(largest_lanes(-least), 0) >= 0.0) return 0.0;
+    return 1.0 / max(lane(largest_lanes(most), 0), 1.0 / no_end);
+}
+
+// For each coefficient k of the jerk the largest of its rows at X, into most (m + 1).
+template <int m>
+inline void bound_jerks(const JerkPath& path, const double* rows, const Squares& x, double* most) {
+    using V = Pack<native_width>;
+    for (int k = 0; k <= m; ++k) {
+        V largest = fill<V>(0.0);
+        for (int j = 0; j < path.padded; j += Lanes<V>::count) {
+            V value = fill<V>(0.0);
+            for (int a = 0; a < 3; ++a)
+                value += load<V>(rows + (3 * (m + 2 + k) + a) * path.padded + j) * x.at[a];
+            largest = max(largest, abs(value));
+        }
+        most[k] = lane(largest_lanes(largest), 0);
+    }
+}
+
+}  // namespace cspace::trajectory::inline CSPACE_ISA

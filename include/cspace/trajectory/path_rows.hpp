@@ -1,0 +1,250 @@
+// Limits along a path as rows that are linear in the squared speeds at the two ends of an interval.
+//
+// On an interval of length D the squared path speed goes linearly from x to y, so that the path acceleration
+// (y − x) / 2D is constant. Velocities and accelerations of the joints are then polynomials of the place; a
+// row bounds one of their Bernstein coefficients, so that no limit is exceeded anywhere in the interval.
+// With Bernstein coefficients d of q' on the interval, of degree m, and δ_k = d_{k+1} − d_k, those of 2D q̈
+// are (d_k + 2k δ_{k−1}) y − (d_k − 2(m−k) δ_k) x. (Reachability: Pham and Pham 2018; Bernstein bounds:
+// Farouki 2012.)
+#pragma once
+
+#include <cstddef>
+
+#include "cspace/math/rows.hpp"
+
+namespace cspace::trajectory {
+
+inline constexpr int joint_padding = 8;    // joints are stored in multiples of it: the widest pack
+inline constexpr double no_row = 1e-60;    // coefficient of y, relative to that of x, that a row has at least
+inline constexpr double no_size = 1e-150;  // and absolutely: below it the row is not a bound of y
+inline constexpr double no_end = 1e30;     // squared speed where nothing bounds it [1/s²]
+// Share of a limit that the rows leave to the rounding of squared speeds.
+inline constexpr double rounding_share = 1e-12;
+
+// A piece of the path and the part of it, in [0, 1], that an interval covers.
+struct Interval {
+    int piece;
+    double from, to;
+};
+
+// Limits that are not polynomials along the path, sampled at the ends and the middles of the intervals:
+// offset + along·(path acceleration) + across·(squared speed) stays within ±limit of each row, less margin.
+// Row s has the values of place s / 2 of the grid; a place where two pieces meet has those of both sides, so
+// that interval i owns the rows 3i, 3i + 1 and 3i + 2.
+struct SampledLimits {
+    const double *along, *across, *offset;  // (3 intervals, padded joints) each, or null
+    const double* margin;                   // (intervals, padded joints) or null
+    const double* limit;                    // (padded joints,)
+    // (intervals, 3): Bernstein coefficients of what bounds the inverse of the squared path speed, or null
+    const double* inverse_square;
+};
+
+// A path with its limits and the grid on which it is timed.
+struct TimedRows {
+    int degree, joints, padded;          // of q'; padded: joints rounded up
+    const double* slopes;                // (pieces, degree + 1, padded): Bernstein coefficients of dq/ds
+    const double* lengths;               // (pieces,): of their parameter
+    const double* least_inverse_square;  // (pieces,): of the squared path speed
+    const double* inverse_acceleration;  // (padded,) [s²/rad or s²/m], 0 without a limit
+    const double* inverse_velocity;      // (padded,)
+    const Interval* intervals;
+    const signed char* stops;  // (intervals + 1,): 1 where the path has to stand
+    SampledLimits sampled;
+
+    double length(std::size_t i) const {
+        return (intervals[i].to - intervals[i].from) * lengths[intervals[i].piece];
+    }
+};
+
+// Numbers of rows that build_rows writes at most, in multiples of the widest pack.
+inline int row_capacity(const TimedRows& path) {
+    return (path.degree + 1 + 3) * path.padded + 2 * joint_padding;
+}
+
+constexpr double binomial(int n, int k) {
+    double value = 1.0;
+    for (int i = 1; i <= k; ++i) value = value * double(n - k + i) / double(i);
+    return value;
+}
+// The weights of a_i b_j in coefficient i + j of the product of polynomials of degrees m and n.
+template <int m, int n>
+struct ProductWeights {
+    double at[m + 1][n + 1];
+
+    constexpr ProductWeights() : at{} {
+        for (int i = 0; i <= m; ++i)
+            for (int j = 0; j <= n; ++j) at[i][j] = binomial(m, i) * binomial(n, j) / binomial(m + n, i + j);
+    }
+};
+// The weights of the coefficients of a quadratic polynomial in its coefficients of degree m.
+template <int m>
+struct RaisedWeights {
+    double at[m + 1][3];
+
+    constexpr RaisedWeights() : at{} {
+        for (int k = 0; k <= m; ++k)
+            for (int j = 0; j <= 2; ++j)
+                if (k - j >= 0 && k - j <= m - 2)
+                    at[k][j] = binomial(2, j) * binomial(m - 2, k - j) / binomial(m, k);
+    }
+};
+
+}  // namespace cspace::trajectory
+
+namespace cspace::trajectory::inline CSPACE_ISA {
+
+// Rows y ∈ [low + slope x, high + slope x] of one interval; largest_x and largest_y bound x and y alone.
+struct Rows {
+    double *slope, *low, *high;
+    int count;  // a multiple of joint_padding
+    double largest_x, largest_y;
+};
+
+// Bernstein coefficients on [from, to] from those on [0, 1], by two subdivisions.
+template <int m, class V>
+CSPACE_INLINE void restrict_to(V (&c)[m + 1], double from, double to) {
+    if (to < 1.0)
+        for (int k = 1; k <= m; ++k)
+            for (int j = m; j >= k; --j) c[j] = c[j - 1] + to * (c[j] - c[j - 1]);
+    if (from > 0.0) {
+        const double ratio = from / to;
+        for (int k = 1; k <= m; ++k)
+            for (int j = 0; j <= m - k; ++j) c[j] = c[j] + ratio * (c[j + 1] - c[j]);
+    }
+}
+
+// Writes a pack of rows low ≤ α x + β y ≤ high.
+template <class V>
+CSPACE_INLINE void write_rows(const Rows& rows, int at, V alpha, V beta, V low, V high) {
+    const V size = max(abs(beta), no_row * abs(alpha) + no_size);
+    const V inverse = copysign(1.0 / size, beta);
+    const V a = low * inverse, b = high * inverse;
+    store(rows.slope + at, -alpha * inverse);
+    store(rows.low + at, min(a, b));
+    store(rows.high + at, max(a, b));
+}
+
+// The rows of the accelerations of a pack of joints; c: coefficients of q' over the limit.
+template <int m, class V>
+CSPACE_INLINE void write_acceleration_rows(const Rows& rows, int at, int stride, const V (&c)[m + 1],
+                                           double length) {
+    const V bound = fill<V>(2.0 * length * (1.0 - rounding_share));
+    for (int k = 0; k <= m; ++k) {
+        V alpha = -c[k], beta = c[k];
+        if (k < m) alpha += (2.0 * (m - k)) * (c[k + 1] - c[k]);
+        if (k > 0) beta += (2.0 * k) * (c[k] - c[k - 1]);
+        write_rows(rows, at + k * stride, alpha, beta, -bound, bound);
+    }
+}
+
+// Raises squares to the Bernstein coefficients of (q' / limit)², of degree 2m, of a pack of joints.
+template <int m, class V>
+CSPACE_INLINE void raise_squares(const V (&c)[m + 1], V (&squares)[2 * m + 1]) {
+    constexpr ProductWeights<m, m> weights;
+    V sums[2 * m + 1];
+    for (int i = 0; i <= m; ++i) sums[2 * i] = weights.at[i][i] * c[i] * c[i];
+    for (int i = 0; i < m; ++i) sums[2 * i + 1] = (2.0 * weights.at[i][i + 1]) * c[i] * c[i + 1];
+    for (int apart = 2; apart <= m; ++apart)
+        for (int i = 0; i + apart <= m; ++i)
+            sums[2 * i + apart] += (2.0 * weights.at[i][i + apart]) * c[i] * c[i + apart];
+    for (int k = 0; k <= 2 * m; ++k) squares[k] = max(squares[k], sums[k]);
+}
+
+// The largest of all lanes, in every lane.
+template <class V>
+CSPACE_INLINE V largest_lanes(V v) {
+    if constexpr (Lanes<V>::count > 4) v = max(v, swap_lanes<4>(v));
+    if constexpr (Lanes<V>::count > 2) v = max(v, swap_lanes<2>(v));
+    if constexpr (Lanes<V>::count > 1) v = max(v, swap_lanes<1>(v));
+    return v;
+}
+
+// The rows of the velocities: with P_k no less than the coefficients of any (q' / limit)², those of degree
+// 2m + 1 of the largest q̇² are ((2m + 1 − k) P_k x + k P_{k−1} y) / (2m + 1).
+template <int m>
+CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const double (&P)[2 * m + 1]) {
+    using V = Pack<native_width>;
+    constexpr int last = 2 * m + 1, padded = (last + joint_padding - 1) / joint_padding * joint_padding;
+    double alpha[padded] = {},
+           beta[padded] = {};  // of rows 1 to 2m; row 0 is largest_x, row 2m + 1 largest_y
+    for (int k = 1; k < last; ++k) {
+        alpha[k - 1] = (double(last - k) / last) * P[k];
+        beta[k - 1] = (double(k) / last) * P[k - 1];
+    }
+    rows.largest_x = 1.0 / max(P[0], 1.0 / no_end);
+    rows.largest_y = 1.0 / max(P[2 * m], 1.0 / no_end);
+    for (int k = 0; k < padded; k += Lanes<V>::count) {
+        const V a = load<V>(alpha + k), b = load<V>(beta + k);
+        const V inverse = 1.0 / max(b, no_row * a + no_size);
+        store(rows.slope + at + k, -a * inverse);
+        store(rows.low + at + k, -inverse);
+        store(rows.high + at + k, (1.0 - rounding_share) * inverse);
+    }
+    rows.count = at + padded;
+}
+
+// Raises P to the coefficients of a quadratic polynomial.
+template <int m>
+CSPACE_INLINE void raise_to_quadratic(double (&P)[2 * m + 1], const double* coefficients) {
+    constexpr RaisedWeights<2 * m> weights;
+    for (int k = 0; k <= 2 * m; ++k) {
+        double sum = 0.0;
+        for (int j = 0; j <= 2; ++j) sum += weights.at[k][j] * coefficients[j];
+        P[k] = max(P[k], sum);
+    }
+}
+
+// The rows of sampled limits of a pack of joints at the begin, the middle and the end of interval i.
+template <class V>
+CSPACE_INLINE void write_sampled_rows(const Rows& rows, int at, const TimedRows& path, std::size_t i, int j,
+                                      double length) {
+    const SampledLimits& given = path.sampled;
+    const std::size_t width = std::size_t(path.padded);
+    V limit = load<V>(given.limit + j);
+    if (given.margin) limit = limit - load<V>(given.margin + i * width + std::size_t(j));
+    for (int part = 0; part < 3; ++part) {
+        const std::size_t row = (3 * i + std::size_t(part)) * width + std::size_t(j);
+        const V along = (0.5 / length) * load<V>(given.along + row);
+        const V across = load<V>(given.across + row), offset = load<V>(given.offset + row);
+        const double share = 0.5 * part;
+        write_rows(rows, at + part * path.padded, (1.0 - share) * across - along, share * across + along,
+                   -limit - offset, limit - offset);
+    }
+}
+
+// All rows of interval i. memory: three times row_capacity numbers.
+template <int m>
+CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memory) {
+    using V = Pack<native_width>;
+    const int capacity = row_capacity(path), padded = path.padded;
+    Rows rows{memory, memory + capacity, memory + 2 * capacity, 0, no_end, no_end};
+    const Interval& part = path.intervals[i];
+    const double length = path.length(i);
+    const double* slopes = path.slopes + std::size_t(part.piece) * std::size_t((m + 1) * padded);
+    V squares[2 * m + 1];
+    for (V& each : squares) each = fill<V>(0.0);
+    for (int j = 0; j < padded; j += Lanes<V>::count) {
+        V d[m + 1], scaled[m + 1];
+        for (int k = 0; k <= m; ++k) d[k] = load<V>(slopes + k * padded + j);
+        restrict_to<m>(d, part.from, part.to);
+        const V per_acceleration = load<V>(path.inverse_acceleration + j);
+        for (int k = 0; k <= m; ++k) scaled[k] = d[k] * per_acceleration;
+        write_acceleration_rows<m>(rows, j, padded, scaled, length);
+        const V per_velocity = load<V>(path.inverse_velocity + j);
+        for (int k = 0; k <= m; ++k) scaled[k] = d[k] * per_velocity;
+        raise_squares<m>(scaled, squares);
+    }
+    double P[2 * m + 1];
+    for (int k = 0; k <= 2 * m; ++k)
+        P[k] = max(lane(largest_lanes(squares[k]), 0), path.least_inverse_square[part.piece]);
+    if (path.sampled.inverse_square) raise_to_quadratic<m>(P, path.sampled.inverse_square + 3 * i);
+    write_velocity_rows<m>(rows, (m + 1) * padded, P);
+    if (path.sampled.along) {
+        for (int j = 0; j < padded; j += Lanes<V>::count)
+            write_sampled_rows<V>(rows, rows.count + j, path, i, j, length);
+        rows.count += 3 * padded;
+    }
+    return rows;
+}
+
+}  // namespace cspace::trajectory::inline CSPACE_ISA

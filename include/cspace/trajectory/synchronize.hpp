@@ -1,0 +1,73 @@
+// Motions of several axes between two states: each in its shortest time, or all in the same one.
+//
+// The common time is the longest of the shortest times, raised to the next time in which an axis that refuses
+// it can attain its goal, until none refuses. A time that is given, or a multiple of a control cycle, is the
+// same question.
+#pragma once
+
+#include <cstddef>
+
+#include "cspace/trajectory/brake.hpp"
+#include "cspace/trajectory/minimum_time.hpp"
+
+namespace cspace::trajectory {
+
+// Relative difference of two durations that are the same: the rounding of the sum of some phases.
+inline constexpr double duration_rounding = 1e-12;
+
+// Largest part of a vector, relative to its largest entry, across a direction that it is parallel to: states
+// that a program computed are parallel to rounding, those of files to nine digits.
+inline constexpr double parallel_rounding = 1e-9;
+
+// An axis from its start to its goal: what brings it within its limits, and the task after that.
+struct Axis {
+    Phases phases;  // those of the brake, later all
+    double brake_time = 0;
+    AxisTask task;
+    double shortest = 0;
+    ExtremeMotions last{};  // those for the duration that was asked last
+};
+
+inline void set_axis(Axis& axis, const AxisState& start, const AxisState& goal, const AxisLimits& limits) {
+    axis.phases.count = 0;
+    axis.last.T = -1;
+    const AxisState within = append_brake({0, start.v, start.a}, limits, axis.phases);
+    axis.brake_time = axis.phases.duration();
+    const double af = limits.has_jerk() ? goal.a : 0;
+    axis.task = make_axis_task({within.v, within.a, goal.v, af, limits}, (goal.p - start.p) - within.p);
+    axis.shortest = axis.brake_time + minimum_time(axis.task);
+}
+
+// The next time from T on in which the axis can attain its goal. An axis without motion can wait.
+inline double next_duration(Axis& axis, double T) {
+    const double next = axis.brake_time + next_time(axis.task, T - axis.brake_time, axis.last);
+    return next <= T * (1 + 4 * crossing::epsilon) ? T : next;
+}
+
+// The next duration from T on that no axis refuses; cycle: of which it is a multiple, or 0.
+inline double common_duration(Axis* axes, std::size_t n, double T, double cycle) {
+    const auto round_up = [&](double t) {
+        if (!(cycle > 0)) return t;
+        const double count = std::ceil(t / cycle * (1 - 4 * crossing::epsilon));
+        return count * cycle;
+    };
+    T = round_up(T);
+    for (std::size_t agreed = 0, i = 0; agreed < n; i = (i + 1) % n) {
+        const double next = next_duration(axes[i], T);
+        agreed = next > T ? 1 : agreed + 1;
+        if (next > T) {
+            const double rounded = round_up(next);
+            if (rounded > next) agreed = 0;
+            T = rounded;
+        }
+        if (!(T < never)) return never;
+    }
+    return T;
+}
+
+inline void finish_axis(Axis& axis, double T) {
+    const double time = T - axis.brake_time;
+    if (time > 0) append_motion(axis.task, time, axis.last, axis.phases);
+}
+
+}  // namespace cspace::trajectory

@@ -1,0 +1,193 @@
+"""The cheapest chain of configurations along a Cartesian path that leaves one dimension free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final, Protocol
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.kinematics import KinematicModel
+from cspace.math.wrapping import TURN, wrap_near
+from cspace.model import Limits
+from cspace.tolerances import CHAIN_AT_LIMIT, CHAIN_LEAST_VOLUME
+from cspace.trajectory.cartesian_path import CartesianPath
+
+STATION_SPACING: Final = 0.04
+"""[m or rad] Of the poses at which the redundant joint is chosen."""
+
+STATIONS: Final = (16, 96)
+"""Fewest and most of them."""
+
+FINER: Final = 8
+"""Parts of the distance of two values that are tried around the chain that was found first."""
+
+REACH: Final = 3
+"""Values that the redundant joint may move between neighbouring stations."""
+
+LONGEST_STEP: Final = 0.7
+"""[rad] That a joint may turn between neighbouring stations; more is another branch."""
+
+LIMIT_WEIGHT: Final = 0.3
+"""Of x²/(1 − x²), x the distance from the middle of the limits in half ranges, against joints that move by 1
+rad per unit of the path: a few degrees of detour keep a joint away from its limits."""
+
+SINGULAR_WEIGHT: Final = 0.02
+"""Of the inverse of det(J Jᵀ), relative to the best one on the path."""
+
+ROOMY: Final = TURN + 2.0
+"""[rad] Range of a joint of which multiples of 2π count as one configuration; its limits are looked at
+afterwards."""
+
+
+class Freedom(Protocol):
+    """The one dimension of configurations that a pose of the path leaves free, as values [rad or m].
+
+    is_ring: the values are angles, the last of them a neighbour of the first.
+    """
+
+    @property
+    def is_ring(self) -> bool: ...
+
+    def spread_values(self) -> Array:
+        """Values (m,) over the whole range, evenly spaced."""
+
+    def solve(self, T: Array, values: Array) -> tuple[Array, Any]:
+        """Configurations (k, room, dof) of poses T (k, 4, 4) at values (k,), and how many each has (k,)."""
+
+    def value_of(self, q: Array, T: Array) -> float:
+        """The value of a configuration (dof,) that reaches a pose T (4, 4)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stations:
+    """Parameters (n,) along a path, evenly spaced, and the poses (n, 4, 4) there."""
+
+    s: Array
+    T: Array
+
+    @property
+    def spacing(self) -> float:
+        return float(self.s[1])
+
+    @classmethod
+    def of(cls, path: CartesianPath) -> Stations:
+        count = int(np.clip(np.ceil(path.length / STATION_SPACING), *STATIONS))
+        s = np.linspace(0.0, path.length, count + 1)
+        return cls(s, path(s))
+
+
+@dataclass(frozen=True, eq=False)
+class ConfigurationChain:
+    """Configurations q (n, dof) and values (n,) at the first stations; all of them unless `reason` says why
+    not, with the cause."""
+
+    q: Array
+    values: Array
+    reason: str = ""
+    cause: str = "end"
+
+
+class ChainSearch:
+    """Finds the cheapest chain of configurations, one of each station: first among values that are
+    spread over the whole range, then among finer ones around the chain."""
+
+    def __init__(
+        self,
+        robot: KinematicModel,
+        freedom: Freedom,
+        stations: Stations,
+        bounds: Limits,
+        start: Array | None,
+    ) -> None:
+        self.robot, self.freedom, self.stations, self.bounds = robot, freedom, stations, bounds
+        self.start = start
+        self.revolute = np.array([kind != "P" for kind in robot.joint_types])
+        self.wide = self.revolute & ~(bounds.upper - bounds.lower < ROOMY)
+        self.narrow = np.isfinite(bounds.lower) & np.isfinite(bounds.upper) & ~self.wide
+        self.half = np.where(self.narrow, 0.5 * (bounds.upper - bounds.lower), 1.0)
+        self.middle = np.where(self.narrow, bounds.lower + self.half, 0.0)
+
+    def run(self) -> ConfigurationChain:
+        """The chain with continuous angles, or how far it goes."""
+        values = self.freedom.spread_values()
+        step = values[1] - values[0]
+        if self.start is not None:  # one of the values is that of the start
+            own = self.freedom.value_of(self.start, self.stations.T[0])
+            values = values + (own - values[int(np.argmin(np.abs(values - own)))])
+        every = np.tile(values, (len(self.stations.s), 1))
+        coarse = self._search(every, self.freedom.is_ring, REACH)
+        if coarse.reason:
+            return coarse
+        parts = step / FINER * np.arange(-FINER, FINER + 1)
+        finer = self._search(coarse.values[:, None] + parts, False, 2 * FINER)
+        chain = coarse if finer.reason else finer
+        return ConfigurationChain(self._unwrap(chain.q), chain.values)
+
+    def _search(self, values: Array, is_ring: bool, reach: int) -> ConfigurationChain:
+        """The cheapest chain among the configurations at values (n, m)."""
+        n, m = values.shape
+        rows, count = self.freedom.solve(np.repeat(self.stations.T, m, axis=0), values.ravel())
+        kept = np.arange(rows.shape[1]) < count[:, None]
+        q = self._into_limits(rows[kept])
+        cell = np.repeat(np.arange(n * m), count)
+        inside = ((q >= self.bounds.lower) & (q <= self.bounds.upper) | self.wide).all(axis=1)
+        q, cell = q[inside], cell[inside]
+        if self.start is not None:
+            own = int(np.argmin(np.abs(values[0] - self.freedom.value_of(self.start, self.stations.T[0]))))
+            later = cell >= m
+            q, cell = np.concatenate([self.start[None], q[later]]), np.concatenate([[own], cell[later]])
+        begin = np.searchsorted(cell, np.arange(n * m + 1)).astype(np.uint64)
+        stride = np.where(self.revolute, LONGEST_STEP, np.inf)
+        period = np.where(self.wide, TURN, 0.0)
+        q = np.ascontiguousarray(q)
+        states, _ = _core._ik_cheapest_chain(
+            q, self._measure_cost(q), begin, m, stride, period, reach, is_ring
+        )
+        chain = ConfigurationChain(q[states], values.ravel()[cell[states]])
+        if len(states) == n:
+            return chain
+        return self._explain_end(chain, bool((cell // m == len(states)).any()))
+
+    def _into_limits(self, q: Array) -> Array:
+        """Angles of joints that cannot make a full turn, moved by the multiple of 2π that is nearest to the
+        middle of their limits."""
+        return np.asarray(np.where(self.revolute & self.narrow, wrap_near(q, self.middle), q))
+
+    def _measure_cost(self, q: Array) -> Array:
+        """Of the distance from the middle of the limits and from singularities."""
+        off = np.where(self.narrow, (q - self.middle) / self.half, 0.0) ** 2
+        cost = LIMIT_WEIGHT * np.sum(off / (1.0 + CHAIN_AT_LIMIT - np.minimum(off, 1.0)), axis=1)
+        J = self.robot.jacobian(q)
+        volume = np.linalg.det(J @ np.swapaxes(J, 1, 2)) if len(q) else np.zeros(0)
+        best = volume.max(initial=0.0)
+        if best > 0.0:
+            cost += SINGULAR_WEIGHT * best / np.maximum(volume, CHAIN_LEAST_VOLUME * best)
+        return np.asarray(cost * self.stations.spacing**2)
+
+    def _unwrap(self, q: Array) -> Array:
+        """The chain with continuous angles; without a start, each joint is moved by the multiple of 2π that
+        keeps it within its limits, if there is one."""
+        step = np.diff(q, axis=0)
+        step -= np.where(self.wide, TURN * np.round(step / TURN), 0.0)
+        out: Array = q[0] + np.concatenate([np.zeros((1, q.shape[1])), np.cumsum(step, axis=0)])
+        if self.start is not None:
+            return out
+        low, high = out.min(axis=0), out.max(axis=0)
+        lower, upper = self.bounds.lower, self.bounds.upper
+        limited = self.wide & np.isfinite(lower) & np.isfinite(upper)
+        turns = np.where(limited, np.ceil((np.where(limited, lower, 0.0) - low) / TURN), 0.0)
+        fits = high + TURN * turns <= upper
+        moved = limited & ((low < lower) | (high > upper)) & fits
+        return np.asarray(out + np.where(moved, TURN * turns, 0.0))
+
+    def _explain_end(self, chain: ConfigurationChain, has_next: bool) -> ConfigurationChain:
+        s = self.stations.s[len(chain.q)]
+        whence = "" if self.start is None else " from this start"
+        if has_next:
+            text = f"at s = {s:.6g}: no chain of configurations that move little leads on{whence}"
+            return ConfigurationChain(chain.q, chain.values, text, "jump")
+        text = f"at s = {s:.6g}: no configuration within the limits reaches the path"
+        return ConfigurationChain(chain.q, chain.values, text, "unreachable")

@@ -1,0 +1,97 @@
+"""A Cartesian path followed by a redundant arm beside a guiding curve in the space of its joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.cartesian.refine import Nodes
+from cspace.kinematics import KinematicModel
+from cspace.kinematics.jacobian import jacobian_dot
+from cspace.spatial import log_so3
+from cspace.tolerances import POSE_ROUNDING
+from cspace.trajectory.cartesian_path import CartesianPath, Indices
+from cspace.trajectory.path import Path
+from cspace.trajectory.splines import quintic_controls
+
+ANCHOR: Final = 1e9
+"""Weight of the start in the smoothing: it stays where it is."""
+
+CORRECTIONS: Final = 12
+"""Of Newton's method from the spline between stations."""
+
+
+def smooth_rows(s: Array, rows: Array, weight: float) -> Path:
+    """A smooth curve near rows (n, k) at parameters s (n,), through the first of them (Whittaker 1922).
+
+    weight: of the squared second differences.
+    """
+    n = len(rows)
+    second = np.diff(np.eye(n), 2, axis=0)
+    anchor = np.zeros(n)
+    anchor[0] = ANCHOR
+    matrix = np.eye(n) + np.diag(anchor) + weight * second.T @ second
+    smooth = np.asarray(np.linalg.solve(matrix, rows + anchor[:, None] * rows), dtype=np.float64)
+    return Path(s, quintic_controls(np.diff(s), smooth, "natural"))
+
+
+def null_directions(robot: KinematicModel, q: Array) -> Array:
+    """The unit vectors (n, dof) of the null space of the Jacobian along a chain q (n, dof), of one sign."""
+    null = np.linalg.svd(robot.jacobian(q))[2][:, -1]
+    null[1:] *= np.cumprod(np.where(np.sum(null[1:] * null[:-1], axis=1) < 0, -1.0, 1.0))[:, None]
+    return null
+
+
+@dataclass(frozen=True, eq=False)
+class Guided:
+    """Corrects with d · (q − r) = 0 besides the pose, for a guiding curve (r, d)(s) of 2 dof values."""
+
+    robot: KinematicModel
+    path: CartesianPath
+    curve: Path
+
+    def guide(self, piece: Indices, u: Array, order: int) -> tuple[Array, Array]:
+        """Derivatives of r and d (n, dof) of that order."""
+        s = np.minimum(self.path.breaks[piece] + u, self.curve.length)
+        values = self.curve(s, order)
+        return values[:, : self.robot.dof], values[:, self.robot.dof :]
+
+    def __call__(self, piece: Indices, u: Array, T: Array, guess: Array) -> Nodes:
+        """Newton's method; then J q' = t and J q'' = t' − J' q', with the derivatives of the last row."""
+        r, d = zip(*(self.guide(piece, u, order) for order in range(3)), strict=True)
+        q = np.array(guess)
+        left = np.full(len(q), np.inf)
+        for _ in range(CORRECTIONS):
+            error, left = self._measure_error(q, T)
+            if not (left > POSE_ROUNDING).any():
+                break
+            q += self._solve(q, d[0], error, _dot(d[0], r[0] - q))
+        twist, rate = self.path.twists_on(piece, u)
+        slope = self._solve(q, d[0], twist, _dot(d[0], r[1]) + _dot(d[1], r[0] - q))
+        rate = rate - np.einsum("nij,nj->ni", jacobian_dot(self.robot, q, slope), slope)
+        last = _dot(d[0], r[2]) + 2 * _dot(d[1], r[1] - slope) + _dot(d[2], r[0] - q)
+        return Nodes(q, slope, self._solve(q, d[0], rate, last), left)
+
+    def _solve(self, q: Array, direction: Array, task: Array, last: Array) -> Array:
+        """x with J x = task and direction · x = last, for each row; NaN where it is singular."""
+        matrix = np.concatenate([self.robot.jacobian(q), direction[:, None, :]], axis=1)
+        right = np.concatenate([task, last[:, None]], axis=1)
+        try:
+            return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
+        except np.linalg.LinAlgError:
+            return np.full_like(q, np.nan)
+
+    def _measure_error(self, q: Array, T: Array) -> tuple[Array, Array]:
+        if not np.isfinite(q).all():
+            return np.full((len(q), 6), np.nan), np.full(len(q), np.inf)
+        reached = self.robot.fk(q)
+        turned = log_so3(T[:, :3, :3] @ np.swapaxes(reached[:, :3, :3], 1, 2))
+        error = np.concatenate([T[:, :3, 3] - reached[:, :3, 3], turned], axis=1)
+        return error, np.abs(error).max(axis=1)
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.asarray(np.sum(a * b, axis=1))

@@ -1,0 +1,276 @@
+"""Motions of the tip along lines, arcs and polylines: every branch followed, timed and compared."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Array, one_array
+from cspace.cartesian.free_turn import follow_free_turn
+from cspace.cartesian.joint_branches import JointBranch, JointBranches, follow_cartesian
+from cspace.cartesian.redundant_path import follow_redundant
+from cspace.cartesian.scene_check import find_touches, space_of_curves
+from cspace.errors import InputError
+from cspace.ik.solver import as_solver
+from cspace.kinematics import KinematicModel
+from cspace.model import Limits
+from cspace.spatial.checks import PoseLike
+from cspace.tables import count_things, one_line, shown
+from cspace.tolerances import PATH_START
+from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path
+from cspace.trajectory.cartesian_path import CartesianPath
+from cspace.trajectory.path import Path
+from cspace.trajectory.time_parametrize import EMPTY_GRID, time_parametrize
+from cspace.trajectory.timed_path import TimedPath
+
+if TYPE_CHECKING:
+    from cspace.collision import Scene
+
+RANKING_GRID: Final = 100
+"""Intervals with which branches are compared: their durations are off by a few percent, alike for all."""
+
+
+class CartesianMotion(TimedPath):
+    """A motion of the joints that moves the tip along a Cartesian path; falsy where there is none.
+
+    A TimedPath, whose path has the parameter s of the Cartesian path. cartesian: that path. branches: all
+    that were followed, with where and why the others end. chosen: the number of the one that is taken, or −1.
+    durations (b,): of each branch on a coarse grid [s], inf where there is none, nan where none was needed.
+    s_end: how far the tip goes.
+    """
+
+    cartesian: CartesianPath
+    branches: tuple[JointBranch, ...]
+    chosen: int
+    durations: Array
+    s_end: float
+
+    @classmethod
+    def of(
+        cls,
+        timed: TimedPath,
+        cartesian: CartesianPath,
+        branches: Sequence[JointBranch],
+        chosen: int,
+        durations: Array,
+    ) -> CartesianMotion:
+        """A TimedPath with what it follows; durations (k,) of the branches."""
+        made = cls.__new__(cls)
+        made.__dict__.update(timed.__dict__)
+        made.cartesian, made.branches, made.chosen = cartesian, tuple(branches), chosen
+        made.durations = durations
+        made.s_end = max((branch.s_end for branch in branches), default=0.0)
+        return made
+
+    def __repr__(self) -> str:
+        arrived = sum(map(bool, self.branches))
+        branches = count_things(len(self.branches), "branch", "branches")
+        text = f"{arrived} of {branches} along {shown(self.cartesian.length)}"
+        return one_line("CartesianMotion", f"{text}, {self.reason or shown(self.duration) + ' s'}")
+
+
+def move_cartesian(
+    robot: KinematicModel,
+    path: CartesianPath,
+    start: ArrayLike | None = None,
+    *,
+    speed: float | None = None,
+    turn_rate: float | None = None,
+    velocity: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
+    torque: ArrayLike | bool | None = None,
+    free_axis: str | ArrayLike | None = None,
+    scene: Scene | None = None,
+    margin: float = 0.0,
+    limits: bool | Limits = True,
+    tolerance: float = 1e-5,
+    grid: int | None = None,
+) -> CartesianMotion:
+    """The fastest motion of the joints that moves the tip along a Cartesian path.
+
+    Every branch of solutions is followed along the path, each that arrives is timed, and the fastest is
+    taken. A redundant arm is planned along the whole path at once (follow_redundant).
+
+    path: such as of line_path. start (dof,) [rad or m]: the configuration at its begin, whose branch alone is
+    followed. speed [m/s], turn_rate [rad/s]: of the tip, at most. velocity, acceleration, torque, grid: as of
+    time_parametrize. free_axis: an axis of the tip about which it may turn freely ("z", or a direction (3,)
+    in its frame). scene: obstacles; branches that touch them or the arm itself are left out, proved with
+    `margin` [m] to spare. limits: True for those of the robot, False for none, or Limits. tolerance [m and
+    rad]: the largest distance of the tip from the path, checked at the middle of each piece of the joint
+    path.
+
+    Returns a CartesianMotion; falsy, with reason and place s, where no branch arrives (limit, singularity,
+    jump, unreachable), each touches something, or the limits cannot be kept. Near singular configurations the
+    joints slow the tip down, and `binding` says which. Raises InputError for wrong shapes, NaN, and a start
+    that is not at the begin of the path.
+    """
+    first = None if start is None else _check_start(robot, path, start, free_axis is not None)
+    found = _follow(robot, path, first, free_axis, limits, tolerance)
+    if not found:
+        place = max((branch.s_end for branch in found.branches), default=0.0)
+        q = found.branches[0].q_start if found.branches else robot.limits.lower * 0.0
+        return _refuse(robot, path, found.branches, q, found.reason, place)
+    options: dict[str, Any] = {
+        "velocity": velocity,
+        "acceleration": acceleration,
+        "torque": torque,
+        "speed": speed,
+        "turn_rate": turn_rate,
+    }
+    return _take_fastest(robot, path, found.branches, options, grid, scene, margin)
+
+
+def move_linear(
+    robot: KinematicModel, goal: PoseLike, *, start: ArrayLike, **options: Any
+) -> CartesianMotion:
+    """The motion of the tip on a straight line to a pose, its rotation about a fixed axis.
+
+    goal (4, 4): T_base_tip. start (dof,) [rad or m]: the present configuration. options: as of
+    move_cartesian.
+    """
+    first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    return move_cartesian(robot, line_path(robot.fk(first), goal), first, **options)
+
+
+def move_arc(
+    robot: KinematicModel,
+    goal: PoseLike | None = None,
+    *,
+    start: ArrayLike,
+    via: ArrayLike | None = None,
+    center: ArrayLike | None = None,
+    axis: ArrayLike | None = None,
+    angle: float | None = None,
+    rotation: str | None = None,
+    **options: Any,
+) -> CartesianMotion:
+    """The motion of the tip on a circular arc: to a pose through a point, or about an axis by an angle.
+
+    start (dof,) [rad or m]: the present configuration. goal, via, center, axis, angle, rotation: as of
+    arc_path. options: as of move_cartesian.
+    """
+    first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    arc = arc_path(robot.fk(first), goal, via=via, center=center, axis=axis, angle=angle, rotation=rotation)
+    return move_cartesian(robot, arc, first, **options)
+
+
+def move_through(
+    robot: KinematicModel,
+    poses: ArrayLike,
+    *,
+    start: ArrayLike,
+    deviation: float = 0.0,
+    turn_deviation: float | None = None,
+    **options: Any,
+) -> CartesianMotion:
+    """The motion of the tip on straight lines through poses, its corners blended.
+
+    poses (n, 4, 4): T_base_tip, without that of the start. start (dof,) [rad or m]: the present
+    configuration. deviation [m], turn_deviation [rad]: as of pose_path; 0 stops at each corner. options: as
+    of move_cartesian.
+    """
+    first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    rows = np.asarray(poses, dtype=np.float64)
+    if rows.ndim != 3:
+        raise InputError(f"poses has shape {rows.shape}, expected (n, 4, 4)")
+    every = np.concatenate([robot.fk(first)[None], rows])
+    path = pose_path(every, deviation=deviation, turn_deviation=turn_deviation)
+    return move_cartesian(robot, path, first, **options)
+
+
+def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, turns: bool) -> Array:
+    q = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    T, first = robot.fk(q), path(0.0)
+    off = float(np.linalg.norm(T[:3, 3] - first[:3, 3]))
+    turned = 0.0 if turns else float(np.linalg.norm(T[:3, :3] - first[:3, :3]) * np.sqrt(0.5))
+    if max(off, turned) > PATH_START:
+        raise InputError(
+            f"start is {off:.3g} m and {turned:.3g} rad from the begin of the path; move there first, or"
+            " leave start out"
+        )
+    return q
+
+
+def _follow(
+    robot: KinematicModel,
+    path: CartesianPath,
+    start: Array | None,
+    free_axis: str | ArrayLike | None,
+    limits: bool | Limits,
+    tolerance: float,
+) -> JointBranches:
+    if free_axis is not None:
+        branch = follow_free_turn(robot, path, free_axis, start, limits=limits, tolerance=tolerance)
+        return JointBranches((branch,), False, branch.reason)
+    if len(as_solver(robot).redundant_joints) == 1:
+        branch = follow_redundant(robot, path, start, limits=limits, tolerance=tolerance)
+        if branch:
+            return JointBranches((branch,), False, "")
+        least = follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
+        return least if least else JointBranches((branch,), False, branch.reason)
+    return follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
+
+
+def _take_fastest(
+    robot: KinematicModel,
+    path: CartesianPath,
+    branches: Sequence[JointBranch],
+    options: dict[str, Any],
+    grid: int | None,
+    scene: Scene | None,
+    margin: float,
+) -> CartesianMotion:
+    durations = np.full(len(branches), np.nan)
+    arrived = [k for k, branch in enumerate(branches) if branch]
+    refused: list[str] = []
+    space = None if scene is None else space_of_curves(robot, scene, margin)
+    if len(arrived) > 1:
+        for k in arrived:
+            timed = time_parametrize(_joints(branches[k]), robot, grid=RANKING_GRID, **options)
+            durations[k] = timed.duration if timed else np.inf
+        arrived.sort(key=lambda k: durations[k])
+    for k in arrived:
+        joints = _joints(branches[k])
+        if space is not None and (touches := find_touches(space, joints, first=True)):
+            refused.append(f"at s = {touches[0].s:.6g}: {touches[0].text}")
+            continue
+        timed = time_parametrize(joints, robot, grid=grid, **options)
+        if timed:
+            return CartesianMotion.of(timed, path, branches, k, durations)
+        refused.append(timed.reason)
+    q = _joints(branches[arrived[0]]).start
+    return _refuse(robot, path, branches, q, "; ".join(dict.fromkeys(refused)), np.nan, durations)
+
+
+def _joints(branch: JointBranch) -> Path:
+    assert branch.path is not None
+    return branch.path
+
+
+def _refuse(
+    robot: KinematicModel,
+    path: CartesianPath,
+    branches: Sequence[JointBranch],
+    q: Array,
+    reason: str,
+    place: float,
+    durations: Array | None = None,
+) -> CartesianMotion:
+    """No motion: it stays at q."""
+    still = Path([0.0, path.length], np.nan_to_num(np.stack([q, q]))[None])
+    names = robot.joint_names
+    timed = TimedPath(
+        still,
+        EMPTY_GRID,
+        np.zeros(0),
+        proved=False,
+        converged=False,
+        reason=reason,
+        place=place,
+        joint_names=names,
+    )
+    none = np.full(len(branches), np.inf) if durations is None else durations
+    return CartesianMotion.of(timed, path, branches, -1, none)

@@ -1,0 +1,137 @@
+"""The joint path of a redundant arm along a whole Cartesian path: what is free is chosen at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Array, one_array, positive_number
+from cspace.cartesian.chain_search import ROOMY, ChainSearch, Stations
+from cspace.cartesian.guided import Guided, null_directions, smooth_rows
+from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, make_branch
+from cspace.cartesian.refine import first_nodes, refine_branches
+from cspace.errors import InputError
+from cspace.ik.near_rows import solve_locked_redundant
+from cspace.ik.solver import Solver, as_solver
+from cspace.kinematics import KinematicModel
+from cspace.math.wrapping import wrap_near
+from cspace.model import Limits
+from cspace.trajectory.cartesian_path import CartesianPath
+from cspace.trajectory.path import Path
+
+VALUES: Final = 48
+"""Of the redundant joint that are tried at each: 7.5° apart in a full turn."""
+
+SMOOTHINGS: Final = (10.0, 1.0, 0.0)
+"""Weights of the second differences with which the chosen values are smoothed: the first whose joints stay
+within limits is taken."""
+
+
+def follow_redundant(
+    robot: KinematicModel,
+    path: CartesianPath,
+    start: ArrayLike | None = None,
+    *,
+    limits: bool | Limits = True,
+    tolerance: float = 1e-5,
+) -> JointBranch:
+    """The joint path of an arm with one redundant joint, chosen along the whole path at once.
+
+    Among the configurations at values of the redundant joint, the cheapest chain along the path is found:
+    little motion, joints near the middle of their limits, and away from singularities. The joint path follows
+    the Cartesian path exactly, and beside that a smooth curve near the chain in the direction of the null
+    space.
+
+    start (dof,): the first configuration; by default any of the first pose. Other arguments as of
+    follow_cartesian. Raises InputError for an arm that has not exactly one redundant joint.
+
+    Bellman 1957 (dynamic programming); Whittaker 1922 (smoothing by differences).
+    """
+    solver = as_solver(robot)
+    if len(solver.redundant_joints) != 1:
+        raise InputError(
+            f"the robot has {len(solver.redundant_joints)} redundant joints; a whole path is planned for one"
+        )
+    tolerance = positive_number(tolerance, "tolerance")
+    bounds = choose_limits(robot, limits)
+    stations = Stations.of(path)
+    first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")
+    chain = ChainSearch(robot, RedundantJoint.of(solver, bounds), stations, bounds, first).run()
+    if chain.reason:
+        return end_of_chain(chain.q, float(stations.s[len(chain.q)]), chain.cause, chain.reason, robot.dof)
+    rows = np.concatenate([chain.q, null_directions(robot, chain.q)], axis=1)
+    piece, u = first_nodes(path)
+    found: JointBranch | None = None
+    for weight in SMOOTHINGS:
+        guided = Guided(robot, path, smooth_rows(stations.s, rows, weight))
+        guess = guided.guide(piece, u, 0)[0]
+        found = make_branch(chain.q[0], refine_branches(robot, path, guided, guess[None], tolerance)[0])
+        if found.path is not None and is_within(found.path, bounds):
+            return found
+    assert found is not None
+    return found if found.path is None else leave_limits(found, bounds, robot)
+
+
+@dataclass(frozen=True, eq=False)
+class RedundantJoint:
+    """The values of the one redundant joint of an arm (see Freedom)."""
+
+    solver: Solver
+    lower: float
+    upper: float
+    is_ring: bool
+
+    @classmethod
+    def of(cls, solver: Solver, bounds: Limits) -> RedundantJoint:
+        joint = solver.redundant_joints[0]
+        lower, upper = float(bounds.lower[joint]), float(bounds.upper[joint])
+        is_ring = not upper - lower < ROOMY
+        if is_ring:
+            lower, upper = -np.pi, np.pi
+        return cls(solver, lower, upper, is_ring)
+
+    def spread_values(self) -> Array:
+        """Values (m,), evenly spaced."""
+        return np.asarray(self.lower + (self.upper - self.lower) * (np.arange(VALUES) + 0.5) / VALUES)
+
+    def solve(self, T: Array, values: Array) -> tuple[Array, Any]:
+        """The solutions of poses with the joint at values."""
+        return solve_locked_redundant(self.solver, T, values[:, None])
+
+    def value_of(self, q: Array, T: Array) -> float:
+        """The joint itself, in the ring where it is one."""
+        value = float(q[self.solver.redundant_joints[0]])
+        return float(wrap_near(value, 0.0)) if self.is_ring else value
+
+
+def choose_limits(robot: KinematicModel, limits: bool | Limits) -> Limits:
+    """The limits that count: the robot's, those given, or none."""
+    if isinstance(limits, Limits):
+        return limits
+    return robot.limits if limits else Limits(np.full(robot.dof, -np.inf), np.full(robot.dof, np.inf))
+
+
+def end_of_chain(q: Array, s: float, cause: str, reason: str, dof: int) -> JointBranch:
+    """The branch of a chain q (k, dof) that ends at s."""
+    first = q[0] if len(q) else np.full(dof, np.nan)
+    return JointBranch(None, first, s, cause, None, reason, NO_DEVIATION)
+
+
+def is_within(path: Path, bounds: Limits) -> bool:
+    """Whether the control points of a joint path are within limits: then all of it is."""
+    points = path.control_points
+    return bool(((points >= bounds.lower) & (points <= bounds.upper)).all())
+
+
+def leave_limits(found: JointBranch, bounds: Limits, robot: KinematicModel) -> JointBranch:
+    """The branch of a joint path that leaves the limits somewhere."""
+    assert found.path is not None
+    points = found.path.control_points
+    over = np.maximum(points - bounds.upper, bounds.lower - points)
+    piece, _, joint = np.unravel_index(int(np.argmax(over)), over.shape)
+    name, s = robot.joint_names[joint], float(found.path.breaks[piece])
+    text = f"at s = {s:.6g}: {name} would leave its limits"
+    return JointBranch(None, found.q_start, s, "limit", name, text, NO_DEVIATION)

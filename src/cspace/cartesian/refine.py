@@ -1,0 +1,181 @@
+"""Joint paths of quintic pieces that keep to a Cartesian path within a tolerance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.kinematics import KinematicModel
+from cspace.kinematics.batch import frame_number
+from cspace.tolerances import PATH_POSE_LEFT, SHORTEST_PATH_PIECE
+from cspace.trajectory.cartesian_path import CartesianPath, Indices
+from cspace.trajectory.path import Path
+
+FIRST_SPACING: Final = 0.1
+"""[m or rad] Of the poses at which a path is followed first: most pieces of this length need no halving."""
+
+FEWEST_PIECES: Final = 4
+"""Of each piece of the Cartesian path, so that a short one is compared with its joint path at all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Configurations at poses of a path: q, its first two derivatives by s (n, dof), and the error that is
+    left of each pose (n,), lengths over that of the arm."""
+
+    q: Array
+    slope: Array
+    bend: Array
+    left: Array
+
+
+class Corrector(Protocol):
+    """Finds the configurations of a path at pieces (n,) and u (n,), poses T (n, 4, 4), near guesses (n,
+    dof)."""
+
+    def __call__(self, piece: Indices, u: Array, T: Array, guess: Array) -> Nodes: ...
+
+
+@dataclass(frozen=True, eq=False)
+class LeastMotion:
+    """Corrects by the least motion of the joints: J q' = t and J q'' = t' − J' q'."""
+
+    robot: KinematicModel
+    path: CartesianPath
+
+    def __call__(self, piece: Indices, u: Array, T: Array, guess: Array) -> Nodes:
+        q = np.array(guess, order="C")
+        slope, bend, info = np.empty_like(q), np.empty_like(q), np.empty((len(q), 2))
+        twists = self.path.twists_on(piece, u)
+        _core._ik_path_rows(self.robot, frame_number(self.robot, None), T, *twists, q, slope, bend, info)
+        return Nodes(q, slope, bend, info[:, 0])
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """A joint path, or None and where it cannot go on; the largest distance that was found [m, rad]."""
+
+    path: Path | None
+    s_lost: float
+    deviation: tuple[float, float]
+
+
+def first_nodes(path: CartesianPath) -> tuple[Indices, Array]:
+    """Pieces (n,) and parameters (n,) within them of the first nodes, both ends of each piece among them."""
+    counts = np.maximum(np.ceil(path.lengths / FIRST_SPACING).astype(int), FEWEST_PIECES) + 1
+    piece = np.repeat(np.arange(len(counts)), counts)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    share = (np.arange(len(piece)) - first) / (counts[piece] - 1)
+    return piece, share * path.lengths[piece]
+
+
+def refine_branches(
+    robot: KinematicModel, path: CartesianPath, correct: Corrector, q: Array, tolerance: float
+) -> list[Refined]:
+    """The joint paths of branches that are near q (b, n, dof) at the first nodes of a path."""
+    return _Refiner(robot, path, correct, tolerance, q).run()
+
+
+class _Refiner:
+    """Halves the pieces of all branches at once until each keeps to the path.
+
+    A piece is from node `begin` to node `end` of one branch; nodes are rows of `branch`, `piece`, `u` and of
+    the derivatives.
+    """
+
+    def __init__(
+        self, robot: KinematicModel, path: CartesianPath, correct: Corrector, tolerance: float, q: Array
+    ) -> None:
+        self.robot, self.path, self.correct, self.tolerance = robot, path, correct, tolerance
+        piece, u = first_nodes(path)
+        T = path.poses_on(piece, u)
+        self.count, n = q.shape[:2]
+        rows = self.count * n
+        self.branch = np.repeat(np.arange(self.count), n)
+        self.piece, self.u = np.tile(piece, self.count), np.tile(u, self.count)
+        self.lost = np.full(self.count, np.inf)  # where a branch cannot be followed
+        self.off = np.zeros((self.count, 2))
+        nodes = correct(self.piece, self.u, np.tile(T, (self.count, 1, 1)), q.reshape(rows, -1))
+        self.q, self.slope, self.bend = nodes.q, nodes.slope, nodes.bend
+        self._lose(self.branch, self.piece, self.u, nodes.left)
+        inside = (self.piece[:-1] == self.piece[1:]) & (self.branch[:-1] == self.branch[1:])
+        self.begin = np.flatnonzero(inside)
+        self.end = self.begin + 1
+
+    def run(self) -> list[Refined]:
+        done_begin, done_end = [], []
+        while len(self.begin):
+            error, middle = self._measure_middles()
+            branch = self.branch[self.begin]
+            alive = np.isinf(self.lost[branch])
+            done = (error.max(axis=1) <= self.tolerance) | ~alive
+            np.maximum.at(self.off, branch[done & alive], error[done & alive])
+            done_begin.append(self.begin[done])
+            done_end.append(self.end[done])
+            self._halve(~done, middle)
+        return self._make_paths(np.concatenate(done_begin), np.concatenate(done_end))
+
+    def _lose(self, branch: Indices, piece: Indices, u: Array, left: Array) -> None:
+        """Ends branches at nodes whose pose is not reached."""
+        bad = ~(left <= PATH_POSE_LEFT)
+        np.minimum.at(self.lost, branch[bad], (self.path.breaks[piece] + u)[bad])
+
+    def _measure_middles(self) -> tuple[Array, Sequence[Any]]:
+        """The errors (k, 2) [m, rad] at the middle of each piece, and what a node there begins with."""
+        a, b = self.begin, self.end
+        h = (self.u[b] - self.u[a])[:, None]
+        guess = 0.5 * (self.q[a] + self.q[b]) + h * (5 / 32) * (self.slope[a] - self.slope[b])
+        guess += h * h / 64 * (self.bend[a] + self.bend[b])
+        piece, u = self.piece[a], 0.5 * (self.u[a] + self.u[b])
+        T = self.path.poses_on(piece, u)
+        reached = self.robot.fk(guess)
+        error = np.empty((len(a), 2))
+        error[:, 0] = np.linalg.norm(reached[:, :3, 3] - T[:, :3, 3], axis=1)
+        error[:, 1] = np.linalg.norm(reached[:, :3, :3] - T[:, :3, :3], axis=(1, 2)) * np.sqrt(0.5)
+        return error, (piece, u, T, guess)
+
+    def _halve(self, bad: NDArray[np.bool_], middle: Sequence[Any]) -> None:
+        if not bad.any():
+            self.begin = self.end = self.begin[:0]
+            return
+        a, b = self.begin[bad], self.end[bad]
+        piece, u, T, guess = (values[bad] for values in middle)
+        nodes = self.correct(piece, u, T, guess)
+        branch = self.branch[a]
+        self._lose(branch, piece, u, nodes.left)
+        short = self.u[b] - self.u[a] < SHORTEST_PATH_PIECE
+        self._lose(branch[short], piece[short], u[short], np.full(int(short.sum()), np.inf))
+        node = len(self.q) + np.arange(len(a))
+        self.branch = np.concatenate([self.branch, branch])
+        self.piece = np.concatenate([self.piece, piece])
+        self.u = np.concatenate([self.u, u])
+        self.q = np.concatenate([self.q, nodes.q])
+        self.slope = np.concatenate([self.slope, nodes.slope])
+        self.bend = np.concatenate([self.bend, nodes.bend])
+        self.begin = np.concatenate([a, node])
+        self.end = np.concatenate([node, b])
+
+    def _make_paths(self, begin: Indices, end: Indices) -> list[Refined]:
+        s = self.path.breaks[self.piece[begin]] + self.u[begin]
+        order = np.lexsort((s, self.branch[begin]))
+        begin, end, s = begin[order], end[order], s[order]
+        h = (self.u[end] - self.u[begin])[:, None]
+        q0, q1 = self.q[begin], self.q[end]
+        v0, v1 = h / 5 * self.slope[begin], h / 5 * self.slope[end]
+        a0, a1 = h * h / 20 * self.bend[begin], h * h / 20 * self.bend[end]
+        control = np.stack([q0, q0 + v0, q0 + 2 * v0 + a0, q1 - 2 * v1 + a1, q1 - v1, q1], axis=1)
+        bounds = np.searchsorted(self.branch[begin], np.arange(self.count + 1))
+        return [self._make_path(k, s, control, slice(*bounds[k : k + 2])) for k in range(self.count)]
+
+    def _make_path(self, k: int, s: Array, control: Array, rows: slice) -> Refined:
+        lost = float(self.lost[k])
+        if np.isfinite(lost):
+            return Refined(None, lost, (np.inf, np.inf))
+        path = Path(np.append(s[rows], self.path.length), control[rows])
+        return Refined(path, np.inf, (float(self.off[k, 0]), float(self.off[k, 1])))

@@ -1,0 +1,74 @@
+"""Whether a joint path touches something: its pieces, divided until they are nearly straight, proved free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cspace.arrays import Array
+from cspace.planning import ArmSpace
+from cspace.tolerances import NEARLY_STRAIGHT
+from cspace.trajectory.path import Path
+
+MOST_PARTS: Final = 1 << 12
+"""Of a piece."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """The piece of a path that is not proved free, where it touches something, and what."""
+
+    piece: int
+    s: float
+    text: str
+
+
+def space_of_curves(robot: Any, scene: Any, margin: float) -> ArmSpace:
+    """The space in which straight motions stand for curves that leave them by NEARLY_STRAIGHT.
+
+    A point moves by the sum of the distances of the joints times the reach of the arm, at most: that much is
+    added to the margin.
+    """
+    reach = ArmSpace(robot, scene, margin).reach
+    return ArmSpace(robot, scene, margin + NEARLY_STRAIGHT * max(1.0, reach))
+
+
+def find_touches(
+    space: ArmSpace, path: Path, pieces: NDArray[np.bool_] | None = None, *, first: bool = False
+) -> list[Touch]:
+    """The pieces of a joint path that are not proved free; only the first of them if that is enough.
+
+    pieces (k,): which to look at; all, unless given.
+    """
+    touches = []
+    counts = straight_parts(path)
+    for k in range(len(path)):
+        if pieces is not None and not pieces[k]:
+            continue
+        s = np.linspace(path.breaks[k], path.breaks[k + 1], counts[k] + 1)
+        q = path.evaluate_pieces(np.full(len(s), k), np.linspace(0.0, 1.0, len(s)))
+        for i in range(counts[k]):
+            found = space.edge(q[i], q[i + 1])
+            if not found:
+                touches.append(Touch(k, float(s[i]), found.reason))
+                break
+        if touches and first:
+            break
+    return touches
+
+
+def straight_parts(path: Path) -> NDArray[np.intp]:
+    """Parts (k,) of each piece in which its curve is nearly a straight motion of the joints.
+
+    A curve leaves its chord by at most h²/8 of its largest second derivative.
+    """
+    parts = np.ceil(path.lengths * np.sqrt(bound_bends(path) / (8.0 * NEARLY_STRAIGHT)))
+    return np.clip(parts, 1, MOST_PARTS).astype(np.intp)
+
+
+def bound_bends(path: Path) -> Array:
+    """A bound (k,) of the second derivative on each piece, summed over the joints."""
+    return np.asarray(np.abs(path._derivatives[2]).max(axis=1).sum(axis=1))

@@ -1,0 +1,167 @@
+"""From a configuration to a goal in time: plan, rounded corners, timing, torques, and a check of the
+result."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Array, bounded_number
+from cspace.cartesian.scene_check import bound_bends, find_touches, space_of_curves
+from cspace.collision import Scene
+from cspace.collision.checks import collides
+from cspace.plan_motion.goals import GoalLike
+from cspace.plan_motion.plans import Seed, plan
+from cspace.planning import ArmPlanner, ArmSpace, Plan
+from cspace.robot import Robot
+from cspace.tables import one_line, shown
+from cspace.tolerances import LEAST_DEVIATION, MOTION_CHECK_STEP, PATH_CURVED
+from cspace.trajectory import Path, TimedPath, blend, time_parametrize
+from cspace.trajectory.time_parametrize import EMPTY_GRID
+
+MOST_CHECKED: Final = 20_000
+"""Of them; a longer motion is checked in larger steps."""
+
+
+class Motion(TimedPath):
+    """A motion to a goal; falsy where there is none.
+
+    A TimedPath. plan: the Plan whose corners were rounded. deviations (k,): how far from each corner the path
+    may pass [rad or m]; 0 where it stops. checked: the number of configurations that were looked at once
+    more, with the limits of velocity, acceleration and torque, and none touched anything.
+    """
+
+    plan: Plan
+    deviations: Array
+    checked: int
+
+    @classmethod
+    def of(cls, timed: TimedPath, found: Plan, deviations: Array, checked: int) -> Motion:
+        """A TimedPath with where it comes from."""
+        made = cls.__new__(cls)
+        made.__dict__.update(timed.__dict__)
+        made.plan, made.deviations, made.checked = found, deviations, checked
+        return made
+
+    def __repr__(self) -> str:
+        text = (
+            f"{shown(self.duration)} s, {len(self.plan.path)} corners, {self.checked} configurations checked"
+        )
+        return one_line("Motion", self.reason or text)
+
+
+def move(
+    robot: Robot,
+    start: ArrayLike,
+    goal: GoalLike,
+    scene: Scene | None = None,
+    *,
+    deviation: float = 0.2,
+    velocity: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
+    torque: ArrayLike | bool | None = None,
+    speed: float | None = None,
+    turn_rate: float | None = None,
+    planner: str | ArmPlanner = "rrt_connect",
+    margin: float = 0.0,
+    rng: Seed = 0,
+    **options: Any,
+) -> Motion:
+    """The motion of a robot to a goal around obstacles, as fast as its limits allow.
+
+    A free way is planned, its corners are rounded, the path is timed, and the result is checked once more at
+    configurations along it.
+
+    start (dof,) [rad or m], or a named pose. goal, scene, planner, margin, rng, options: as of plan. deviation [rad or m, L2 norm]: how far the
+    motion may pass from the corners of the plan; less where something is near, and it stops at corners that
+    cannot be rounded. Straight legs are proved by the plan, and rounded corners with 0.3 mm and more to
+    spare. velocity, acceleration, torque, speed, turn_rate: as of time_parametrize; torque=True takes the
+    efforts of the robot.
+
+    Returns a Motion; falsy, with reason, where no way was found or the limits cannot be kept. Raises as plan
+    and time_parametrize do.
+    """
+    allowed = bounded_number(deviation, "deviation", 0.0, "it must be 0 or more")
+    found = plan(robot, start, goal, scene, planner=planner, margin=margin, rng=rng, **options)
+    limits: dict[str, Any] = {
+        "velocity": velocity,
+        "acceleration": acceleration,
+        "torque": torque,
+        "speed": speed,
+        "turn_rate": turn_rate,
+    }
+    if not found:
+        return _refuse(robot, found, found.reason)
+    if len(found.path) < 2 or found.cost == 0.0:
+        return _refuse(robot, found, "the start is the goal: nothing moves")
+    path, deviations = round_corners(robot, found.path, scene, margin, allowed)
+    timed = time_parametrize(path, robot, **limits)
+    if not timed:
+        return Motion.of(timed, found, deviations, 0)
+    checked, fault = check_once_more(robot, timed, scene)
+    if fault:
+        return _refuse(robot, found, fault)
+    return Motion.of(timed, found, deviations, checked)
+
+
+def round_corners(
+    robot: Robot, corners: Array, scene: Scene | None, margin: float, deviation: float
+) -> tuple[Path, Array]:
+    """The path with rounded corners that are proved free, and the deviation of each (k,)."""
+    allowed = np.full(len(corners), deviation)
+    space: ArmSpace = space_of_curves(robot, scene, margin)
+    checked: set[tuple[int, float]] = set()
+    while True:
+        path = blend(corners, allowed)
+        curved = bound_bends(path) > PATH_CURVED
+        nearest = _corner_of_pieces(path, corners)
+        for k in np.flatnonzero(curved):
+            curved[k] = (int(nearest[k]), float(allowed[nearest[k]])) not in checked
+        touches = {touch.piece for touch in find_touches(space, path, curved)}
+        if not touches:
+            return path, allowed
+        for k in np.flatnonzero(curved):
+            i = int(nearest[k])
+            if k in touches:
+                allowed[i] = 0.5 * allowed[i] if allowed[i] > 2.0 * LEAST_DEVIATION else 0.0
+            else:
+                checked.add((i, float(allowed[i])))
+
+
+def _corner_of_pieces(path: Path, corners: Array) -> Any:
+    """The number (k,) of the inner corner that is nearest to the middle of each piece."""
+    middle = path.evaluate_pieces(np.arange(len(path)), np.full(len(path), 0.5))
+    if len(corners) < 3:
+        return np.zeros(len(path), dtype=int)
+    gaps = np.linalg.norm(middle[:, None] - corners[None, 1:-1], axis=2)
+    return 1 + np.argmin(gaps, axis=1)
+
+
+def check_once_more(robot: Robot, timed: TimedPath, scene: Scene | None) -> tuple[int, str]:
+    """How many configurations of a motion were checked for contacts, and what is wrong, if anything."""
+    count = int(np.clip(np.ceil(timed.duration / MOTION_CHECK_STEP), 1, MOST_CHECKED)) + 1
+    t = np.linspace(0.0, timed.duration, count)
+    touching = np.flatnonzero(collides(robot, timed(t), scene))
+    if touching.size:
+        return (
+            count,
+            f"the motion touches something at {t[touching[0]]:.6g} s, though its parts were proved free",
+        )
+    return count, ""
+
+
+def _refuse(robot: Robot, found: Plan, reason: str) -> Motion:
+    q = found.path[0] if len(found.path) else np.zeros(robot.dof)
+    still = Path([0.0, 1.0], np.stack([q, q])[None])
+    timed = TimedPath(
+        still,
+        EMPTY_GRID,
+        np.zeros(0),
+        proved=False,
+        converged=False,
+        reason=reason,
+        joint_names=robot.joint_names,
+    )
+    return Motion.of(timed, found, np.zeros(len(found.path)), 0)

@@ -1,0 +1,50 @@
+"""Trajectories: paths, motions in time, and checks against the limits of joints."""
+
+from cspace.trajectory.blends import blend
+from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path, screw_path
+from cspace.trajectory.cartesian_path import CartesianPath, CartesianPiece
+from cspace.trajectory.fit_path import fit_path
+from cspace.trajectory.jerk_timed_path import JerkTimedPath
+from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
+from cspace.trajectory.move_to import move_to
+from cspace.trajectory.path import Path
+from cspace.trajectory.polynomials import PolynomialTrajectory
+from cspace.trajectory.splines import b_spline, spline
+from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
+from cspace.trajectory.time_parametrize import time_parametrize
+from cspace.trajectory.timed_path import TimedPath
+from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
+from cspace.trajectory.trajectory_files import from_csv, from_json, to_csv, to_json, to_ros
+
+__all__ = [
+    "BindingLimit",
+    "CartesianPath",
+    "CartesianPiece",
+    "Extremes",
+    "JerkTimedPath",
+    "JoinedTrajectory",
+    "Path",
+    "PolynomialTrajectory",
+    "Samples",
+    "TimedPath",
+    "Trajectory",
+    "TrajectoryBatch",
+    "TrajectoryCheck",
+    "Violation",
+    "arc_path",
+    "b_spline",
+    "blend",
+    "fit_path",
+    "from_csv",
+    "from_json",
+    "line_path",
+    "move_to",
+    "pose_path",
+    "screw_path",
+    "spline",
+    "state_to_state",
+    "time_parametrize",
+    "to_csv",
+    "to_json",
+    "to_ros",
+]

@@ -1,0 +1,199 @@
+"""Limits along a path that are no polynomials: torques of the joints, speed and turn rate of a frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.dynamics import inverse_dynamics
+from cspace.kinematics import jacobian
+from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED
+from cspace.trajectory.path import Path
+from cspace.trajectory.timed_path import Places, TimedPath, move_along, move_along_path
+
+CHECKED_PLACES: Final = 10
+"""Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss."""
+
+MOST_ROUNDS: Final = 8
+"""Of checking and tightening."""
+
+TIGHTENED: Final = 1.5
+"""Multiple of what exceeds a limit by which it is tightened: the motion changes with it."""
+
+
+@dataclass
+class TorqueLimits:
+    """Torques of joints that are linear in the acceleration and the squared speed of a path.
+
+    robot: with masses. limit (dof,) [N·m or N]. gravity (3,) [m/s²].
+    """
+
+    robot: KinematicModel
+    limit: Array
+    gravity: Array
+
+    @cached_property
+    def resists(self) -> bool:
+        """Whether joints have damping or dry friction."""
+        rest, moving = np.zeros((1, self.robot.dof)), np.ones((1, self.robot.dof))
+        with_friction, without = (self._torque(rest, moving, rest, each) for each in (True, False))
+        return not np.array_equal(with_friction, without)
+
+    def _torque(self, q: Array, qd: Array, qdd: Array, friction: bool = False) -> Array:
+        return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity, friction=friction)
+
+    def torques(self, q: Array, qd: Array, qdd: Array) -> Array:
+        """The torques (m, dof) of a motion (m, dof)."""
+        return self._torque(q, qd, qdd, friction=True)
+
+    def terms(self, q: Array, slope: Array, bend: Array, squared_speed: Array) -> tuple[Array, ...]:
+        """τ = along s̈ + across ṡ² + offset: the three terms, each (m, dof).
+
+        Damping is proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
+        """
+        rest = np.zeros_like(q)
+        rates = np.stack([rest, rest, slope]), np.stack([rest, slope, bend])
+        weight, along, across = self._torque(q, *rates)
+        along -= weight
+        across -= weight
+        if not self.resists:
+            return along, across, weight
+        once, twice = (
+            self._torque(q, k * slope, bend, friction=True) - self._torque(q, k * slope, bend)
+            for k in (1.0, 2.0)
+        )
+        damping, dry = twice - once, 2.0 * once - twice
+        x = squared_speed[:, None]
+        root = np.sqrt(np.maximum(x, STANDING_SPEED * squared_speed.max(initial=1.0)))
+        return along, across + 0.5 * damping / root, weight + dry + 0.5 * damping * root
+
+
+@dataclass
+class FrameLimits:
+    """Largest speed [m/s] and turn rate [rad/s] of a frame of a robot; inf where there is none."""
+
+    robot: KinematicModel
+    frame: str | None
+    speed: float
+    turn_rate: float
+
+    def rates(self, q: Array, qd: Array) -> tuple[Array, Array]:
+        """The speed and the turn rate (m,) at configurations and velocities (m, dof)."""
+        twist = np.einsum("kij,kj->ki", jacobian(self.robot, q, self.frame), qd)
+        return np.linalg.norm(twist[:, :3], axis=1), np.linalg.norm(twist[:, 3:], axis=1)
+
+    def shares(self, q: Array, qd: Array) -> Array:
+        """The larger of the two shares (m,) that are used of the limits."""
+        speed, turn = self.rates(q, qd)
+        shares: Array = np.maximum(speed / self.speed, turn / self.turn_rate)
+        return shares
+
+
+@dataclass
+class SampledLimits:
+    """What time_path samples on a grid; margins tighten the limits where a check finds them exceeded.
+
+    expected: parameters and squared speeds near which the motion will be.
+    """
+
+    path: Path
+    torque: TorqueLimits | None
+    frame: FrameLimits | None
+    expected: tuple[Array, Array] | None = None
+    margin: Array | None = None
+    slower: Array | None = None
+
+    def __call__(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
+        """The samples at the begin, the middle and the end of each interval, as the core wants them."""
+        places = np.stack([begin, 0.5 * (begin + end), end], axis=1).ravel()
+        pieces = np.repeat(piece, 3)
+        q, slope, bend = (self.path.evaluate_pieces(pieces, places, order) for order in range(3))
+        along = across = offset = limit = None
+        if self.torque is not None:
+            along, across, offset = self.torque.terms(q, slope, bend, self._expected_at(pieces, places))
+            limit = self.torque.limit
+        inverse = None
+        if self.frame is not None:
+            inverse = _inverse_squares(self.frame.shares(q, slope).reshape(-1, 3))
+            if self.slower is not None:
+                inverse = inverse * self.slower[:, None]
+        return along, across, offset, self.margin, limit, inverse
+
+    def _expected_at(self, pieces: Array, places: Array) -> Array:
+        if self.expected is None:
+            return np.zeros(len(pieces))
+        s = self.path.breaks[pieces] + places * self.path.lengths[pieces]
+        return np.asarray(np.interp(s, *self.expected))
+
+    def tighten(self, timed: TimedPath) -> bool:
+        """Whether no limit is exceeded at samples of each interval; else the limits there are tightened."""
+        shares = np.arange(CHECKED_PLACES + 1.0) / CHECKED_PLACES
+        at = timed._look_at(tuple(shares))
+        q, qd, qdd = move_along_path(self.path, at)
+        kept = True
+        if self.torque is not None:
+            over = np.abs(self.torque.torques(q, qd, qdd)) - self.torque.limit
+            over = over.reshape(len(shares), -1, self.path.dof).max(axis=0)
+            if (over > LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)).any():
+                kept = False
+                own = np.zeros_like(over) if self.margin is None else self.margin
+                self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
+            self.expected = timed.grid, timed.squared_speed
+        if self.frame is not None:
+            used = self.frame.shares(q, qd)
+            used = used.reshape(len(shares), -1).max(axis=0)
+            if (used > 1.0 + LIMIT_ROUNDING).any():
+                kept = False
+                own = np.ones_like(used) if self.slower is None else self.slower
+                self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
+        return kept
+
+
+def _inverse_squares(shares: Array) -> Array:
+    """Bernstein coefficients (k, 3) of the inverse of the squared speed at which a share is one.
+
+    shares (k, 3): what unit speed uses of a limit at the begin, the middle and the end of each interval. The
+    quadratic polynomial through their squares stands for what is between.
+    """
+    first, middle, last = (shares * shares).T
+    control = np.maximum(2.0 * middle - 0.5 * (first + last), np.minimum(first, last))
+    return np.stack([first, control, last], axis=1)
+
+
+@dataclass(frozen=True)
+class LimitShares:
+    """How much a motion uses of its limits: what TimedPath.binding compares."""
+
+    labels: tuple[str, ...]
+    velocity: Array
+    acceleration: Array
+    jerk: Array | None
+    torque: TorqueLimits | None
+    frame: FrameLimits | None
+
+    def __call__(self, path: Path, at: Places) -> list[tuple[str, str, Array]]:
+        """Joint or frame, name and share (m,) of every limit."""
+        rows: list[tuple[str, str, Array]] = []
+        q, qd, qdd = move_along_path(path, at)
+        rows += self._joint_rows("velocity", qd, self.velocity)
+        rows += self._joint_rows("acceleration", qdd, self.acceleration)
+        if self.jerk is not None:
+            rows += self._joint_rows("jerk", move_along(path, at, 3), self.jerk)
+        if self.torque is not None:
+            rows += self._joint_rows("torque", self.torque.torques(q, qd, qdd), self.torque.limit)
+        if self.frame is not None:
+            speed, turn = self.frame.rates(q, qd)
+            frame = self.frame.frame or "tip"
+            rows.append((frame, "speed", speed / self.frame.speed))
+            rows.append((frame, "turn_rate", turn / self.frame.turn_rate))
+        return rows
+
+    def _joint_rows(self, name: str, values: Array, limit: Array) -> list[tuple[str, str, Array]]:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shares: Any = np.where(limit > 0.0, np.abs(values) / limit, 0.0)
+        return [(label, name, shares[:, j]) for j, label in enumerate(self.labels)]

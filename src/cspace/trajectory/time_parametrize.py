@@ -1,0 +1,346 @@
+"""Time parametrisation: the fastest motion along a path within limits."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace._core import divide_path, time_path
+from cspace.arrays import Array, as_floats, bounded_number, one_array, positive_number, whole_number
+from cspace.dynamics.rows import EARTH
+from cspace.errors import InputError, InputTypeError
+from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.model import Limits
+from cspace.tables import join_words
+from cspace.tolerances import FARTHEST, TIMED_WITHIN
+from cspace.trajectory.jerk_timed_path import JerkTimedPath
+from cspace.trajectory.jerk_timing import (
+    JerkLimits,
+    SectionLaw,
+    default_intervals,
+    find_sections,
+    refuse_jumps,
+    time_section,
+)
+from cspace.trajectory.path import Path
+from cspace.trajectory.sampled_limits import (
+    MOST_ROUNDS,
+    FrameLimits,
+    LimitShares,
+    SampledLimits,
+    TorqueLimits,
+)
+from cspace.trajectory.timed_path import Grid, TimedPath
+
+MOST_INTERVALS: Final = 10_000_000
+"""Of a grid that is given as a number."""
+
+EMPTY_GRID: Final = Grid(np.zeros(0, dtype=np.int32), np.zeros(0), np.zeros(0))
+
+
+def time_parametrize(
+    path: Path,
+    limits: Limits | KinematicModel | None = None,
+    *,
+    velocity: ArrayLike | None = None,
+    acceleration: ArrayLike | None = None,
+    jerk: ArrayLike | bool | None = None,
+    torque: ArrayLike | bool | None = None,
+    speed: float | None = None,
+    turn_rate: float | None = None,
+    robot: KinematicModel | None = None,
+    frame: str | None = None,
+    gravity: ArrayLike = EARTH,
+    start_speed: float = 0.0,
+    end_speed: float = 0.0,
+    grid: int | None = None,
+    tolerance: float = TIMED_WITHIN,
+) -> TimedPath:
+    """The fastest motion along a path within limits of velocity, acceleration, torque and tip speed.
+
+    The squared speed of the parameter is linear on each interval of a grid, and quadratic under jerk limits.
+    Limits of velocity, acceleration and jerk hold everywhere on an interval, which is proved by Bernstein
+    coefficients. Limits of torque and of a frame are sampled at three places of an interval, checked at ten
+    and tightened where exceeded; they do not go with jerk limits.
+
+    path: a Path, such as of spline or blend. limits: Limits or a robot. velocity, acceleration: in their
+    place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. jerk: likewise, per s², or True for
+    those of limits; the acceleration is then continuous, and the motion rests at both ends. torque: one
+    number, (dof,) [N·m or N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest
+    ones of the frame of robot, by default its tip. robot: whose dynamics and kinematics those need, by
+    default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends.
+    grid: about so many intervals; by default they are halved until that changes the duration by less than
+    `tolerance`, relative. Under jerk limits there are 30 of a piece, 150 or more.
+
+    Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits or the
+    speeds at the ends are impossible.
+    Raises InputError for a wrong shape, NaN, negative limits, joints without a limit of acceleration, and
+    jerk limits on a path whose second derivative jumps.
+    Source: Pham and Pham 2018, with bounds over whole intervals; a barrier method under jerk limits.
+    """
+    if not isinstance(path, Path):
+        raise InputTypeError(
+            f"path is a {type(path).__name__}; make a Path by spline, blend, b_spline or fit_path"
+        )
+    own = robot if robot is not None else limits if isinstance(limits, KinematicModel) else None
+    given = getattr(limits, "limits", limits)
+    labels = _label_joints(path, own)
+    v = _read_limit("velocity", velocity, given, labels, required=False)
+    a = _read_limit("acceleration", acceleration, given, labels, required=True)
+    sampled = SampledLimits(
+        path,
+        _read_torque(torque, own, path, gravity),
+        _read_frame(speed, turn_rate, own, path, frame),
+    )
+    timer = _Timer(
+        path,
+        v,
+        a,
+        sampled if sampled.torque is not None or sampled.frame is not None else None,
+        bounded_number(start_speed, "start_speed", 0.0, "it must be 0 or more", FARTHEST),
+        bounded_number(end_speed, "end_speed", 0.0, "it must be 0 or more", FARTHEST),
+        positive_number(tolerance, "tolerance"),
+        labels,
+        None if own is None else own.joint_names,
+        _read_jerk(jerk, given, labels),
+    )
+    return timer.run(None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS))
+
+
+class _Timer:
+    """A path with its limits, to be timed on one grid after another."""
+
+    def __init__(
+        self,
+        path: Path,
+        velocity: Array,
+        acceleration: Array,
+        sampled: SampledLimits | None,
+        start: float,
+        end: float,
+        tolerance: float,
+        labels: tuple[str, ...],
+        joint_names: tuple[str, ...] | None,
+        jerk: Array | None,
+    ) -> None:
+        self.jerk = jerk
+        self.path, self.velocity, self.acceleration = path, velocity, acceleration
+        self.sampled, self.ends, self.tolerance = sampled, (start, end), tolerance
+        self.labels, self.joint_names = labels, joint_names
+        torque, frame = (None, None) if sampled is None else (sampled.torque, sampled.frame)
+        self.ratios = LimitShares(labels, velocity, acceleration, jerk, torque, frame)
+        self.arrays = path.control_points, path.lengths, path.stop_flags
+
+    def run(self, count: int | None) -> TimedPath:
+        """The fastest motion on a grid of so many intervals, or on one of its own."""
+        if (still := self.find_locked_joint()) is not None:
+            return still
+        if self.jerk is not None:
+            return self.time_with_jerk(count)
+        return self.time(None if count is None else Grid(*divide_path(*self.arrays, count)))
+
+    def find_locked_joint(self) -> TimedPath | None:
+        """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
+        moves = self.path.moving
+        limits = {"velocity": self.velocity, "acceleration": self.acceleration}
+        if self.jerk is not None:
+            limits["jerk"] = self.jerk
+        for name, limit in limits.items():
+            locked = np.argwhere(moves & (limit == 0.0))
+            if locked.size:
+                piece, j = map(int, locked[0])
+                s = float(self.path.breaks[piece])
+                return self._refuse(f"{self.labels[j]} moves from s = {s:.6g} on; its {name} limit is 0", s)
+        limited = np.isfinite(self.velocity) | np.isfinite(self.acceleration)
+        free = ~(moves & limited).any(axis=1)
+        if self.sampled is None and free.any():
+            s = float(self.path.breaks[np.flatnonzero(free)[0]])
+            raise InputError(f"no limit applies to the joints that move at s = {s:.6g}; pass acceleration=")
+        return None
+
+    def time(self, grid: Grid | None) -> TimedPath:
+        """The fastest motion; on a grid of its own without one."""
+        if self.sampled is None:
+            return self._solve(grid, None)
+        if self.sampled.torque is not None and self.sampled.torque.resists:
+            plain = self._solve(grid, None)
+            if plain:
+                self.sampled.expected = plain.grid, plain.squared_speed
+        timed = self._solve(grid, self.sampled)
+        converged = timed.converged
+        for _ in range(MOST_ROUNDS):
+            if not timed or self.sampled.tighten(timed):
+                timed.converged = converged
+                return timed
+            timed = self._solve(timed.intervals, self.sampled)
+        if timed and not self.sampled.tighten(timed):
+            return self._refuse(f"limits are still exceeded after {MOST_ROUNDS} rounds; pass a finer grid=")
+        return timed
+
+    def time_with_jerk(self, count: int | None) -> TimedPath:
+        """The fastest motion with limits of jerk too, from rest to rest."""
+        if self.sampled is not None:
+            raise InputTypeError("jerk= cannot be combined with torque=, speed= and turn_rate=")
+        if any(self.ends):
+            raise InputError("jerk= is for motions from rest to rest; leave out start_speed= and end_speed=")
+        assert self.jerk is not None
+        refuse_jumps(self.path)
+        plain = self._solve(None, None)
+        if not plain:
+            return plain
+        limits = JerkLimits(self.velocity, self.acceleration, self.jerk)
+        laws: list[SectionLaw] = []
+        for section in find_sections(self.path):
+            number = default_intervals(self.path) if count is None else count
+            found = time_section(self.path, section, self.arrays, limits, number, plain)
+            if found is None:
+                s = float(self.path.breaks[section.first])
+                return self._refuse(f"no motion from s = {s:.6g} on keeps the limits", s)
+            laws.append(found)
+        return JerkTimedPath(
+            self.path,
+            Grid(*(np.concatenate([each.grid[k] for each in laws]) for k in range(3))),
+            np.concatenate([each.squares for each in laws]),
+            np.concatenate([each.law for each in laws]),
+            np.concatenate([each.jerk for each in laws]),
+            ratios=self.ratios,
+            joint_names=self.joint_names,
+        )
+
+    def _solve(self, grid: Grid | None, sample: SampledLimits | None) -> TimedPath:
+        outcome, where, least, most, intervals, squared_speed, converged = time_path(
+            *self.arrays,
+            self.velocity,
+            self.acceleration,
+            *self.ends,
+            self.tolerance,
+            None if grid is None else (grid.piece, grid.begin, grid.end),
+            sample,
+        )
+        used = Grid(*intervals)
+        if outcome == "blocked":
+            return self._explain_block(used, where, sample)
+        if outcome != "timed":
+            speed = self.ends[outcome == "end"]
+            reason = f"{outcome}_speed is {speed:.6g}; from {least:.6g} to {most:.6g} are possible"
+            s = 0.0 if outcome == "start" else self.path.length
+            return self._refuse(reason, s, (least, most))
+        standing = np.flatnonzero((squared_speed[:-1] == 0.0) & (squared_speed[1:] == 0.0))
+        if standing.size:
+            s = self._parameter(used, int(standing[0]))
+            return self._refuse(f"the motion stands at s = {s:.6g}; pass a finer grid=", s)
+        return TimedPath(
+            self.path,
+            used,
+            squared_speed,
+            ratios=self.ratios,
+            proved=sample is None,
+            converged=converged and grid is None,
+            joint_names=self.joint_names,
+        )
+
+    def _parameter(self, grid: Grid, interval: int) -> float:
+        piece = grid.piece[interval]
+        return float(self.path.breaks[piece] + grid.begin[interval] * self.path.lengths[piece])
+
+    def _explain_block(self, grid: Grid, where: int, sample: SampledLimits | None) -> TimedPath:
+        """Why nothing passes an interval: a torque at rest that exceeds its limit, if there is one."""
+        s = self._parameter(grid, where)
+        if sample is not None and sample.torque is not None:
+            offset = np.asarray(sample(grid.piece[[where]], grid.begin[[where]], grid.end[[where]])[2])
+            over = np.abs(offset).max(axis=0) - sample.torque.limit
+            if (over > 0.0).any():
+                j = int(np.argmax(over))
+                needed = float(np.abs(offset[:, j]).max())
+                return self._refuse(
+                    f"{self.labels[j]} needs {needed:.4g} against gravity and friction at s = {s:.6g},"
+                    f" more than its torque limit of {sample.torque.limit[j]:.4g}",
+                    s,
+                )
+        return self._refuse(f"no speed keeps the limits at s = {s:.6g}", s)
+
+    def _refuse(
+        self, reason: str, place: float = np.nan, speed_range: tuple[float, float] | None = None
+    ) -> TimedPath:
+        return TimedPath(
+            self.path,
+            EMPTY_GRID,
+            np.zeros(0),
+            ratios=self.ratios,
+            proved=False,
+            converged=False,
+            reason=reason,
+            place=place,
+            speed_range=speed_range,
+            joint_names=self.joint_names,
+        )
+
+
+def _label_joints(path: Path, robot: KinematicModel | None) -> tuple[str, ...]:
+    if robot is None:
+        return tuple(f"joint {j}" for j in range(path.dof))
+    if robot.dof != path.dof:
+        raise InputError(f"the path is of {path.dof} joints, {robot.name} of {robot.dof}")
+    return tuple(robot.joint_names)
+
+
+def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, required: bool) -> Array:
+    """The limit given, or that of limits (dof,); inf where there is none and it is not required."""
+    n = len(labels)
+    if value is not None:
+        row = as_floats(value, name, finite=False)
+        if row.shape not in ((), (n,)):
+            raise InputError(f"{name} has shape {row.shape}, expected () or ({n},), one per joint")
+        if not (row >= 0.0).all():
+            raise InputError(f"{name} contains {float(row[~(row >= 0.0)].flat[0]):g}; it must be 0 or more")
+        return np.full(n, row) if row.ndim == 0 else np.array(row)
+    if limits is None:
+        own = np.full(n, np.inf)
+    elif isinstance(limits, Limits):
+        own = np.array(getattr(limits, name))
+        if len(own) != n:
+            raise InputError(f"limits is of {len(own)} joints, the path of {n}")
+    else:
+        raise InputTypeError(f"limits is a {type(limits).__name__}; give Limits or a robot")
+    absent = [label for label, limit in zip(labels, own, strict=True) if np.isinf(limit)]
+    if required and absent:
+        which = "" if len(absent) == n else f" of {join_words(absent)}"
+        raise InputError(f"there are no {name} limits{which}; pass {name}=, with inf for none")
+    return own
+
+
+def _read_jerk(jerk: Any, limits: Any, labels: tuple[str, ...]) -> Array | None:
+    if jerk is None or jerk is False:
+        return None
+    row = _read_limit("jerk", None if jerk is True else jerk, limits, labels, required=True)
+    if np.isinf(row).all():
+        raise InputError("jerk is infinite for all joints; leave it out for none")
+    return row
+
+
+def _read_torque(
+    torque: Any, robot: KinematicModel | None, path: Path, gravity: ArrayLike
+) -> TorqueLimits | None:
+    if torque is None or torque is False:
+        return None
+    if robot is None:
+        raise InputTypeError("torque= needs the dynamics of a robot; pass robot=")
+    labels = tuple(robot.joint_names)
+    value = None if torque is True else torque
+    limit = _read_limit("effort" if value is None else "torque", value, robot.limits, labels, required=False)
+    return TorqueLimits(robot, limit, one_array(gravity, "gravity", (3,)))
+
+
+def _read_frame(
+    speed: Any, turn_rate: Any, robot: KinematicModel | None, path: Path, frame: str | None
+) -> FrameLimits | None:
+    if speed is None and turn_rate is None:
+        return None
+    if robot is None:
+        raise InputTypeError("speed= and turn_rate= need the kinematics of a robot; pass robot=")
+    rule = "it must be one positive number"
+    fastest = np.inf if speed is None else positive_number(speed, "speed", rule)
+    turns = np.inf if turn_rate is None else positive_number(turn_rate, "turn_rate", rule)
+    return FrameLimits(robot, frame, fastest, turns)

@@ -1,0 +1,168 @@
+"""Trajectories as files: samples as CSV, polynomials as JSON, and JointTrajectory messages of ROS as YAML."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import DescriptionError, InputError
+from cspace.files import read_text, write_text
+from cspace.trajectory.polynomials import PolynomialTrajectory
+from cspace.trajectory.time_scaling import connect_samples
+from cspace.trajectory.trajectory import Trajectory
+
+SCHEMA: Final = "cspace.trajectory/1"
+"""The layout of polynomials in JSON."""
+
+QUANTITIES: Final = ("q", "qd", "qdd")
+"""What the columns of a CSV file begin with, before the name of a joint."""
+
+LARGEST_FILE: Final = 2_000_000_000
+"""Bytes of a file that is read."""
+
+NANOSECONDS: Final = 1_000_000_000
+"""In a second."""
+
+
+def to_csv(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float) -> None:
+    """Write samples of a trajectory as a table: time [s], then positions, velocities and accelerations.
+
+    Columns are named time, q:joint, qd:joint and qdd:joint; numbers have all digits and are in radians or
+    metres. rate [Hz]: of the samples; the end is among them. The file is complete or untouched.
+    Raises InputError where it cannot be written.
+    """
+    samples = trajectory.sample(rate)
+    heading = ["time", *(f"{kind}:{name}" for kind in QUANTITIES for name in trajectory.labels)]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(heading)
+    table = np.column_stack([samples.times, samples.q, samples.qd, samples.qdd])
+    writer.writerows([repr(x) for x in row] for row in table.tolist())
+    write_text(path, text.getvalue())
+
+
+def from_csv(path: str | os.PathLike[str]) -> PolynomialTrajectory:
+    """The trajectory through the samples of a table, with columns as of to_csv.
+
+    Between samples it is the quintic polynomial through positions, velocities and accelerations, or the cubic
+    one where the table has no accelerations.
+
+    Returns a PolynomialTrajectory. Raises DescriptionError, with the file and the line, for other columns,
+    cells that are no numbers, and times that do not increase from zero.
+    """
+    lines = list(csv.reader(io.StringIO(read_text(path, "CSV file", LARGEST_FILE, DescriptionError))))
+    heading = lines[0] if lines else []
+    names = [title.partition(":")[2] for title in heading if title.startswith("q:")]
+    kinds = [kind for kind in QUANTITIES if f"{kind}:{names[0] if names else ''}" in heading]
+    wanted = ["time", *(f"{kind}:{name}" for kind in kinds for name in names)]
+    if not names or len(kinds) < 2 or heading != wanted:
+        raise DescriptionError(
+            "the columns must be time, q:joint …, qd:joint … and perhaps qdd:joint …", path=str(path), line=1
+        )
+    table = _read_rows(lines[1:], len(heading), str(path))
+    times, rest = table[:, 0], table[:, 1:].reshape(len(table), len(kinds), len(names))
+    bad = np.flatnonzero(np.diff(times) <= 0.0)
+    if bad.size or times[0] != 0.0:
+        line = 2 if times[0] != 0.0 else int(bad[0]) + 3
+        raise DescriptionError("times must increase, from 0 on", path=str(path), line=line)
+    return connect_samples(times, rest, names)
+
+
+def _read_rows(rows: list[list[str]], columns: int, path: str) -> Array:
+    """The numbers of a table with at least one row."""
+    table = np.empty((len(rows), columns))
+    if not rows:
+        raise DescriptionError("the table has no rows", path=path, line=1)
+    for i, row in enumerate(rows):
+        try:
+            table[i] = [float(cell) for cell in row]
+        except ValueError:
+            raise DescriptionError(f"the row is not {columns} numbers", path=path, line=i + 2) from None
+        if not np.isfinite(table[i]).all():
+            raise DescriptionError("the numbers must be finite", path=path, line=i + 2)
+    return table
+
+
+def to_json(trajectory: PolynomialTrajectory, path: str | os.PathLike[str]) -> None:
+    """Write the polynomials of a trajectory, with all digits; the file is complete or untouched.
+
+    Raises InputError for a trajectory of another kind, and where the file cannot be written.
+    """
+    if not isinstance(trajectory, PolynomialTrajectory):
+        raise InputError(
+            f"trajectory is a {type(trajectory).__name__}, which has no polynomials; use to_csv, or to_ros"
+        )
+    values = {
+        "schema": SCHEMA,
+        "joint_names": trajectory.joint_names,
+        "reason": trajectory.reason,
+        "knots": trajectory.joint_knots.tolist(),
+        "origins": trajectory.origins.tolist(),
+        "coefficients": trajectory.coefficients.tolist(),
+    }
+    write_text(path, json.dumps(values, ensure_ascii=False) + "\n")
+
+
+def from_json(path: str | os.PathLike[str]) -> PolynomialTrajectory:
+    """The trajectory that to_json wrote, the same in every bit.
+
+    Returns a PolynomialTrajectory. Raises DescriptionError, with the file, for other contents.
+    """
+    try:
+        values: Any = json.loads(read_text(path, "JSON file", LARGEST_FILE, DescriptionError))
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, DescriptionError):
+            raise
+        raise DescriptionError(f"this is no JSON: {error}", path=str(path)) from None
+    schema = values.get("schema") if isinstance(values, dict) else None
+    if schema != SCHEMA:
+        raise DescriptionError(f"the schema is {schema!r}, expected {SCHEMA!r}", path=str(path))
+    try:
+        return PolynomialTrajectory(
+            values["knots"],
+            values["coefficients"],
+            values["origins"],
+            joint_names=values["joint_names"],
+            reason=str(values["reason"]),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise DescriptionError(f"the polynomials cannot be read: {error}", path=str(path)) from None
+
+
+def to_ros(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float) -> None:
+    """Write samples as a message trajectory_msgs/JointTrajectory of ROS 2, in YAML.
+
+    Times are seconds and nanoseconds that strictly increase. rate [Hz]: of the points; the end is among them.
+    The file is complete or untouched.
+    Raises InputError for a trajectory without names of joints, and where the file cannot be written.
+    """
+    if trajectory.joint_names is None:
+        raise InputError("the trajectory has no names of joints, which ROS needs; pass joint_names=")
+    samples = trajectory.sample(rate)
+    ticks = np.rint(samples.times * NANOSECONDS).astype(np.int64)
+    kept = np.append(np.diff(ticks) > 0, True)  # the end replaces a point within the same nanosecond
+    lines = [f"joint_names: [{', '.join(json.dumps(n, ensure_ascii=False) for n in trajectory.joint_names)}]"]
+    lines.append("points:")
+    for i in np.flatnonzero(kept):
+        second, nanosecond = divmod(int(ticks[i]), NANOSECONDS)
+        for key, values in (
+            ("positions", samples.q),
+            ("velocities", samples.qd),
+            ("accelerations", samples.qdd),
+        ):
+            mark = "  - " if key == "positions" else "    "
+            lines.append(f"{mark}{key}: [{', '.join(map(_yaml_number, values[i].tolist()))}]")
+        lines.append(f"    time_from_start: {{sec: {second}, nanosec: {nanosecond}}}")
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def _yaml_number(value: float) -> str:
+    """A number as readers of YAML 1.1 take it: with a point before an exponent."""
+    digits, sign, exponent = repr(value).partition("e")
+    return digits + (".0" if sign and "." not in digits else "") + sign + exponent

@@ -1,0 +1,336 @@
+#include "trajectory_timing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cspace/math/interrupts.hpp"
+#include "kernels/trajectory_timing.hpp"
+#include "trajectory_aligned.hpp"
+
+namespace cspace::trajectory {
+
+using std::size_t;
+
+// 1 / limit, 0 where there is none and where the joint may not move.
+std::vector<double> invert_limits(std::span<const double> limits, int padded) {
+    std::vector<double> made(size_t(padded), 0.0);
+    for (size_t j = 0; j < limits.size(); ++j) made[j] = limits[j] > 0.0 ? 1.0 / limits[j] : 0.0;
+    return made;
+}
+
+// Bernstein coefficients of dq/ds of every piece, raised to degree 2 or 4, as TimedRows has them.
+Aligned find_slopes(const TimingPath& path, int degree, int padded) {
+    const int own = path.degree - 1, n = path.joints;
+    const size_t width = size_t(padded);
+    Aligned slopes(path.lengths.size() * size_t(degree + 1) * width);
+    for (size_t piece = 0; piece < path.lengths.size(); ++piece) {
+        const double* q = path.controls.data() + piece * size_t((path.degree + 1) * n);
+        double* d = slopes.data() + piece * size_t(degree + 1) * width;
+        const double scale = path.degree / path.lengths[piece];
+        for (int k = 0; k <= own; ++k)
+            for (int j = 0; j < n; ++j) d[k * padded + j] = scale * (q[(k + 1) * n + j] - q[k * n + j]);
+        for (int m = own; m < degree; ++m) {  // one degree more
+            for (int j = 0; j < n; ++j) d[(m + 1) * padded + j] = d[m * padded + j];
+            for (int k = m; k > 0; --k) {
+                const double share = double(k) / (m + 1);
+                for (int j = 0; j < n; ++j)
+                    d[k * padded + j] += share * (d[(k - 1) * padded + j] - d[k * padded + j]);
+            }
+        }
+    }
+    return slopes;
+}
+
+namespace {
+
+constexpr size_t intervals_between_polls = 256;  // some fifty microseconds
+constexpr int first_parts = 4;                   // of a piece: halved once before anything is known of it
+constexpr double least_part = 0x1p-18;           // of a piece: beyond it rounding shows in the accelerations
+constexpr double share_of_change = 0.3;  // of the mean change of an interval, above which it is halved
+constexpr int most_rounds = 24;
+constexpr size_t least_parts = 2;  // of a piece: with stops at both its ends it has to move between
+// Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
+// of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
+constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
+
+std::vector<double> pad_rows(std::span<const double> rows, int width, int padded) {
+    std::vector<double> made(rows.size() / size_t(width) * size_t(padded), 0.0);
+    for (size_t r = 0; r * size_t(width) < rows.size(); ++r)
+        std::copy_n(rows.begin() + std::ptrdiff_t(r) * width, width,
+                    made.begin() + std::ptrdiff_t(r) * padded);
+    return made;
+}
+
+// A path that is timed on one grid after another.
+class PathTimer {
+  public:
+    PathTimer(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options)
+        : path_(path),
+          start_(options.start * options.start),
+          end_(options.end * options.end),
+          padded_(padded_joints(path.joints)),
+          slopes_(find_slopes(path, slope_degree(path), padded_)),
+          acceleration_(invert_limits(limits.acceleration, padded_)),
+          velocity_(invert_limits(limits.velocity, padded_)),
+          least_inverse_square_(path.lengths.size(), 0.0) {
+        rows_.degree = slope_degree(path);
+        rows_.joints = path.joints;
+        rows_.padded = padded_;
+        rows_.slopes = slopes_.data();
+        rows_.lengths = path.lengths.data();
+        rows_.inverse_acceleration = acceleration_.data();
+        rows_.inverse_velocity = velocity_.data();
+        bound_noise();
+        rows_.least_inverse_square = least_inverse_square_.data();
+        memory_ = Aligned(size_t(3 * row_capacity(rows_)));
+    }
+
+    void set_grid(const TimingGrid& grid, const Sampler& sample) {
+        const size_t count = grid.size();
+        intervals_.resize(count);
+        stops_.assign(count + 1, 0);
+        for (size_t i = 0; i < count; ++i) {
+            intervals_[i] = {grid.piece[i], grid.from[i], grid.to[i]};
+            if (grid.from[i] == 0.0) stops_[i] = path_.stops[size_t(grid.piece[i])];
+        }
+        rows_.intervals = intervals_.data();
+        rows_.stops = stops_.data();
+        rows_.sampled = {};
+        if (sample) take_samples(sample(grid));
+    }
+
+    Timing solve() {
+        const size_t count = intervals_.size();
+        Timing timing{TimingOutcome::timed, 0, 0.0, 0.0, {}, {}, true};
+        const std::ptrdiff_t blocked = bound({end_, end_});
+        if (blocked >= 0) {
+            if (end_ > 0.0) return explain_end(timing);
+            timing.outcome = TimingOutcome::blocked;
+            timing.where = size_t(blocked);
+            return timing;
+        }
+        if (start_ < range_[0].low && end_ > 0.0) return explain_end(timing);
+        if (!(range_[0].low <= start_ && start_ <= range_[0].high))
+            return report(timing, TimingOutcome::start, range_[0]);
+        timing.squared_speed.assign(count + 1, 0.0);
+        raise(timing.squared_speed);
+        return timing;
+    }
+
+    // Seconds in interval i; inf if the motion stands at both ends.
+    double seconds(size_t i, const std::vector<double>& x) const {
+        return 2.0 * rows_.length(i) / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));
+    }
+
+  private:
+    void bound_noise() {
+        const size_t width = size_t(padded_), rows = size_t(rows_.degree + 1);
+        for (size_t piece = 0; piece < least_inverse_square_.size(); ++piece) {
+            double& least = least_inverse_square_[piece];
+            for (size_t at = 0; at < rows * width; ++at) {
+                const double slope = std::fabs(slopes_[piece * rows * width + at]);
+                const double speed = slope * velocity_[at % width];
+                const double per_length = slope * acceleration_[at % width] / rows_.lengths[piece];
+                least = std::max({least, noise_of_velocity * speed * speed,
+                                  noise_of_acceleration * rows_.degree * per_length});
+            }
+        }
+    }
+
+    void take_samples(TimingSamples&& given) {
+        samples_ = std::move(given);
+        SampledLimits& sampled = rows_.sampled;
+        if (!samples_.inverse_square.empty()) sampled.inverse_square = samples_.inverse_square.data();
+        if (samples_.along.empty()) return;
+        for (auto* rows : {&samples_.along, &samples_.across, &samples_.offset, &samples_.margin})
+            *rows = pad_rows(*rows, path_.joints, padded_);
+        // What pads the joints has no limit.
+        samples_.limit.resize(size_t(padded_), no_end);
+        sampled.along = samples_.along.data();
+        sampled.across = samples_.across.data();
+        sampled.offset = samples_.offset.data();
+        sampled.margin = samples_.margin.empty() ? nullptr : samples_.margin.data();
+        sampled.limit = samples_.limit.data();
+    }
+
+    std::ptrdiff_t bound(SpeedRange last) {
+        const size_t count = intervals_.size();
+        range_.assign(count + 1, {0.0, no_end});
+        range_[count] = last;
+        for (size_t end = count; end > 0;) {
+            const size_t begin = end > intervals_between_polls ? end - intervals_between_polls : 0;
+            const std::ptrdiff_t blocked =
+                kernels::bound_path_speeds(rows_, begin, end, range_.data(), memory_.data());
+            if (blocked >= 0) return blocked;
+            end = begin;
+            poll_interrupts();
+        }
+        return -1;
+    }
+
+    void raise(std::vector<double>& speed) {
+        const size_t count = intervals_.size();
+        speed[0] = start_;
+        for (size_t begin = 0; begin < count; begin += intervals_between_polls) {
+            const size_t end = std::min(count, begin + intervals_between_polls);
+            kernels::raise_path_speeds(rows_, begin, end, range_.data(), speed.data(), memory_.data());
+            poll_interrupts();
+        }
+    }
+
+    static Timing report(Timing& timing, TimingOutcome outcome, SpeedRange range) {
+        timing.outcome = outcome;
+        timing.least = std::sqrt(range.low);
+        timing.most = std::sqrt(range.high);
+        return timing;
+    }
+
+    // The greatest speed at the end that the start permits, or what blocks the path whatever the end.
+    Timing explain_end(Timing& timing) {
+        const std::ptrdiff_t blocked = bound({0.0, no_end});
+        if (blocked >= 0) {
+            timing.outcome = TimingOutcome::blocked;
+            timing.where = size_t(blocked);
+            return timing;
+        }
+        if (!(range_[0].low <= start_ && start_ <= range_[0].high))
+            return report(timing, TimingOutcome::start, range_[0]);
+        std::vector<double> speed(intervals_.size() + 1);
+        raise(speed);
+        return report(timing, TimingOutcome::end, {0.0, speed.back()});
+    }
+
+    const TimingPath& path_;
+    double start_, end_;
+    int padded_;
+    Aligned slopes_, memory_{0};
+    std::vector<double> acceleration_, velocity_, least_inverse_square_;
+    TimingSamples samples_;
+    TimedRows rows_{};
+    std::vector<Interval> intervals_;
+    std::vector<signed char> stops_;
+    std::vector<SpeedRange> range_;
+};
+
+TimingGrid divide_pieces(const TimingPath& path, const std::vector<size_t>& parts) {
+    TimingGrid grid;
+    for (size_t piece = 0; piece < path.lengths.size(); ++piece) {
+        const size_t count = parts[piece];
+        for (size_t k = 0; k < count; ++k) {
+            grid.piece.push_back(int(piece));
+            grid.from.push_back(double(k) / double(count));
+            grid.to.push_back(double(k + 1) / double(count));
+        }
+    }
+    return grid;
+}
+
+// A halved grid, and of every part the interval that it is from.
+struct Halved {
+    TimingGrid grid;
+    std::vector<size_t> parent;
+};
+
+template <class Splits>
+Halved halve(const TimingGrid& grid, const Splits& splits) {
+    Halved made;
+    const auto add = [&](size_t i, double from, double to) {
+        made.grid.piece.push_back(grid.piece[i]);
+        made.grid.from.push_back(from);
+        made.grid.to.push_back(to);
+        made.parent.push_back(i);
+    };
+    for (size_t i = 0; i < grid.size(); ++i) {
+        const double from = grid.from[i], to = grid.to[i], middle = 0.5 * (from + to);
+        if (to - from > least_part && splits(i)) {
+            add(i, from, middle);
+            add(i, middle, to);
+        } else {
+            add(i, from, to);
+        }
+    }
+    return made;
+}
+
+// The seconds of every interval; those in which the motion stands have none.
+struct Seconds {
+    std::vector<double> each;
+    double total = 0.0;
+    bool stands = false;
+};
+
+Seconds measure(const PathTimer& timer, const std::vector<double>& x) {
+    Seconds seconds;
+    seconds.each.resize(x.size() - 1);
+    for (size_t i = 0; i + 1 < x.size(); ++i) {
+        const double t = timer.seconds(i, x);
+        const bool moves = t < std::numeric_limits<double>::infinity();
+        seconds.each[i] = moves ? t : 0.0;
+        seconds.stands |= !moves;
+        seconds.total += seconds.each[i];
+    }
+    return seconds;
+}
+
+}  // namespace
+
+TimingGrid divide_evenly(const TimingPath& path, std::size_t intervals) {
+    double whole = 0.0;
+    for (const double length : path.lengths) whole += length;
+    std::vector<size_t> parts;
+    for (const double length : path.lengths)
+        parts.push_back(std::max(least_parts, size_t(std::round(double(intervals) * length / whole))));
+    return divide_pieces(path, parts);
+}
+
+Timing time_on_grid(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options,
+                    const TimingGrid& grid, const Sampler& sample) {
+    PathTimer timer(path, limits, options);
+    timer.set_grid(grid, sample);
+    Timing timing = timer.solve();
+    timing.grid = grid;
+    return timing;
+}
+
+Timing time_path(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options,
+                 const Sampler& sample) {
+    PathTimer timer(path, limits, options);
+    Halved halved{divide_pieces(path, std::vector<size_t>(path.lengths.size(), first_parts)), {}};
+    Seconds last;
+    for (int round = 0;; ++round) {
+        timer.set_grid(halved.grid, sample);
+        Timing timing = timer.solve();
+        const bool timed = timing.outcome == TimingOutcome::timed;
+        Seconds now = timed ? measure(timer, timing.squared_speed) : Seconds{};
+        std::vector<double> change(last.each.size(), 0.0);
+        double changed = 0.0;
+        const bool known = timed && !last.each.empty();
+        if (known) {
+            for (size_t i = 0; i < now.each.size(); ++i) change[halved.parent[i]] += now.each[i];
+            for (size_t k = 0; k < change.size(); ++k) {
+                change[k] = std::fabs(change[k] - last.each[k]);
+                changed += change[k];
+            }
+        }
+        timing.converged = known && !now.stands && changed <= options.tolerance * now.total;
+        if (timing.converged || round == most_rounds) {
+            timing.grid = std::move(halved.grid);
+            return timing;
+        }
+        // A motion that stands, or none at all, may come of a coarse grid.
+        const double enough = share_of_change * options.tolerance * now.total / double(last.each.size());
+        Halved next = halve(halved.grid, [&](size_t i) {
+            return !known || change[halved.parent[i]] > enough ||
+                   timing.squared_speed[i] + timing.squared_speed[i + 1] == 0.0;
+        });
+        if (next.grid.size() == halved.grid.size() || (!timed && round >= 6)) {
+            timing.grid = std::move(halved.grid);
+            return timing;
+        }
+        last = std::move(now);
+        halved = std::move(next);
+    }
+}
+
+}  // namespace cspace::trajectory

@@ -1,0 +1,160 @@
+"""Motions of the tip: on the path, within every limit, the fastest of the branches, free in a scene."""
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.cartesian import move_cartesian
+from cspace.errors import InputError
+from cspace.trajectory import line_path
+
+START = np.array([0.3, -1.2, 1.5, -0.8, -1.3, 0.2])
+LIMITS = {"velocity": 2.0, "acceleration": 8.0}
+
+
+def limits_of(robot):
+    n = robot.dof
+    return cs.Limits(robot.limits.lower, robot.limits.upper, np.full(n, 2.0), np.full(n, 8.0))
+
+
+def beside(robot):
+    return robot.fk(START) @ cs.pose((0.1, 0, 0))
+
+
+def tip_speeds(robot, motion, count=2000):
+    t = np.linspace(0, motion.duration, count)
+    twist = np.einsum("nij,nj->ni", robot.jacobian(motion(t)), motion(t, 1))
+    return np.linalg.norm(twist[:, :3], axis=1), np.linalg.norm(twist[:, 3:], axis=1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "panda", "iiwa14"])
+def test_a_line_is_followed_within_all_limits(name, seed):
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(seed)
+    arrived = 0
+    for q in robot.random_configuration(3, rng=rng, reach=0.5):
+        T = robot.fk(q)
+        goal = T.copy()
+        goal[:3, 3] += rng.uniform(-0.12, 0.12, 3)
+        goal[:3, :3] = cs.spatial.exp_so3(rng.uniform(-0.2, 0.2, 3)) @ T[:3, :3]
+        motion = robot.move_linear(goal, start=q, speed=0.2, turn_rate=0.5, **LIMITS)
+        if not motion:
+            assert motion.chosen == -1
+            assert motion.reason
+            continue
+        arrived += 1
+        assert motion.check(limits_of(robot))
+        np.testing.assert_allclose(motion(0.0), q, atol=1e-8)
+        np.testing.assert_allclose(robot.fk(motion(motion.duration)), goal, atol=1e-8)
+        np.testing.assert_allclose(motion([0.0, motion.duration], 1), 0.0, atol=1e-12)
+        speeds, rates = tip_speeds(robot, motion)
+        assert speeds.max() <= 0.2 * (1 + 1e-6)
+        assert rates.max() <= 0.5 * (1 + 1e-6)
+        s = motion.parameter(np.linspace(0, motion.duration, 50))
+        np.testing.assert_allclose(
+            robot.fk(motion(np.linspace(0, motion.duration, 50)))[:, :3, 3],
+            motion.cartesian(s)[:, :3, 3],
+            atol=2e-5,
+        )
+    assert arrived
+
+
+def test_the_fastest_branch_is_taken():
+    robot = cs.load_robot("ur5e")
+    T = robot.fk(START)
+    path = line_path(T, T @ cs.pose((0.15, 0.1, -0.1), rpy=(0.2, 0, 0.3)))
+    every = move_cartesian(robot, path, **LIMITS)
+    assert len(every.branches) == 8
+    assert every.chosen == np.argmin(every.durations)
+    for branch, coarse in zip(every.branches, every.durations, strict=True):
+        alone = move_cartesian(robot, path, branch.q_start, **LIMITS)
+        assert alone.duration >= every.duration * (1 - 1e-3)
+        assert alone.duration == pytest.approx(coarse, rel=0.05)
+
+
+def test_arcs_and_polylines_move_through_their_points():
+    robot = cs.load_robot("ur5e")
+    T = robot.fk(START)
+    via, goal = T @ cs.pose((0.05, 0.03, 0)), T @ cs.pose((0.1, 0, 0), rpy=(0, 0, 0.3))
+    arc = robot.move_arc(goal, start=START, via=via[:3, 3], **LIMITS)
+    assert arc
+    t = np.linspace(0, arc.duration, 5000)
+    points = robot.fk(arc(t))[:, :3, 3]
+    assert np.linalg.norm(points - via[:3, 3], axis=1).min() < 2e-4
+    np.testing.assert_allclose(robot.fk(arc(arc.duration)), goal, atol=1e-8)
+
+    stops = robot.move_through([via, goal], start=START, **LIMITS)
+    rounded = robot.move_through([via, goal], start=START, deviation=0.01, turn_deviation=0.1, **LIMITS)
+    assert stops.path.stops.size == 1
+    assert not rounded.path.stops.size
+    assert rounded.duration < stops.duration
+    for motion in (arc, stops, rounded):
+        assert motion.check(limits_of(robot))
+
+
+def test_a_valve_turns_further_with_a_hand_that_turns_on_its_handle():
+    robot = cs.load_robot("ur5e")
+    T = robot.fk(START)
+    circle = {"center": T[:3, 3] + [0.0, 0.1, 0.0], "axis": T[:3, 2], "angle": 4 * np.pi}
+    loose = robot.move_arc(start=START, free_axis="z", **circle, **LIMITS)
+    assert loose
+    assert loose.check(limits_of(robot))
+    stiff = robot.move_arc(start=START, **circle, **LIMITS)
+    assert not stiff
+    assert "limits" in stiff.reason
+    assert 0 < stiff.s_end < stiff.cartesian.length
+
+
+def test_a_scene_rules_branches_out_and_says_what_is_touched():
+    robot = cs.load_robot("panda")
+    q = np.array([0, -0.5, 0, -2.0, 0, 1.6, 0.8])
+    T = robot.fk(q)
+    goal = T.copy()
+    goal[:3, 3] += [0.1, 0.4, -0.1]
+    free = robot.move_linear(goal, start=q, scene=cs.Scene())
+    assert free
+    box = cs.Box((0.1, 0.1, 0.1), T[:3, 3] + [0.05, 0.2, -0.05], name="crate")
+    blocked = robot.move_linear(goal, start=q, scene=cs.Scene([box]))
+    assert not blocked
+    assert "crate" in blocked.reason
+    t = np.linspace(0, free.duration, 3000)
+    assert not cs.collision.collides(robot, free(t), cs.Scene()).any()
+
+
+def test_lines_through_a_singularity_slow_down_or_say_so():
+    """The shoulder singularity: the tip passes beside the first axis at some distance."""
+    robot = cs.load_robot("ur5e")
+    durations = []
+    for aside in (0.2, 0.16, 0.14):
+        first = cs.pose((-0.3, aside, 0.5), rpy=(np.pi, 0, 0))
+        last = cs.pose((0.3, aside, 0.5), rpy=(np.pi, 0, 0))
+        motion = move_cartesian(robot, line_path(first, last), **LIMITS)
+        if motion:
+            assert motion.check(limits_of(robot))
+            durations.append(motion.duration)
+        else:
+            assert "singular" in motion.reason or "limits" in motion.reason or "unreachable" in motion.reason
+    assert durations
+    assert sorted(durations) == durations  # the nearer, the slower
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda r: r.move_linear(np.eye(3), start=START), "goal pose"),
+        (lambda r: r.move_linear(np.eye(4), start=START[:3]), "start has shape"),
+        (lambda r: r.move_linear(r.fk(START), start=START, acceleration=8.0), "all poses are the same"),
+        (lambda r: r.move_linear(beside(r), start=START), "pass acceleration="),
+        (lambda r: r.move_linear(beside(r), start=START, speed=0.0, acceleration=1.0), "speed"),
+        (lambda r: r.move_through(np.eye(4), start=START, acceleration=8.0), "poses has shape"),
+        (lambda r: r.move_arc(start=START, acceleration=8.0), "an arc needs"),
+        (
+            lambda r: move_cartesian(r, line_path(np.eye(4), cs.pose((0.1, 0, 0))), START, acceleration=8.0),
+            "from the begin of the path",
+        ),
+    ],
+)  # fmt: skip
+def test_what_makes_no_motion_is_named(call, message):
+    with pytest.raises(InputError, match=message):
+        call(cs.load_robot("ur5e"))

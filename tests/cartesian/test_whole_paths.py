@@ -1,0 +1,107 @@
+"""Redundant arms and free turns along whole paths: exact, within limits, farther than least motion."""
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.cartesian import follow_cartesian, follow_free_turn, follow_redundant
+from cspace.errors import InputError
+from cspace.trajectory import arc_path, line_path
+
+TOLERANCE = 1e-5
+REDUNDANT = ("panda", "iiwa14", "xarm7", "sawyer")
+SIX = ("ur5e", "puma560", "crx10ia")
+
+
+def lines(robot, seed, count):
+    """Lines of some decimetres and their first configurations."""
+    rng = np.random.default_rng(seed)
+    for q in robot.random_configuration(count, rng=rng, reach=0.7):
+        T = robot.fk(q)
+        goal = T.copy()
+        goal[:3, 3] += rng.uniform(-0.25, 0.25, 3)
+        goal[:3, :3] = cs.spatial.exp_so3(rng.uniform(-0.4, 0.4, 3)) @ T[:3, :3]
+        yield q, line_path(T, goal)
+
+
+def check_branch(robot, branch, path, axis=None):
+    s = np.linspace(0, path.length, 300)
+    q = branch.path(s)
+    assert (q >= robot.limits.lower - 1e-12).all()
+    assert (q <= robot.limits.upper + 1e-12).all()
+    T, wanted = robot.fk(q), path(s)
+    assert np.linalg.norm(T[:, :3, 3] - wanted[:, :3, 3], axis=1).max() <= 1.5 * TOLERANCE
+    R, given = T[:, :3, :3], wanted[:, :3, :3]
+    if axis is not None:
+        R, given = R @ axis, given @ axis
+    off = R - given
+    assert np.sqrt((off.reshape(len(s), -1) ** 2).sum(axis=1)).max() <= 3 * TOLERANCE
+    assert branch.path.continuity >= 2 or len(branch.path) < 2
+
+
+@pytest.mark.parametrize("name", REDUNDANT)
+def test_whole_paths_keep_to_path_and_limits_and_reach_as_far_as_least_motion(name):
+    robot = cs.load_robot(name)
+    planned = least = 0
+    for q, path in lines(robot, 1, 10):
+        for start in (None, q):
+            branch = follow_redundant(robot, path, start, tolerance=TOLERANCE)
+            planned += bool(branch)
+            least += bool(follow_cartesian(robot, path, start))
+            if branch:
+                check_branch(robot, branch, path)
+                if start is not None:
+                    np.testing.assert_allclose(branch.path.start, q, atol=1e-9)
+            else:
+                assert branch.cause in ("unreachable", "jump", "singularity", "limit")
+                assert branch.reason.startswith("at s = ")
+    assert planned >= least > 0
+
+
+@pytest.mark.parametrize("name", [*SIX, "panda"])
+def test_a_free_turn_keeps_the_axis_and_reaches_where_the_whole_pose_does(name):
+    robot = cs.load_robot(name)
+    axis = np.array([0.0, 0.6, 0.8])
+    for q, path in lines(robot, 2, 6):
+        branch = follow_free_turn(robot, path, axis, tolerance=TOLERANCE)
+        if branch:
+            check_branch(robot, branch, path, axis)
+        elif follow_cartesian(robot, path):
+            assert branch.cause in ("singularity", "limit")  # beside the chain, not because nothing reaches
+        turned = path(0.0) @ cs.pose((0, 0, 0), rotvec=0.3 * axis)
+        there = robot.ik(turned, near=q)
+        if there:
+            begun = follow_free_turn(robot, path, axis, there.q[0], tolerance=TOLERANCE)
+            if begun:
+                np.testing.assert_allclose(begun.path.start, there.q[0], atol=1e-9)
+                check_branch(robot, begun, path, axis)
+
+
+def test_a_door_opens_with_a_hand_that_turns_about_the_handle():
+    """The handle goes along most of a quarter circle, and the hand turns about it."""
+    robot = cs.load_robot("panda")
+    T = cs.pose((0.55, 0.15, 0.5), rpy=(0, np.pi / 2, 0))
+    hinge, angle = np.array([0.55, 0.65, 0.5]), -0.45 * np.pi
+    path = arc_path(T, center=hinge, axis=(0, 0, 1), angle=angle)
+    free = follow_free_turn(robot, path, "x", tolerance=TOLERANCE)
+    assert free
+    check_branch(robot, free, path, np.array([1.0, 0, 0]))
+    turned = cs.spatial.rotation_distance(robot.fk(free.path.end), path(path.length))
+    assert turned > 0.2  # what a stiff grasp would have to do
+
+
+def test_what_cannot_be_planned_is_named():
+    six = cs.load_robot("ur5e")
+    path = line_path(cs.pose((0.4, 0, 0.4)), cs.pose((0.4, 0.1, 0.4)))
+    with pytest.raises(InputError, match="0 redundant joints"):
+        follow_redundant(six, path)
+    with pytest.raises(InputError, match="axis 'w' is unknown"):
+        follow_free_turn(six, path, "w")
+    with pytest.raises(InputError, match="axis is zero"):
+        follow_free_turn(six, path, (0, 0, 0))
+    with pytest.raises(InputError, match="start has shape"):
+        follow_free_turn(six, path, "z", [0.0])
+    far = line_path(cs.pose((3, 0, 0.4)), cs.pose((3, 0.1, 0.4)))
+    for branch in (follow_free_turn(six, far), follow_redundant(cs.load_robot("panda"), far)):
+        assert not branch
+        assert branch.cause == "unreachable"

@@ -1,0 +1,167 @@
+// Rows of limits over whole intervals of a path, and the fastest motion that they permit.
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "check.hpp"
+#include "cspace/math/banded.hpp"
+#include "cspace/trajectory/speed_bounds.hpp"
+#include "library/trajectory_jerk.hpp"
+#include "random.hpp"
+
+using namespace cspace;
+using namespace cspace::trajectory;
+
+namespace {
+
+check::Random random_numbers{7};
+double draw(double low, double high) { return random_numbers.uniform(low, high); }
+
+// A path of one piece: q' has random Bernstein coefficients, limits are 1.
+struct OnePiece {
+    int degree, joints, padded = 8;
+    std::vector<double> slopes, ones;
+    double length, least = 0.0;
+    Interval part;
+    signed char stops[2] = {0, 0};
+
+    OnePiece(int degree, int joints) : degree(degree), joints(joints), ones(8, 1.0) {
+        slopes.assign(std::size_t((degree + 1) * padded), 0.0);
+        for (int k = 0; k <= degree; ++k)
+            for (int j = 0; j < joints; ++j) slopes[std::size_t(k * padded + j)] = draw(-1.0, 1.0);
+        length = std::exp(draw(-4.0, 1.0));
+        part = {0, draw(0.0, 0.6), 0.0};
+        part.to = std::min(1.0, part.from + std::exp(draw(-6.0, 0.0)));
+    }
+    TimedRows rows() const {
+        return {degree,      joints,      padded, slopes.data(), &length, &least,
+                ones.data(), ones.data(), &part,  stops,         {}};
+    }
+    // q' and q'' of a joint at a share of the interval, by de Casteljau.
+    std::array<double, 2> slope_and_bend(int j, double share) const {
+        double c[5];
+        const double t = part.from + share * (part.to - part.from);
+        for (int k = 0; k <= degree; ++k) c[k] = slopes[std::size_t(k * padded + j)];
+        for (int level = degree; level > 1; --level)
+            for (int k = 0; k < level; ++k) c[k] += t * (c[k + 1] - c[k]);
+        const double bend = degree * (c[1] - c[0]) / length;
+        return {c[0] + t * (c[1] - c[0]), bend};
+    }
+    // The largest share of any limit at samples of the interval.
+    double used(double x, double y) const {
+        const double u = (y - x) / (2.0 * rows().length(0));
+        double most = 0.0;
+        for (int k = 0; k <= 200; ++k) {
+            const double share = k / 200.0, squared = x + share * (y - x);
+            for (int j = 0; j < joints; ++j) {
+                const auto [slope, bend] = slope_and_bend(j, share);
+                most = std::max(
+                    {most, std::fabs(slope * u + bend * squared), std::fabs(slope) * std::sqrt(squared)});
+            }
+        }
+        return most;
+    }
+};
+
+template <int m>
+void check_rows() {
+    for (int round = 0; round < 2000; ++round) {
+        const OnePiece piece(m, 1 + int(draw(0.0, 7.99)));
+        const TimedRows path = piece.rows();
+        std::vector<double> memory(std::size_t(3 * row_capacity(path)));
+        SpeedRange range[2] = {{0.0, no_end}, {0.0, no_end}};
+        CHECK(bound_speeds<m>(path, 0, 1, range, memory.data()) == -1);
+        CHECK(range[0].low == 0.0 && range[0].high > 0.0);
+        const Rows rows = build_rows<m>(path, 0, memory.data());
+        for (const double part : {0.0, 0.3, 1.0}) {
+            const double x = part * range[0].high;
+            const Edges edges = bound_next(rows, x, range[1]);
+            const double low = std::max(0.0, edges.low.value), high = std::max(low, edges.high.value);
+            for (const double y : {low, 0.5 * (low + high), high}) CHECK(piece.used(x, y) <= 1.0 + 1e-9);
+        }
+    }
+}
+
+}  // namespace
+
+TEST(no_limit_of_a_cubic_piece_is_exceeded_between_the_ends) { check_rows<2>(); }
+TEST(no_limit_of_a_quintic_piece_is_exceeded_between_the_ends) { check_rows<4>(); }
+
+// On a straight line the answer is a trapezoid of speed: d = v²/a + v t.
+TEST(a_straight_line_takes_as_long_as_the_trapezoid) {
+    const double controls[] = {0.0, 0.0, 3.0, -6.0}, lengths[] = {1.0};
+    const signed char stops[] = {0, 0};
+    const double v[] = {1.0, 1.5}, a[] = {2.0, 3.0};  // the second joint is the slower one: 6 = v²/a + v t
+    const TimingPath path = {1, 2, controls, lengths, stops};
+    const Timing timing = time_path(path, {v, a}, {0.0, 0.0, 1e-6}, {});
+    CHECK(timing.outcome == TimingOutcome::timed && timing.converged);
+    double seconds = 0.0;
+    for (std::size_t i = 0; i < timing.grid.size(); ++i)
+        seconds += 2.0 * (timing.grid.to[i] - timing.grid.from[i]) /
+                   (std::sqrt(timing.squared_speed[i]) + std::sqrt(timing.squared_speed[i + 1]));
+    CHECK_NEAR(seconds, 1.5 / 3.0 + 6.0 / 1.5, 1e-5);
+}
+
+TEST(speeds_at_the_ends_that_are_impossible_are_answered_with_the_possible_ones) {
+    const double controls[] = {0.0, 1.0}, lengths[] = {1.0}, v[] = {100.0}, a[] = {2.0};
+    const signed char stops[] = {0, 0};
+    const TimingPath path = {1, 1, controls, lengths, stops};
+    const Timing fast = time_path(path, {v, a}, {9.0, 0.0, 1e-3}, {});
+    CHECK(fast.outcome == TimingOutcome::start);
+    CHECK_NEAR(fast.most, 2.0, 1e-9);  // v² = 2 a d
+    const Timing slow = time_path(path, {v, a}, {0.0, 9.0, 1e-3}, {});
+    CHECK(slow.outcome == TimingOutcome::end);
+    CHECK_NEAR(slow.most, 2.0, 1e-9);
+    CHECK(time_path(path, {v, a}, {1.999, 0.0, 1e-3}, {}).outcome == TimingOutcome::timed);
+}
+
+// On a straight line from rest to rest the best motion has seven phases: T = d / v + v / a + a / j.
+TEST(a_straight_line_under_jerk_limits_takes_little_longer_than_seven_phases) {
+    const double controls[] = {0.0, 5.0}, lengths[] = {5.0}, v[] = {1.0}, a[] = {2.0}, j[] = {8.0};
+    const signed char stops[] = {0, 0};
+    const TimingPath path = {1, 1, controls, lengths, stops};
+    TimingGrid grid;
+    const double margin = 1e-6;
+    for (double from = margin, size = margin; from < 1.0 - margin; size = std::min(1.4 * size, 0.005)) {
+        const double left = 1.0 - margin - from;  // it shrinks towards the end as it grew
+        const double to =
+            left < 1.5 * margin ? 1.0 - margin : from + std::min(size, std::max(0.3 * left, margin));
+        grid.piece.push_back(0);
+        grid.from.push_back(from);
+        grid.to.push_back(to);
+        from = to;
+    }
+    const Launch launch = {5.0 * margin, 0.97 * 8.0};
+    const JerkTiming timing = time_path_with_jerk(path, {v, a}, j, grid, {launch, launch, 9.0, 1e-4});
+    const double best = 5.0 / 1.0 + 1.0 / 2.0 + 2.0 / 8.0;
+    CHECK(timing.found && timing.duration >= best && timing.duration < 1.03 * best);
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        const double* x = timing.squares.data() + 3 * i;
+        const double length = 5.0 * (grid.to[i] - grid.from[i]),
+                     u = std::max(std::fabs(x[1] - x[0]), std::fabs(x[2] - x[1]));
+        const double change = std::fabs(x[0] - 2.0 * x[1] + x[2]) / (length * length);
+        const double most = std::max({x[0], x[1], x[2]});
+        CHECK(most <= 1.0 + 1e-9 && u / length <= 2.0 + 1e-9 &&
+              change * std::sqrt(most) <= 8.0 * (1.0 + 1e-9));
+    }
+}
+
+TEST(pentadiagonal_systems_are_solved) {
+    const std::size_t n = 7;
+    Pentadiagonal matrix(n);
+    double full[n][n] = {};
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t left = 0; left <= std::min<std::size_t>(i, 2); ++left) {
+            const double value = left == 0 ? 4.0 + draw(0.0, 1.0) : draw(-1.0, 1.0);
+            matrix.at(i, left) = full[i][i - left] = full[i - left][i] = value;
+        }
+    std::vector<double> x(n), b(n, 0.0);
+    for (double& each : x) each = draw(-1.0, 1.0);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < n; ++k) b[i] += full[i][k] * x[k];
+    CHECK(matrix.solve(b));
+    for (std::size_t i = 0; i < n; ++i) CHECK_NEAR(b[i], x[i], 1e-14);
+    Pentadiagonal indefinite(2);
+    std::vector<double> c(2, 1.0);
+    CHECK(!indefinite.solve(c));
+}

@@ -1,0 +1,156 @@
+// Motions of one axis from state to state. Laws: reach intervals contain what a random admissible motion
+// reaches; the shortest time is the first at which the goal lies in the interval, on a dense grid of times;
+// the slope and the second derivative are those of differences.
+#include <initializer_list>
+
+#include "check.hpp"
+#include "cspace/trajectory/synchronize.hpp"
+#include "random.hpp"
+
+using namespace cspace::trajectory;
+using check::Random;
+
+namespace {
+
+AxisLimits random_limits(Random& random, bool jerk = true) {
+    const auto size = [&] { return std::exp(random.uniform(-1, 1)); };
+    return {size(), -size(), size(), -size(), jerk ? size() * 2 : never};
+}
+
+// A velocity and an acceleration that limits allow before and after.
+AxisState random_state(Random& random, const AxisLimits& l) {
+    const double a = l.has_jerk() ? random.uniform(0.9 * l.a_min, 0.9 * l.a_max) : 0;
+    const double room = l.has_jerk() ? a * a / (2 * l.jerk) : 0;
+    const double low = l.v_min + room, high = l.v_max - room;
+    if (!(low < high)) return {random.uniform(-2, 2), 0, 0};
+    return {random.uniform(-2, 2), random.uniform(low, high), a};
+}
+
+AxisState run_phases(AxisState s, const Phases& phases, const AxisLimits& l, double* worst) {
+    for (int i = 0; i < phases.count; ++i) {
+        const Phase& f = phases.phase[i];
+        const double turn = f.j != 0 ? -f.a / f.j : -1;
+        const AxisState peak = turn > 0 && turn < f.h ? advance_axis(s, {turn, f.a, f.j}) : s;
+        s = advance_axis(s, f);
+        for (const AxisState& at : {peak, s}) {
+            *worst = std::fmax(*worst, std::fmax(at.v - l.v_max, l.v_min - at.v));
+            if (l.has_jerk()) *worst = std::fmax(*worst, std::fmax(at.a - l.a_max, l.a_min - at.a));
+        }
+    }
+    return s;
+}
+
+}  // namespace
+
+TEST(motions_reach_their_goals_within_limits) {
+    Random random{1};
+    double worst = 0;
+    for (int repeat = 0; repeat < 200000; ++repeat) {
+        const AxisLimits l = random_limits(random, repeat % 4 != 0);
+        const AxisState s = random_state(random, l), g = random_state(random, l);
+        Axis axis;
+        set_axis(axis, s, g, l);
+        CHECK(axis.brake_time == 0);
+        for (const double factor : {1.0, random.uniform(1, 3)}) {
+            Axis moved = axis;
+            const double T = next_duration(axis, factor * axis.shortest);
+            CHECK(T < never);
+            CHECK(T >= factor * axis.shortest * (1 - 1e-15));
+            finish_axis(moved, T);
+            CHECK_NEAR(moved.phases.duration(), T, 1e-12 * (1 + T));
+            const AxisState end = run_phases({0, s.v, s.a}, moved.phases, l, &worst);
+            CHECK_NEAR(end.p, g.p - s.p, 1e-9);
+            CHECK_NEAR(end.v, g.v, 1e-10);
+            if (l.has_jerk()) CHECK_NEAR(end.a, g.a, 1e-10);
+        }
+    }
+    CHECK(worst < 1e-11);
+}
+
+TEST(no_shorter_time_reaches_the_goal) {
+    Random random{2};
+    for (int repeat = 0; repeat < 3000; ++repeat) {
+        const AxisLimits l = random_limits(random);
+        const AxisState s = random_state(random, l), g = random_state(random, l);
+        Axis axis;
+        set_axis(axis, s, g, l);
+        const Domain& d = axis.task.domain;
+        for (int i = 0; i < 100; ++i) {
+            const double T = d.first + (axis.shortest - d.first) * i / 100.0;
+            if (!is_in_domain(d, T) || T >= axis.shortest * (1 - 1e-9)) continue;
+            const double up = find_farthest(axis.task.up, T).displacement;
+            const double down = -find_farthest(axis.task.down, T).displacement;
+            CHECK(down <= up + 1e-9);
+            CHECK(axis.task.P > up || axis.task.P < down);
+        }
+    }
+}
+
+TEST(slopes_and_bends_are_those_of_differences) {
+    Random random{3};
+    int compared = 0;
+    for (int repeat = 0; repeat < 20000; ++repeat) {
+        const AxisLimits l = random_limits(random);
+        const AxisState s = random_state(random, l), g = random_state(random, l);
+        const VelocityChange q{s.v, s.a, g.v, g.a, l};
+        const Domain d = find_domain(q);
+        const double T = (d.has_gap ? d.gap_end : d.first) + random.uniform(0.01, 6), h = 1e-4;
+        const Reach before = find_farthest(q, T - h), at = find_farthest(q, T),
+                    after = find_farthest(q, T + h);
+        if (before.regime != at.regime || after.regime != at.regime) continue;
+        ++compared;
+        CHECK_NEAR((after.displacement - before.displacement) / (2 * h), at.slope, 2e-6);
+        CHECK_NEAR((after.slope - before.slope) / (2 * h), at.bend, 2e-5 * (1 + std::fabs(at.bend)));
+    }
+    CHECK(compared > 15000);
+}
+
+// Of jerks that are drawn at random, those that end in the state asked for are rare; so the end is what they
+// reach, and the interval for it must contain their displacement.
+TEST(intervals_contain_what_random_motions_reach) {
+    Random random{4};
+    int compared = 0;
+    for (int repeat = 0; repeat < 200000; ++repeat) {
+        const AxisLimits l = random_limits(random);
+        const AxisState s = random_state(random, l);
+        AxisState at{0, s.v, s.a};
+        double T = 0, worst = 0;
+        Phases one;
+        for (int i = 0; i < 4; ++i) {
+            one.count = 0;
+            one.append({random.uniform(0, 1), at.a, random.uniform(-l.jerk, l.jerk)});
+            at = run_phases(at, one, l, &worst);
+            T += one.duration();
+        }
+        if (worst > 0) continue;
+        ++compared;
+        const VelocityChange q{s.v, s.a, at.v, at.a, l};
+        CHECK(is_in_domain(find_domain(q), T));
+        CHECK(at.p <= find_farthest(q, T).displacement + 1e-10);
+        CHECK(at.p >= -find_farthest(mirror_change(q), T).displacement - 1e-10);
+    }
+    CHECK(compared > 1000);
+}
+
+TEST(axes_agree_on_the_first_common_duration) {
+    Random random{5};
+    for (int repeat = 0; repeat < 20000; ++repeat) {
+        Axis axes[3];
+        double least = 0;
+        for (Axis& axis : axes) {
+            const AxisLimits l = random_limits(random);
+            set_axis(axis, random_state(random, l), random_state(random, l), l);
+            least = std::fmax(least, axis.shortest);
+        }
+        const double T = common_duration(axes, 3, least, 0);
+        for (Axis& axis : axes) CHECK(next_duration(axis, T) == T);
+        for (int i = 0; i < 20; ++i) {
+            const double t = least + (T - least) * i / 20;
+            bool agreed = t < T * (1 - 1e-9);
+            for (Axis& axis : axes) agreed = agreed && next_duration(axis, t) <= t;
+            CHECK(!agreed);
+        }
+        const double ticks = common_duration(axes, 3, least, 0.01) / 0.01;
+        CHECK_NEAR(ticks, std::round(ticks), 1e-8);
+    }
+}

@@ -1,0 +1,79 @@
+"""From a configuration to a goal in time: free all along, within limits, at the goal."""
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.errors import InputError
+
+START = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8])
+
+
+def without_jerk(limits):
+    return cs.Limits(limits.lower, limits.upper, limits.velocity, limits.acceleration)
+
+
+def shelf():
+    return cs.Scene(
+        [
+            cs.Box((0.05, 0.8, 0.6), (0.45, 0.0, 0.3), name="wall"),
+            cs.Sphere(0.08, (0.3, 0.4, 0.5), name="ball"),
+        ]
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("deviation", [0.0, 0.3])
+def test_a_motion_is_free_within_limits_and_ends_at_its_goal(deviation, seed):
+    robot, scene = cs.load_robot("panda"), shelf()
+    rng = np.random.default_rng(seed)
+    goals = robot.random_configuration(40, rng=rng, reach=0.8)
+    goals = goals[~cs.collision.collides(robot, goals, scene)][:2]
+    for goal in goals:
+        motion = cs.move(robot, START, goal, scene, deviation=deviation)
+        assert motion, motion.reason
+        assert motion.check(without_jerk(robot.limits))
+        np.testing.assert_allclose(motion(0.0), START, atol=1e-12)
+        np.testing.assert_allclose(motion(motion.duration), goal, atol=1e-9)
+        t = np.linspace(0, motion.duration, 4001)
+        assert not cs.collision.collides(robot, motion(t), scene).any()
+        assert motion.checked >= 1000 * motion.duration
+        if deviation == 0.0:
+            assert len(motion.path.stops) <= len(motion.plan.path) - 2
+        gaps = np.linalg.norm(motion(t)[None] - motion.plan.path[:, None], axis=2).min(axis=1)
+        assert (gaps <= motion.deviations + 1e-3).all()
+
+
+def test_rounded_corners_are_faster():
+    robot, scene = cs.load_robot("panda"), shelf()
+    goal = robot.fk(np.array([1.2, 0.3, 0.2, -1.8, 0.1, 2.0, 0.5]))
+    sharp, rounded = (cs.move(robot, START, goal, scene, deviation=d) for d in (0.0, 0.4))
+    assert sharp
+    assert rounded
+    if len(rounded.plan.path) > 2:
+        assert rounded.duration < sharp.duration
+
+
+def test_torques_are_kept():
+    robot = cs.load_robot("panda")
+    goal = np.array([1.2, 0.3, 0.2, -1.2, 0.1, 2.0, 0.5])
+    weak = 0.5 * robot.limits.effort
+    free, bound = (cs.move(robot, START, goal, acceleration=60.0, torque=torque) for torque in (None, weak))
+    assert bound
+    t = np.linspace(0, bound.duration, 3001)
+    tau = robot.inverse_dynamics(*(bound(t, order) for order in range(3)))
+    assert (np.abs(tau) <= weak * (1 + 1e-6)).all()
+    assert bound.duration > free.duration
+
+
+def test_where_there_is_no_motion_it_says_why():
+    robot = cs.load_robot("panda")
+    far = cs.pose((3.0, 0, 0))
+    none = cs.move(robot, START, far)
+    assert not none
+    assert "no IK solution" in none.reason
+    assert not cs.move(robot, START, START)
+    with pytest.raises(InputError, match="deviation"):
+        cs.move(robot, START, START + 0.1, deviation=-1)
+    with pytest.raises(InputError, match="pass acceleration="):
+        cs.move(cs.load_robot("ur5e"), np.array([0, -1, 1, 0, 1, 0]), np.array([0.2, -1, 1, 0, 1, 0]))

@@ -1,0 +1,127 @@
+"""Timing of paths under jerk limits: laws, exactness, and bad input."""
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.trajectory import Path
+from trajectory.path_cases import MAKERS, line, random_waypoints
+
+SMOOTH = [name for name in MAKERS if name != "circular"]
+
+
+def limits_of(path, v, a, j):
+    wide = np.full(path.dof, 1e3)
+    return cs.Limits(-wide, wide, v, a, j)
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_no_limit_is_exceeded_anywhere(name):
+    rng = np.random.default_rng(41)
+    for _ in range(4):
+        path = MAKERS[name](random_waypoints(rng, 8))
+        v, a = rng.uniform(0.5, 3.0, path.dof), rng.uniform(2.0, 20.0, path.dof)
+        limits = limits_of(path, v, a, a * rng.uniform(3.0, 20.0))
+        timed = cs.time_parametrize(path, limits, jerk=True)
+        assert timed, timed.reason
+        assert timed.proved
+        check = timed.check(limits)
+        assert check, check.reason
+        assert timed.duration >= cs.time_parametrize(path, limits).duration * (1 - 1e-3)
+        t = np.linspace(0, timed.duration, 3000)
+        for order, limit in ((1, v), (2, a), (3, limits.jerk)):
+            assert (np.abs(timed(t, order)) <= limit * (1 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("name", SMOOTH)
+def test_the_motion_is_the_path_and_its_derivatives(name):
+    rng = np.random.default_rng(42)
+    path = MAKERS[name](rng.uniform(-1, 1, (5, 3)))
+    timed = cs.time_parametrize(path, velocity=2.0, acceleration=8.0, jerk=60.0)
+    assert np.array_equal(timed(0.0), path.start)
+    assert np.array_equal(timed(timed.duration), path.end)
+    for order in (1, 2):
+        assert np.abs(timed([0.0, timed.duration], order)).max() < 1e-9
+    assert timed.continuity == 2
+    t = rng.uniform(0, timed.duration, 400)
+    assert np.allclose(timed(t), path(timed.parameter(t)), atol=1e-12)
+    assert (np.diff(timed.parameter(np.sort(t))) > 0).all()
+    h = 1e-6
+    inside = np.abs(t[:, None] - timed.knots).min(axis=1) > 2 * h
+    for order in range(3):
+        slope = (timed(t[inside] + h, order) - timed(t[inside] - h, order)) / (2 * h)
+        exact = timed(t[inside], order + 1)
+        assert np.abs(slope - exact).max() <= 1e-5 * (1.0 + np.abs(exact).max())
+
+
+def test_reversed_and_scaled_motions():
+    rng = np.random.default_rng(43)
+    path = cs.blend(rng.uniform(-1, 1, (4, 3)), 0.1)
+    timed = cs.time_parametrize(path, velocity=2.0, acceleration=8.0, jerk=60.0)
+    t = rng.uniform(0, timed.duration, 100)
+    back, slow = timed.reversed(), timed.scaled(1.7)
+    for order in range(4):
+        size = np.abs(timed(t, order)).max()
+        turned = (-1.0) ** order * back(timed.duration - t, order)
+        near = np.abs(t[:, None] - timed.knots).min(axis=1) > 1e-6
+        assert np.allclose(turned[near], timed(t, order)[near], atol=1e-6 * size)
+        assert np.allclose(1.7**order * slow(1.7 * t, order)[near], timed(t, order)[near], atol=1e-6 * size)
+
+
+def test_a_line_is_nearly_as_fast_as_the_seven_phases():
+    # Rest to rest over d with J, a, v: T = d / v + v / a + a / J where all limits are attained.
+    path = line(5.0, 2)
+    timed = cs.time_parametrize(path, velocity=1.0, acceleration=2.0, jerk=8.0, grid=2000)
+    best = 5.0 / 1.0 + 1.0 / 2.0 + 2.0 / 8.0
+    assert best <= timed.duration <= 1.01 * best
+    used = [each.limit for each in timed.binding()]
+    assert {"velocity", "acceleration", "jerk"} <= set(used)
+
+
+def test_finer_grids_are_faster_and_loose_jerks_approach_none():
+    path = cs.spline(np.random.default_rng(44).uniform(-1, 1, (5, 4)))
+    options = {"velocity": 2.0, "acceleration": 8.0}
+    coarse, fine = (cs.time_parametrize(path, **options, jerk=60.0, grid=n).duration for n in (60, 600))
+    assert fine < coarse
+    loose = cs.time_parametrize(path, **options, jerk=1e4, grid=1500).duration
+    free = cs.time_parametrize(path, **options).duration
+    assert free * (1 - 1e-3) <= loose <= 1.02 * free
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e6])
+def test_units_do_not_matter(scale):
+    w = np.random.default_rng(45).uniform(-1, 1, (4, 3))
+    base = cs.time_parametrize(cs.spline(w), velocity=2.0, acceleration=8.0, jerk=60.0)
+    other = cs.time_parametrize(
+        cs.spline(scale * w), velocity=2.0 * scale, acceleration=8.0 * scale, jerk=60.0 * scale
+    )
+    assert other.duration == pytest.approx(base.duration, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("make", "options", "message"),
+    [
+        (
+            lambda: MAKERS["circular"]([[0, 0], [1, 0], [1, 1]]),
+            {"jerk": 1.0},
+            "second derivative of the path jumps",
+        ),
+        (lambda: line(), {"jerk": True}, "no jerk limits; pass jerk="),
+        (lambda: line(), {"jerk": np.inf}, "infinite for all"),
+        (lambda: line(), {"jerk": -1.0}, "0 or more"),
+        (lambda: line(), {"jerk": 1.0, "start_speed": 1.0}, "from rest to rest"),
+        (lambda: line(1.0, 7), {"jerk": 1.0, "speed": 1.0, "robot": "panda"}, "cannot be combined"),
+    ],
+)
+def test_bad_input_is_named(make, options, message):
+    if "robot" in options:
+        options = {**options, "robot": cs.load_robot(options["robot"])}
+    with pytest.raises(cs.CspaceError, match=message):
+        cs.time_parametrize(make(), velocity=1.0, acceleration=1.0, **options)
+
+
+def test_a_joint_whose_jerk_limit_is_zero_may_not_move():
+    refused = cs.time_parametrize(line(1.0, 2), velocity=1.0, acceleration=1.0, jerk=[1.0, 0.0])
+    assert not refused
+    assert "joint 1 moves" in refused.reason
+    assert isinstance(line(), Path)

@@ -1,0 +1,272 @@
+"""Time parametrisation: laws that every answer obeys, adversaries, and bad input."""
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.trajectory import Path
+from trajectory.path_cases import MAKERS, excess, line, random_waypoints
+
+ROUNDING = 1e-9
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_no_limit_is_exceeded_on_a_ten_times_finer_grid(name):
+    rng = np.random.default_rng(11)
+    for _ in range(12):
+        w = random_waypoints(rng)
+        path = MAKERS[name](w)
+        v, a = rng.uniform(0.5, 3.0, path.dof), rng.uniform(1.0, 20.0, path.dof)
+        for grid in (None, int(rng.integers(1, 300))):
+            timed = cs.time_parametrize(path, velocity=v, acceleration=a, grid=grid)
+            assert timed, timed.reason
+            assert timed.proved
+            assert np.isfinite(timed.duration)
+            assert excess(timed, v, a) <= ROUNDING
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MAKERS)
+def test_no_limit_is_exceeded_on_many_paths(name):
+    rng = np.random.default_rng(12)
+    for _ in range(150):
+        path = MAKERS[name](random_waypoints(rng))
+        v, a = rng.uniform(0.5, 3.0, path.dof), rng.uniform(1.0, 20.0, path.dof)
+        timed = cs.time_parametrize(path, velocity=v, acceleration=a)
+        assert timed
+        assert excess(timed, v, a) <= ROUNDING
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_the_motion_is_the_path_and_its_derivatives(name):
+    rng = np.random.default_rng(13)
+    w = rng.uniform(-1, 1, (5, 3))
+    path = MAKERS[name](w)
+    timed = cs.time_parametrize(path, velocity=2.0, acceleration=8.0)
+    assert np.array_equal(timed(0.0), path.start)
+    assert np.array_equal(timed(timed.duration), path.end)
+    if name != "clamped":
+        assert not timed([0.0, timed.duration], 1).any()
+    t = rng.uniform(0, timed.duration, 300)
+    assert np.allclose(timed(t), path(timed.parameter(t)), atol=1e-12)
+    h = 1e-5
+    inside = np.abs(t[:, None] - timed.knots).min(axis=1) > 2 * h
+    for order in range(3):
+        slope = (timed(t[inside] + h, order) - timed(t[inside] - h, order)) / (2 * h)
+        exact = timed(t[inside], order + 1)
+        assert np.abs(slope - exact).max() <= 1e-6 * (1.0 + np.abs(exact).max())
+    check = timed.check(cs.Limits(-9 * np.ones(3), 9 * np.ones(3), 2 * np.ones(3), 8 * np.ones(3)))
+    assert check, check.reason
+
+
+def test_limits_scale_the_duration():
+    rng = np.random.default_rng(14)
+    for _ in range(10):
+        path = cs.spline(rng.uniform(-1, 1, (6, 4)))
+        v, a, k = rng.uniform(1, 2, 4), rng.uniform(3, 9, 4), float(rng.uniform(1.5, 4))
+        base = cs.time_parametrize(path, velocity=v, acceleration=a, grid=200).duration
+        faster = cs.time_parametrize(path, velocity=k * v, acceleration=k * k * a, grid=200).duration
+        assert faster == pytest.approx(base / k, rel=1e-9)
+        free = cs.time_parametrize(path, velocity=np.inf, acceleration=a, grid=200).duration
+        stronger = cs.time_parametrize(path, velocity=np.inf, acceleration=k * a, grid=200).duration
+        assert stronger == pytest.approx(free / np.sqrt(k), rel=1e-9)
+
+
+def test_the_reversed_path_takes_as_long():
+    rng = np.random.default_rng(15)
+    for _ in range(10):
+        path = cs.spline(rng.uniform(-1, 1, (6, 4)), int(rng.choice([3, 5])))
+        there, back = (
+            cs.time_parametrize(each, velocity=2.0, acceleration=8.0, tolerance=1e-4)
+            for each in (path, path.reversed())
+        )
+        assert back.duration == pytest.approx(there.duration, rel=2e-4)
+        turned = there.reversed()
+        t = rng.uniform(0, there.duration, 50)
+        assert np.allclose(turned(there.duration - t), there(t), atol=1e-9)
+        assert turned.duration == pytest.approx(there.duration, rel=1e-12)
+
+
+def test_more_limits_never_shorten_a_motion():
+    rng = np.random.default_rng(16)
+    robot = cs.load_robot("panda")
+    low, high = robot.limits.range
+    for _ in range(5):
+        path = cs.spline(low + (high - low) * rng.uniform(0.2, 0.8, (5, 7)))
+        options = {"grid": 200}
+        free = cs.time_parametrize(path, robot, velocity=np.inf, **options).duration
+        base = cs.time_parametrize(path, robot, **options).duration
+        assert base >= free * (1 - 1e-12)
+        for extra in ({"torque": 0.7 * robot.limits.effort}, {"speed": 0.5}, {"turn_rate": 1.0}):
+            assert cs.time_parametrize(path, robot, **options, **extra).duration >= base * (1 - 1e-9)
+
+
+def test_a_finer_grid_ends_at_the_duration_of_the_automatic_one():
+    rng = np.random.default_rng(17)
+    for _ in range(10):
+        path = cs.spline(rng.uniform(-1.5, 1.5, (6, 7)))
+        timed = cs.time_parametrize(path, velocity=2.0, acceleration=8.0)
+        fine = cs.time_parametrize(path, velocity=2.0, acceleration=8.0, grid=20_000)
+        assert timed.converged
+        assert timed.duration == pytest.approx(fine.duration, rel=2.5e-3)
+        finer = cs.time_parametrize(path, velocity=2.0, acceleration=8.0, tolerance=1e-4)
+        assert finer.duration == pytest.approx(fine.duration, rel=2.5e-4)
+
+
+def test_a_line_takes_as_long_as_the_trapezoid_of_its_slowest_joint():
+    path = cs.spline([[0.0, 0.0], [3.0, -6.0]])
+    timed = cs.time_parametrize(path, velocity=[1.0, 1.5], acceleration=[2.0, 3.0], tolerance=1e-6)
+    assert timed.duration == pytest.approx(6.0 / 1.5 + 1.5 / 3.0, rel=1e-5)
+    used = timed.binding()
+    assert [each.limit for each in used] == ["acceleration", "velocity", "acceleration"]
+
+
+def test_a_circle_is_limited_by_its_centripetal_acceleration():
+    def circle(s, order):
+        return np.stack([np.cos(s + order * np.pi / 2), np.sin(s + order * np.pi / 2)], axis=-1)
+
+    path = cs.trajectory.fit_path(circle, 8 * np.pi, tolerance=1e-9)
+    timed = cs.time_parametrize(path, velocity=np.inf, acceleration=4.0, tolerance=1e-4)
+    # Each joint alone may accelerate by 4: on the axes ṡ² = 4, so that no speed above 2 is possible there.
+    assert timed.squared_speed.max() < 4.0 * np.sqrt(2.0)
+    at_axis = np.interp(np.arange(1, 8) * np.pi, timed.grid, timed.squared_speed)
+    assert (at_axis <= 4.0 + 1e-9).all()
+
+
+def test_speeds_at_the_ends():
+    path = line(1.0)
+    options = {"velocity": np.inf, "acceleration": 2.0}
+    fast = cs.time_parametrize(path, **options, start_speed=9.0)
+    assert not fast
+    assert fast.speed_range == pytest.approx((0.0, 2.0))
+    assert fast.place == 0.0
+    assert "from 0 to 2 are possible" in fast.reason
+    end = cs.time_parametrize(path, **options, end_speed=9.0)
+    assert not end
+    assert end.speed_range[1] == pytest.approx(2.0)
+    both = cs.time_parametrize(path, **options, start_speed=1.0, end_speed=1.5)
+    assert both
+    assert both([0.0, both.duration], 1).ravel() == pytest.approx([1.0, 1.5])
+    # v² − v₀² = 2 a d up and down again.
+    top = np.sqrt((2 * 2.0 * 1.0 + 1.0 + 2.25) / 2)
+    assert both.duration == pytest.approx(((top - 1.0) + (top - 1.5)) / 2.0, rel=1e-3)
+    # A motion that is refused is at its start, for no time.
+    assert fast.duration == 0.0
+    assert np.array_equal(fast(0.0), path.start)
+    assert not fast.binding()
+
+
+def test_zero_limits():
+    path = cs.spline([[0, 0], [1, 0], [2, 1]])
+    refused = cs.time_parametrize(path, velocity=[1.0, 0.0], acceleration=1.0)
+    assert not refused
+    assert "joint 1 moves from s = 0 on; its velocity limit is 0" in refused.reason
+    still = cs.spline([[0, 5], [1, 5], [2, 5]])
+    assert cs.time_parametrize(still, velocity=[1.0, 0.0], acceleration=[1.0, 0.0]).duration > 2.0
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e3, 1e6])
+def test_units_do_not_matter(scale):
+    w = np.random.default_rng(18).uniform(-1, 1, (5, 3))
+    base = cs.time_parametrize(cs.spline(w), velocity=2.0, acceleration=8.0)
+    other = cs.time_parametrize(cs.spline(scale * w), velocity=2.0 * scale, acceleration=8.0 * scale)
+    assert other.duration == pytest.approx(base.duration, rel=1e-9)
+    assert excess(other, np.full(3, 2.0 * scale), np.full(3, 8.0 * scale)) <= ROUNDING
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_waypoints_that_nearly_coincide(name):
+    rng = np.random.default_rng(19)
+    for gap in (1e-12, 1e-9, 1e-7, 1e-5, 1e-3):
+        w = rng.uniform(-1, 1, (6, 3))
+        w[3] = w[2] + gap * rng.normal(size=3)
+        w[5] = w[4] + gap * (w[4] - w[3])
+        path = MAKERS[name](w)
+        timed = cs.time_parametrize(path, velocity=2.0, acceleration=8.0)
+        assert timed, (gap, timed.reason)
+        assert excess(timed, np.full(3, 2.0), np.full(3, 8.0)) <= ROUNDING
+
+
+def test_a_path_that_turns_on_the_spot_passes_slopes_of_zero():
+    cusp = Path.from_coefficients([0, 1, 2], [[[0.0], [2.0], [-1.0]], [[1.0], [0.0], [-1.0]]])
+    timed = cs.time_parametrize(cusp, velocity=1.0, acceleration=2.0, tolerance=1e-5)
+    # q = 1 − (s − 1)²: out and back, two trapezoids of one unit each with a turn at full deceleration.
+    assert timed.duration == pytest.approx(2 * (1.0 / 1.0 + 1.0 / 2.0), rel=1e-3)
+    assert excess(timed, np.ones(1), np.full(1, 2.0)) <= ROUNDING
+
+
+def test_thousands_of_waypoints():
+    w = np.cumsum(np.random.default_rng(20).normal(size=(10_000, 3)), axis=0)
+    path = cs.spline(w)
+    timed = cs.time_parametrize(path, velocity=2.0, acceleration=8.0)
+    assert timed
+    assert timed.converged
+    assert excess(timed, np.full(3, 2.0), np.full(3, 8.0), 2) <= ROUNDING
+
+
+def test_torques_keep_their_limits_at_samples():
+    rng = np.random.default_rng(21)
+    robot = cs.load_robot("panda")
+    low, high = robot.limits.range
+    limit = 0.5 * robot.limits.effort
+    for grid in (None, 60):
+        path = cs.spline(low + (high - low) * rng.uniform(0.25, 0.75, (5, 7)))
+        timed = cs.time_parametrize(path, robot, torque=limit, grid=grid)
+        assert timed, timed.reason
+        assert not timed.proved
+        t = np.linspace(0, timed.duration, 5000)
+        tau = robot.inverse_dynamics(timed(t), timed(t, 1), timed(t, 2))
+        assert (np.abs(tau) <= limit * (1 + 1e-6)).all()
+        assert excess(timed, robot.limits.velocity, robot.limits.acceleration) <= ROUNDING
+        assert any(each.limit == "torque" for each in timed.binding())
+
+
+def test_a_torque_below_gravity_is_answered_with_the_joint_and_the_place():
+    robot = cs.load_robot("panda")
+    path = cs.spline([robot.q_home if hasattr(robot, "q_home") else np.zeros(7), np.full(7, -0.5)])
+    refused = cs.time_parametrize(path, robot, torque=2.0)
+    assert not refused
+    assert "against gravity" in refused.reason
+    assert "panda_joint" in refused.reason
+    assert 0.0 <= refused.place <= path.length
+
+
+def test_speed_and_turn_rate_of_the_tip():
+    rng = np.random.default_rng(22)
+    robot = cs.load_robot("panda")
+    low, high = robot.limits.range
+    path = cs.spline(low + (high - low) * rng.uniform(0.25, 0.75, (5, 7)))
+    timed = cs.time_parametrize(path, robot, speed=0.4, turn_rate=1.2)
+    t = np.linspace(0, timed.duration, 5000)
+    twist = np.einsum("kij,kj->ki", robot.jacobian(timed(t)), timed(t, 1))
+    assert np.linalg.norm(twist[:, :3], axis=1).max() == pytest.approx(0.4, rel=1e-3)
+    assert np.linalg.norm(twist[:, :3], axis=1).max() <= 0.4 * (1 + 1e-6)
+    assert np.linalg.norm(twist[:, 3:], axis=1).max() <= 1.2 * (1 + 1e-6)
+    assert {"speed"} <= {each.limit for each in timed.binding()}
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({}, "no acceleration limits; pass acceleration="),
+        ({"acceleration": np.inf}, "no limit applies"),
+        ({"acceleration": -1.0}, "0 or more"),
+        ({"acceleration": np.nan}, "0 or more"),
+        ({"acceleration": [1.0, 2.0, 3.0]}, "one per joint"),
+        ({"acceleration": 1.0, "torque": 3.0}, "robot="),
+        ({"acceleration": 1.0, "speed": 3.0}, "robot="),
+        ({"acceleration": 1.0, "speed": 0.0, "robot": "panda"}, "positive"),
+        ({"acceleration": 1.0, "grid": 0}, "grid is 0"),
+        ({"acceleration": 1.0, "tolerance": 0.0}, "tolerance"),
+        ({"acceleration": 1.0, "start_speed": -1.0}, "start_speed"),
+        ({"acceleration": 1.0, "robot": "ur5e"}, "of 7 joints"),
+        ({"limits": 3.0}, "limits is a float"),
+        ({"path": [[0, 0]], "acceleration": 1.0}, "make a Path"),
+    ],
+)
+def test_bad_input_is_named(options, message):
+    options = {"path": line(1.0, 7), **options}
+    if "robot" in options:
+        options["robot"] = cs.load_robot(options["robot"])
+    with pytest.raises(cs.CspaceError, match=message):
+        cs.time_parametrize(**options)
