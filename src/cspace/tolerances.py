@@ -553,3 +553,11 @@ LOST_MOTION: Final = 1e-12
 1e-16, and of the root, as a singular value, 1e-6 is nearly singular."""
 
 __all__ = [name for name in globals() if name.isupper()]
+
+SIDE_SLIP: Final = 1e-9
+"""Part of a twist [m/s or rad/s] that may lie outside of what wheels allow, and of a wheel matrix that may miss a
+direction: rounding is far below, and a slide that was meant far above."""
+
+SHORT_STEP: Final = 0.01
+"""Length of a step of odometry [m] below which its direction of travel is noise, so that the odometry model
+of Thrun takes the first turn as zero."""
