@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import LogError
@@ -30,13 +31,13 @@ DEFAULT_MOST = 81.0
 class Messages:
     """What the lines say: poses with times, and scans with their poses."""
 
-    odometry: list[list[float]] = field(default_factory=list)  # x, y, θ, time, 1 after a jump to a new start
-    scans: list[list[float]] = field(default_factory=list)  # laser x, y, θ, robot x, y, θ, time
+    odometry: list[list[float]] = field(default_factory=list)  # x, y, θ, time, 1 if it repeats a scan, line
+    scans: list[list[float]] = field(default_factory=list)  # laser x, y, θ, robot x, y, θ, time, line
     ranges: list[np.ndarray[tuple[int], np.dtype[np.float32]]] = field(default_factory=list)
     angles: Array | None = None
     most: float = DEFAULT_MOST
     skipped: Counter[str] = field(default_factory=Counter)
-    resets: int = 0
+    resets: int = 0  # repetitions with a time that is not their own
     after_scan: bool = False  # no ODOM since the last scan
 
 
@@ -71,21 +72,11 @@ def add_odometry(messages: Messages, lines: Lines, number: int, words: list[str]
         raise lines.error(number, f"ODOM has {len(words) - 1} values; 9 expected, the line is cut")
     x, y, theta = lines.numbers(number, words[1:4], "x, y and θ of ODOM")
     time = lines.numbers(number, words[7:8], "the time of ODOM")[0]
-    if repeats_scan(messages, [x, y, theta], time):
+    repeats = messages.after_scan and [x, y, theta] == messages.scans[-1][3:6]
+    if repeats and abs(time - messages.scans[-1][6]) > SAME_TIME:
         messages.resets += 1
-        messages.odometry.append([x, y, theta, np.nan, 1.0])
-    else:
-        messages.odometry.append([x, y, theta, time, 0.0])
-
-
-def repeats_scan(messages: Messages, pose: list[float], time: float) -> bool:
-    """Whether an ODOM repeats the pose of the scan just before it with a time that is not its own: 0, or what
-    the writer of the log had in memory."""
-    if not messages.after_scan:
-        return False
     messages.after_scan = False
-    scan = messages.scans[-1]
-    return pose == scan[3:6] and abs(time - scan[6]) > SAME_TIME
+    messages.odometry.append([x, y, theta, time, float(repeats), number])
 
 
 def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) -> None:
@@ -116,7 +107,7 @@ def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) ->
     except ValueError:
         raise lines.error(number, f"a range of {words[0]} is no number") from None
     messages.after_scan = True
-    messages.scans.append(lines.numbers(number, [*tail[:6], tail[place]], "poses and time of the scan"))
+    messages.scans.append(lines.numbers(number, [*tail[:6], tail[place], str(number)], "a pose"))
 
 
 def beam_angles(head: list[float], count: int) -> Array:
@@ -128,37 +119,37 @@ def beam_angles(head: list[float], count: int) -> Array:
 
 def assemble_log(messages: Messages) -> Log:
     """Odometry, scans and truth on one clock that starts at the first message."""
-    rows = np.array(messages.odometry).reshape(-1, 5)
-    scans = np.array(messages.scans).reshape(-1, 7)
-    timed = rows[rows[:, 4] == 0, 3]
-    zero = min([*timed[:1], *scans[:1, 6]])
+    rows = np.array(messages.odometry).reshape(-1, 6)
+    scans = np.array(messages.scans).reshape(-1, 8)
+    is_corrected = 2 * messages.resets > len(scans)
+    jumps = (rows[:, 4] == 1) & is_corrected  # in a raw log a robot at rest repeats its pose
     notes = [f"{count} {name} messages are not read" for name, count in sorted(messages.skipped.items())]
-    times, clock = mend_clock(scans[:, 6] - zero)
-    notes += [f"scans: {note}" for note in clock]
+    order = np.argsort(np.concatenate([rows[~jumps, 5], scans[:, 7]]), kind="stable")
+    stamps = np.concatenate([rows[~jumps, 3], scans[:, 6]])
+    mended, clock = mend_clock(stamps[order])
+    stamps[order] = mended - mended[0]
+    notes += clock
+    times, scan_times = stamps[: len(rows) - jumps.sum()], stamps[len(rows) - jumps.sum() :]
     if len(rows):
-        odometry, clock = chain_odometry(rows, zero)
+        odometry = chain_odometry(rows[:, :3], jumps, times)
     else:
-        odometry, clock = Odometry.from_poses(times, scans[:, 3:6]), ["the odometry is that of the scans"]
-    notes += [f"odometry: {note}" for note in clock]
+        odometry = Odometry.from_poses(scan_times, scans[:, 3:6])
+        notes.append("the odometry is that of the scans")
     truth = None
-    if messages.resets:
-        truth = TimedPoses(times, scans[:, 3:6])
-        notes.append(f"{messages.resets} corrected poses are the truth; the raw odometry was chained between")
-    return Log(
-        odometry, pack_scans(messages, scans, times, notes) if len(scans) else None, truth=truth, notes=tuple(notes)
-    )
+    if is_corrected:
+        truth = TimedPoses(scan_times, scans[:, 3:6])
+        notes.append(f"{len(truth)} corrected poses are the truth; the raw odometry was chained between")
+    packed = pack_scans(messages, scans, scan_times, notes) if len(scans) else None
+    return Log(odometry, packed, truth=truth, notes=tuple(notes))
 
 
-def chain_odometry(rows: Array, zero: float) -> tuple[Odometry, list[str]]:
-    """Odometry from poses whose frame jumps where a row is marked: increments are taken after the jump."""
-    T = pose_2d(xytheta=rows[:, :3])
-    increments = to_xytheta(inverse_pose_2d(T[:-1]) @ T[1:])
-    jumps = rows[:, 4] == 1
-    times, notes = mend_clock(rows[~jumps, 3] - zero)
-    increments = increments[~jumps[1:]]
+def chain_odometry(poses: Array, jumps: npt.NDArray[np.bool_], times: Array) -> Odometry:
+    """Odometry from poses (n, 3) whose frame jumps where a row is marked: increments are taken after it."""
+    T = pose_2d(xytheta=poses)
+    increments = to_xytheta(inverse_pose_2d(T[:-1]) @ T[1:])[~jumps[1:]]
     if jumps[0]:  # when the first step began is unknown
         increments = increments[1:]
-    return Odometry.from_increments(times, increments), notes
+    return Odometry.from_increments(times, increments)
 
 
 def pack_scans(messages: Messages, scans: Array, times: Array, notes: list[str]) -> Scans:

@@ -6,10 +6,12 @@ import gzip
 import io
 import os
 import zlib
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace import tolerances
 from cspace.arrays import Array
@@ -93,10 +95,32 @@ def is_number(word: str) -> bool:
 
 
 def mend_clock(times: Array) -> tuple[Array, list[str]]:
-    """Times that never run backwards, each at least the largest before it, and a note if any was moved."""
-    mended = np.maximum.accumulate(times) if len(times) else times
+    """Times that never run backwards, and a note if any was moved.
+
+    The fewest stamps that break the order are replaced: each lies between those before and after it, in
+    proportion to its place among the rows.
+    """
     back = int(np.count_nonzero(np.diff(times) < 0))
     if not back:
-        return mended, []
-    most = float((mended - times).max())
-    return mended, [f"the clock runs backwards {back} times, by up to {most:.3g} s; such times wait for it"]
+        return times, []
+    kept = find_longest_order(times)
+    mended = np.interp(np.arange(len(times)), kept, times[kept])
+    most = float(np.abs(mended - times).max())
+    moved = len(times) - len(kept)
+    return mended, [f"the clock runs backwards {back} times; {moved} stamps are moved, by up to {most:.3g} s"]
+
+
+def find_longest_order(values: Array) -> npt.NDArray[np.intp]:
+    """The rows of a longest subsequence that never decreases, by patience sorting. Source: Schensted 1961."""
+    ends: list[float] = []  # the least end of a subsequence of each length
+    rows: list[int] = []
+    before = np.full(len(values), -1)
+    for k, value in enumerate(values.tolist()):
+        length = bisect_right(ends, value)
+        ends[length : length + 1] = [value]
+        rows[length : length + 1] = [k]
+        before[k] = rows[length - 1] if length else -1
+    found = [rows[-1]] if rows else []
+    while found and before[found[-1]] >= 0:
+        found.append(int(before[found[-1]]))
+    return np.array(found[::-1], dtype=np.intp)
