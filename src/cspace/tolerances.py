@@ -566,4 +566,15 @@ LOG_BYTES: Final = 1 << 30
 LEVEL_TILT: Final = 1e-3
 """Tilt [rad] up to which a pose of space counts as planar: rounding of quaternions printed with four digits."""
 
+CLOSEST_LANDMARK: Final = 1e-3
+"""Distance of a landmark [m] below which its bearing has the derivative that it has there: nearer than any
+sensor sees, the derivative grows without bound."""
+
+KNOWN_EXACTLY: Final = 1e-14
+"""Ratio of eigenvalues of a covariance below which a direction counts as known exactly: a smoother learns nothing
+about it, and rounding fills it."""
+
+COVARIANCE_SYMMETRY: Final = 1e-9
+"""Part of its largest entry by which a covariance may miss symmetry, or fall below zero: rounding of products."""
+
 __all__ = [name for name in globals() if name.isupper()]
