@@ -1,4 +1,9 @@
-"""Smoothers: what was known later about where the robot was earlier."""
+"""Smoothers: what was known later about where the robot was earlier.
+
+Between two nodes without a measurement in between, a step of the Rauch–Tung–Striebel smoother spans any number of
+steps of odometry, as their transitions are adjoints: C = P Ad(T⁻⁻¹ T)ᵀ (P⁻)⁻¹ with T⁻, P⁻ predicted at the later
+one. With ζ = log(T⁻⁻¹ Tˢ) there, the earlier one becomes Tˢ = T exp(C ζ) with Pˢ = P + C (Jr⁻¹ Pˢ Jr⁻ᵀ − P⁻) Cᵀ.
+"""
 
 from __future__ import annotations
 
@@ -7,72 +12,57 @@ import numpy as np
 from cspace import tolerances
 from cspace.arrays import Array
 from cspace.localization.filters.forward import Passed
+from cspace.localization.filters.rows import adjoin_rows, carry_covariance, find_twist, move_pose, relate_rows
 from cspace.localization.filters.timeline import Timeline
-from cspace.localization.filters.updates import finish_update, move_pose
-from cspace.math.wrapping import wrap_angle
-from cspace.spatial.planar_twists import left_jacobian, logarithm_se2
-from cspace.spatial import pose_2d
+from cspace.localization.log import Ids
+from cspace.spatial.planar_twists import left_jacobian
 
 
 def smooth_interval(line: Timeline, passed: Passed) -> tuple[Array, Array]:
     """Poses (n, 3) and covariances (n, 3, 3) given all measurements (Rauch, Tung & Striebel 1965).
 
-    With C = P Aᵀ (P⁻)⁻¹ and ζ = log(T⁻⁻¹ Tˢ) at the next node: Tˢ = T exp(C ζ), Pˢ = P + C (Jr⁻¹ Pˢ Jr⁻ᵀ − P⁻) Cᵀ.
+    From anchor to anchor, then all nodes between at once.
     """
     poses, covariances = passed.poses.copy(), passed.covariances.copy()
-    gains = make_gains(line, passed)
-    for k in range(len(poses) - 2, -1, -1):
-        zeta = relative_twist(passed.poses_before[k + 1], poses[k + 1])
-        inside = carry_back(covariances[k + 1], zeta) - passed.covariances_before[k + 1]
-        P = passed.covariances[k] + gains[k] @ inside @ gains[k].T
-        poses[k], covariances[k] = finish_update(passed.poses[k], P, gains[k] @ zeta)
+    for k in range(len(line.anchors) - 1, 0, -1):
+        to, later = line.anchors[k - 1 : k], line.anchors[k : k + 1]
+        poses[to], covariances[to] = go_back(passed, to, later, poses[later], covariances[later])
+    nodes = np.arange(len(poses))
+    later = line.anchors[np.searchsorted(line.anchors, nodes)]
+    between = np.flatnonzero(later > nodes)
+    later = later[between]
+    poses[between], covariances[between] = go_back(passed, between, later, poses[later], covariances[later])
     return poses, covariances
 
 
 def smooth_lag(line: Timeline, passed: Passed, lag: float) -> tuple[Array, Array]:
     """Poses and covariances given the measurements up to a lag [s] after each: (n, 3) and (n, 3, 3).
 
-    All nodes go back at once, each from the last node within its lag.
+    All nodes go back at once, each from the last anchor within its lag.
     """
-    n = len(line.times)
-    last = np.searchsorted(line.times, line.times + lag, side="right") - 1
-    last = np.maximum(last, np.arange(n))
-    poses, covariances = passed.poses[last], passed.covariances[last]
-    gains = make_gains(line, passed)
-    at = last.copy()
-    going = np.flatnonzero(at > np.arange(n))
+    nodes = np.arange(len(line.times))
+    horizon = np.searchsorted(line.times, line.times + lag, side="right") - 1
+    at = np.maximum(line.anchors[np.searchsorted(line.anchors, horizon, side="right") - 1], nodes)
+    poses, covariances = passed.poses[at], passed.covariances[at]
+    going = np.flatnonzero(at > nodes)
     while len(going):
-        k = at[going] - 1
-        zeta = relative_twist(passed.poses_before[k + 1], poses[going])
-        inside = carry_back(covariances[going], zeta) - passed.covariances_before[k + 1]
-        P = passed.covariances[k] + gains[k] @ inside @ np.swapaxes(gains[k], -1, -2)
-        xi = np.einsum("nij,nj->ni", gains[k], zeta)
-        J = left_jacobian(-xi)
-        P = J @ P @ np.swapaxes(J, -1, -2)
-        poses[going] = move_pose(passed.poses[k], xi)
-        covariances[going] = 0.5 * (P + np.swapaxes(P, -1, -2))
-        at[going] = k
-        going = going[k > going]
+        later = at[going]
+        earlier = line.anchors[np.maximum(np.searchsorted(line.anchors, later) - 1, 0)]
+        to = np.maximum(earlier, going)
+        poses[going], covariances[going] = go_back(passed, to, later, poses[going], covariances[going])
+        at[going] = to
+        going = going[to > going]
     return poses, covariances
 
 
-def make_gains(line: Timeline, passed: Passed) -> Array:
-    """C = P Aᵀ (P⁻)⁻¹ of each step (n − 1, 3, 3); directions that P⁻ knows exactly get none."""
-    P, A = passed.covariances[:-1], line.A
-    before = passed.covariances_before[1:]
-    inverse = np.linalg.pinv(before, rcond=tolerances.KNOWN_EXACTLY, hermitian=True)
-    return np.asarray(P @ np.swapaxes(A, -1, -2) @ inverse)
-
-
-def relative_twist(poses: Array, others: Array) -> Array:
-    """log(T⁻¹ T') of rows x, y, θ: (..., 3) and (..., 3) → (..., 3)."""
-    c, s = np.cos(poses[..., 2]), np.sin(poses[..., 2])
-    dx, dy = others[..., 0] - poses[..., 0], others[..., 1] - poses[..., 1]
-    turn = wrap_angle(others[..., 2] - poses[..., 2])
-    return logarithm_se2(pose_2d(xytheta=np.stack([c * dx + s * dy, c * dy - s * dx, turn], axis=-1)))
-
-
-def carry_back(P: Array, zeta: Array) -> Array:
-    """A covariance at T exp ζ as one of the disturbance at T: Jr⁻¹ P Jr⁻ᵀ."""
-    J = np.linalg.inv(left_jacobian(-zeta))
-    return np.asarray(J @ P @ np.swapaxes(J, -1, -2))
+def go_back(passed: Passed, to: Ids, later: Ids, poses: Array, covariances: Array) -> tuple[Array, Array]:
+    """Smoothed poses and covariances at nodes `to`, from those at later nodes: (m, 3) and (m, 3, 3)."""
+    before, P_before = passed.poses_before[later], passed.covariances_before[later]
+    A = adjoin_rows(relate_rows(before, passed.poses[to]))
+    inverse = np.linalg.pinv(P_before, rcond=tolerances.KNOWN_EXACTLY, hermitian=True)
+    C = passed.covariances[to] @ np.swapaxes(A, -1, -2) @ inverse
+    zeta = find_twist(before, poses)
+    inside = carry_covariance(np.linalg.inv(left_jacobian(-zeta)), covariances) - P_before
+    xi = np.einsum("nij,nj->ni", C, zeta)
+    P = carry_covariance(left_jacobian(-xi), passed.covariances[to] + carry_covariance(C, inside))
+    return move_pose(passed.poses[to], xi), 0.5 * (P + np.swapaxes(P, -1, -2))

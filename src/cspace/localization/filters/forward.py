@@ -13,16 +13,17 @@ from cspace.arrays import Array
 from cspace.errors import TimeLimitError
 from cspace.localization.filters.gates import chi2_quantile
 from cspace.localization.filters.measurements import Measurement
+from cspace.localization.filters.rows import adjoin_rows, carry_covariance, follow_rows, relate_rows
 from cspace.localization.filters.timeline import Timeline
 from cspace.localization.filters.updates import Innovation, Update, measure_innovation
-from cspace.math.wrapping import wrap_angle
 
 REJECTIONS: Final = 10
 """Rejections in a row after which the filter counts as lost, and its covariance is inflated."""
 INFLATION: Final = 4.0
 """By how much: twice the standard deviations."""
-STEPS_PER_LOOK: Final = 256
-"""Steps between two looks at the clock."""
+ANCHORS_PER_LOOK: Final = 64
+"""Nodes with measurements between two looks at the clock."""
+ORIGIN: Final = np.zeros(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,18 +65,22 @@ class Pass:
 
     def run(self, pose: Array, P: Array, read: Read) -> Passed:
         """The filter from a pose (3,) with covariance (3, 3)."""
-        line = self.timeline
-        first = np.searchsorted(line.node, np.arange(len(line.times) + 1))
-        for node in range(len(line.times)):
-            if node % STEPS_PER_LOOK == 0 and perf_counter() > self.end:
-                raise TimeLimitError(f"the filter reached {node} of {len(line.times)} steps within its time_limit")
-            if node:
-                pose, P = self.predict(node - 1, pose, P)
-            self.before[node], self.covariances_before[node] = pose, P
-            for number in range(first[node], first[node + 1]):
-                pose, P = self.measure(number, node, pose, P, read)
-            self.poses[node], self.covariances[node] = pose, P
-            self.lost[node] = self.rejected >= REJECTIONS
+        anchors = self.timeline.anchors
+        first = np.searchsorted(self.timeline.node, anchors)
+        last = np.searchsorted(self.timeline.node, anchors, side="right")
+        for k, anchor in enumerate(anchors):
+            if k % ANCHORS_PER_LOOK == 0 and perf_counter() > self.end:
+                raise TimeLimitError(f"the filter reached {k} of {len(anchors)} measurements within its time_limit")
+            begin = anchors[k - 1] + 1 if k else 0
+            if k:
+                pose, P = self.predict(begin, anchor + 1, pose, P)
+            else:
+                self.poses[0], self.covariances[0] = self.before[0], self.covariances_before[0] = pose, P
+            self.lost[begin : anchor + 1] = self.rejected >= REJECTIONS
+            for number in range(first[k], last[k]):
+                pose, P = self.measure(number, anchor, pose, P, read)
+            self.poses[anchor], self.covariances[anchor] = pose, P
+            self.lost[anchor] = self.rejected >= REJECTIONS
         return Passed(
             self.poses,
             self.covariances,
@@ -89,13 +94,18 @@ class Pass:
             self.inflated,
         )
 
-    def predict(self, step: int, pose: Array, P: Array) -> tuple[Array, Array]:
-        """T ← T D, P ← A P Aᵀ + Q: exact in ξ, as poses are a group (Barrau & Bonnabel 2017)."""
-        dx, dy, turn = self.timeline.increments[step]
-        c, s = np.cos(pose[2]), np.sin(pose[2])
-        moved = np.array([pose[0] + c * dx - s * dy, pose[1] + s * dx + c * dy, wrap_angle(pose[2] + turn)])
-        A = self.timeline.A[step]
-        return moved, A @ P @ A.T + self.timeline.Q[step]
+    def predict(self, begin: int, end: int, pose: Array, P: Array) -> tuple[Array, Array]:
+        """All nodes up to the next anchor: T ← T D, P ← A (P + Q) Aᵀ with A = Ad(D⁻¹) and Q in axes of the start.
+
+        That is exact in ξ, as poses are a group (Barrau & Bonnabel 2017), so that the sigma points of an
+        unscented prediction would give the same.
+        """
+        D = self.timeline.poses[begin:end]
+        A = adjoin_rows(relate_rows(D, ORIGIN))
+        self.before[begin:end] = self.poses[begin:end] = follow_rows(pose, D)
+        covariances = carry_covariance(A, P + self.timeline.noise[begin:end])
+        self.covariances_before[begin:end] = self.covariances[begin:end] = covariances
+        return self.poses[end - 1], covariances[-1]
 
     def measure(self, number: int, node: int, pose: Array, P: Array, read: Read) -> tuple[Array, Array]:
         """The update by a measurement that passes its gate."""

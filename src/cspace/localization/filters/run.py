@@ -9,8 +9,9 @@ import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.localization.filters.backward import relative_twist, smooth_interval, smooth_lag
+from cspace.localization.filters.backward import smooth_interval, smooth_lag
 from cspace.localization.filters.forward import REJECTIONS, Passed
+from cspace.localization.filters.rows import find_twist
 from cspace.localization.filters.timeline import Timeline
 from cspace.localization.log import Ids, Mask
 from cspace.mobile import TimedPoses
@@ -101,7 +102,7 @@ class Localization:
 
         (n,); NaN where the truth is unknown.
         """
-        error = relative_twist(self.poses, truth.at(self.times))
+        error = find_twist(self.poses, truth.at(self.times))
         return np.asarray(np.einsum("ni,nij,nj->n", error, np.linalg.pinv(self.covariances, hermitian=True), error))
 
     def smoothed(self, *, lag: float | None = None) -> Localization:

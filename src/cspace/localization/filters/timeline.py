@@ -8,10 +8,10 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.localization.filters.rows import adjoin_rows, carry_covariance, relate_rows
 from cspace.localization.log import Ids, Log
 from cspace.localization.sensors import RangeBearing
-from cspace.mobile import MotionNoise, Odometry
-from cspace.spatial import adjoint_2d, exp_se2
+from cspace.mobile import MotionNoise
 
 KINDS: Final = ("readings", "headings", "fixes")
 """What landmark filters use of a log, in the order in which equal times are merged."""
@@ -19,20 +19,21 @@ KINDS: Final = ("readings", "headings", "fixes")
 
 @dataclass(frozen=True, eq=False)
 class Timeline:
-    """Nodes in time with the steps between them, and what was measured at each.
+    """Nodes in time, of which anchors are those with measurements, the first, and the last.
 
-    times (n,) [s]. increments (n − 1, 3): x, y, θ of each node in the one before. A, Q (n − 1, 3, 3): the
-    covariance goes from P to A P Aᵀ + Q. node, kind, row (k,): where each measurement belongs, by node. skipped:
-    how many lie outside of the odometry.
+    times (n,) [s]. anchors (r,): their nodes, increasing. node, kind, row (k,): where each measurement belongs, by
+    node. Of each node as seen from the anchor before it (of an anchor: the one before that): poses (n, 3), and
+    noise (n, 3, 3), the sum of the noise of the steps from there, in axes of the anchor. skipped: how many
+    measurements lie outside of the odometry.
     """
 
     times: Array
-    increments: Array
-    A: Array
-    Q: Array
+    anchors: Ids
     node: Ids
     kind: Ids
     row: Ids
+    poses: Array
+    noise: Array
     skipped: int
 
 
@@ -45,32 +46,34 @@ def lay_timeline(log: Log, sensor: RangeBearing, noise: MotionNoise) -> Timeline
     split = odometry.split(times)
     node = np.searchsorted(split.times, times, side="right") - 1
     order = np.lexsort((row, kind, node))
-    increments, A = describe_steps(split)
+    anchors = np.unique(np.concatenate([[0], node, [len(split.times) - 1]]))
+    Q = np.zeros((len(split.times), 3, 3))
+    Q[1:] = noise.covariance(split.steps, split.durations)
+    poses, summed = follow_anchors(split.dead_reckoning().poses, Q, anchors)
     return Timeline(
-        split.times,
-        increments,
-        A,
-        noise.covariance(split.steps, split.durations),
-        node[order],
-        kind[order],
-        row[order],
-        int(np.count_nonzero(~inside)),
+        split.times, anchors, node[order], kind[order], row[order], poses, summed, int(np.count_nonzero(~inside))
     )
 
 
 def gather_measurements(log: Log, sensor: RangeBearing) -> tuple[Array, Ids, Ids]:
     """Times, kinds and rows of all measurements of a log."""
-    parts = [getattr(log, kind) for kind in KINDS]
-    times = [part.times - (sensor.delay if k == 0 else 0.0) for k, part in enumerate(parts) if part is not None]
-    kinds = [np.full(len(part), k) for k, part in enumerate(parts) if part is not None]
-    rows = [np.arange(len(part)) for part in parts if part is not None]
-    if not times:
+    parts = [(k, part) for k, kind in enumerate(KINDS) if (part := getattr(log, kind)) is not None]
+    if not parts:
         return np.empty(0), np.empty(0, np.int64), np.empty(0, np.int64)
+    times = [part.times - (sensor.delay if k == 0 else 0.0) for k, part in parts]
+    kinds = [np.full(len(part), k) for k, part in parts]
+    rows = [np.arange(len(part)) for _, part in parts]
     return np.concatenate(times), np.concatenate(kinds), np.concatenate(rows)
 
 
-def describe_steps(odometry: Odometry) -> tuple[Array, Array]:
-    """Increments (n − 1, 3), θ as turned, and A = Ad(exp(−ξ)) (n − 1, 3, 3)."""
-    T = exp_se2(odometry.steps)
-    increments = np.stack([T[:, 0, 2], T[:, 1, 2], odometry.steps[:, 2]], axis=-1)
-    return increments, adjoint_2d(exp_se2(-odometry.steps))
+def follow_anchors(reckoned: Array, Q: Array, anchors: Ids) -> tuple[Array, Array]:
+    """Nodes as seen from the anchor before them (n, 3), and the noise up to them in its axes (n, 3, 3).
+
+    In axes that stay, noise adds up: Σ Ad(T) Q Ad(T)ᵀ.
+    """
+    before = anchors[np.maximum(np.searchsorted(anchors, np.arange(len(reckoned)), side="left") - 1, 0)]
+    poses = relate_rows(reckoned[before], reckoned)
+    summed = carry_covariance(adjoin_rows(poses), Q)
+    for first, last in zip(anchors[:-1], anchors[1:], strict=True):
+        summed[first + 1 : last + 1] = np.cumsum(summed[first + 1 : last + 1], axis=0)
+    return poses, summed

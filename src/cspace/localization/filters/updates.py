@@ -16,9 +16,9 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.localization.filters.measurements import Measurement
+from cspace.localization.filters.rows import move_pose
 from cspace.math.wrapping import wrap_angle
-from cspace.mobile.arcs import compose_increments
-from cspace.spatial.planar_twists import exponential_se2, left_jacobian
+from cspace.spatial.planar_twists import left_jacobian
 
 ITERATIONS: Final = 10
 """Most iterations of the iterated filter; three to five reach the last digit."""
@@ -132,15 +132,6 @@ def finish_update(pose: Array, P: Array, xi: Array) -> tuple[Array, Array]:
     J = right_jacobian(xi)
     P = J @ P @ J.T
     return move_pose(pose, xi), 0.5 * (P + P.T)
-
-
-def move_pose(pose: Array, xi: Array) -> Array:
-    """Rows x, y, θ of T exp ξ: (3,) or (..., 3), θ in (−π, π]."""
-    T = exponential_se2(xi)
-    increment = np.stack([T[..., 0, 2], T[..., 1, 2], xi[..., 2]], axis=-1)
-    moved = compose_increments(pose, increment)
-    moved[..., 2] = wrap_angle(moved[..., 2])
-    return moved
 
 
 def right_jacobian(xi: Array) -> Array:
