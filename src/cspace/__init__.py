@@ -34,7 +34,9 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
+    from cspace.localization import localize, read_log
     from cspace.maps import OccupancyGrid, PolygonWorld
+    from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
     from cspace.plan_motion import plan, plan_many
@@ -72,6 +74,7 @@ __all__ = [
     "kinematics",
     "load_robot",
     "localization",
+    "localize",
     "maps",
     "mobile",
     "model",
@@ -80,9 +83,11 @@ __all__ = [
     "plan",
     "plan_many",
     "planning",
+    "read_log",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
+__all__ += ["Car", "DifferentialDrive", "Mecanum", "Omni", "Tracked", "Unicycle"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
     __all__ += spatial.__all__
@@ -94,15 +99,19 @@ _OWN: list[str] = globals().pop("__all__")
 _LATER = {
     "Box": "cspace.shapes",
     "Capsule": "cspace.shapes",
+    "Car": "cspace.mobile",
     "CenterOfMassTask": "cspace.ik",
     "Cylinder": "cspace.shapes",
+    "DifferentialDrive": "cspace.mobile",
     "DirectionTask": "cspace.ik",
     "HalfSpace": "cspace.shapes",
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
     "Limits": "cspace.model",
+    "Mecanum": "cspace.mobile",
     "Mesh": "cspace.shapes",
     "OccupancyGrid": "cspace.maps",
+    "Omni": "cspace.mobile",
     "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
     "PoseTask": "cspace.ik",
@@ -111,6 +120,8 @@ _LATER = {
     "Robot": "cspace.robot",
     "Scene": "cspace.collision",
     "Sphere": "cspace.shapes",
+    "Tracked": "cspace.mobile",
+    "Unicycle": "cspace.mobile",
     "__version__": "cspace._core",
     "collision": "",
     "configuration_space": "cspace.planning",
@@ -120,6 +131,7 @@ _LATER = {
     "kinematics": "",
     "load_robot": "cspace.robots",
     "localization": "",
+    "localize": "cspace.localization",
     "maps": "",
     "mobile": "",
     "model": "",
@@ -129,6 +141,7 @@ _LATER = {
     "plan_many": "cspace.plan_motion",
     "planning": "",
     "plot": "",
+    "read_log": "cspace.localization",
     "robots": "",
     "shapes": "",
     "spatial": "",
