@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, pi
 
-import numpy as np
-
-from cspace.arrays import bounded_number, one_array, one_number, positive_number
+from cspace.arrays import one_array, one_number, positive_number
 from cspace.errors import InputError
 
 
@@ -75,5 +73,7 @@ def set_positive(sensor: RangeBearing | Compass | Gps, *names: str) -> None:
 
 def read_share(value: float, subject: str) -> float:
     """A number in (0, 1); InputError for others."""
-    least = float(np.nextafter(0.0, 1.0))
-    return bounded_number(value, subject, least, "it must lie between 0 and 1", float(np.nextafter(1.0, 0.0)))
+    share = one_number(value, subject)
+    if not 0.0 < share < 1.0:
+        raise InputError(f"{subject} is {value!r}; it must lie between 0 and 1")
+    return share
