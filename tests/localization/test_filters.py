@@ -160,7 +160,9 @@ def test_prediction_is_a_p_a_plus_q_step_by_step():
         P = A @ P @ A.T + NOISE.covariance(xi, o.durations[k])
         np.testing.assert_allclose(run.covariances[k + 1], P, rtol=1e-8, atol=1e-12)
     np.testing.assert_allclose(run.poses, o.dead_reckoning().poses, atol=1e-10)
-    assert not run and run.status == "lost" and "dead reckoning" in run.reason
+    assert not run
+    assert run.status == "lost"
+    assert "dead reckoning" in run.reason
 
 
 def test_the_smoother_is_dense_least_squares():
@@ -169,7 +171,9 @@ def test_the_smoother_is_dense_least_squares():
     sensor = RangeBearing(0.005, 0.002, most_range=9.0)
     log = log_of(5, 3.0, 0.4, sensor, noise)
     P = np.diag([1e-5, 1e-5, 1e-5])
-    run = localize(log, start=disturbed_start(log, P, 5), start_covariance=P, sensor=sensor, noise=noise, gate=1 - 1e-12)
+    run = localize(
+        log, start=disturbed_start(log, P, 5), start_covariance=P, sensor=sensor, noise=noise, gate=1 - 1e-12
+    )
     past = run.smoothed()
     np.testing.assert_array_equal(past.poses[-1], run.poses[-1])
     split = log.odometry
@@ -180,12 +184,18 @@ def test_the_smoother_is_dense_least_squares():
 
     def residuals(x):
         poses = move_pose(run.poses, x.reshape(-1, 3))
-        D = np.linalg.inv(cs.exp_se2(split.steps)) @ np.linalg.inv(cs.pose_2d(xytheta=poses[:-1])) @ cs.pose_2d(xytheta=poses[1:])
+        D = (
+            np.linalg.inv(cs.exp_se2(split.steps))
+            @ np.linalg.inv(cs.pose_2d(xytheta=poses[:-1]))
+            @ cs.pose_2d(xytheta=poses[1:])
+        )
         parts = [find_twist(run._passed.poses_before[0], poses[0]) / np.sqrt(np.diag(P))]
         parts.append(np.einsum("nij,nj->ni", Q, cs.log_se2(D)).ravel())
         for value, point, row in zip(values, points, rows, strict=True):
             m = LandmarkReading(value, np.array([False, True]), np.array([0, 1]), sensor, point, None)
-            parts.append(subtract(m, value, m.predict(poses[row])) / [sensor.range_sigma, sensor.bearing_sigma])
+            parts.append(
+                subtract(m, value, m.predict(poses[row])) / [sensor.range_sigma, sensor.bearing_sigma]
+            )
         return np.concatenate(parts)
 
     solved = optimize.least_squares(residuals, np.zeros(3 * len(run)), x_scale="jac")
@@ -205,7 +215,8 @@ def test_a_lag_lies_between_filter_and_smoother():
     tiny = run.smoothed(lag=1e-9)
     np.testing.assert_allclose(tiny.poses, run.poses, atol=1e-12)
     traces = [np.trace(each.covariances, axis1=1, axis2=2) for each in (past, lagged, run)]
-    assert (traces[0] <= traces[1] + 1e-12).all() and (traces[1] <= traces[2] + 1e-12).all()
+    assert (traces[0] <= traces[1] + 1e-12).all()
+    assert (traces[1] <= traces[2] + 1e-12).all()
     assert rmse(past, log) < rmse(run, log)
     with pytest.raises(InputError, match="smoother already"):
         past.smoothed()
@@ -218,11 +229,14 @@ def test_filters_are_consistent(name):
     for seed in range(100):
         log = log_of(1000 + seed, 12.0, 1.0)
         start = disturbed_start(log, P0, seed)
-        run = localize(log, filter=name, start=start, start_covariance=P0, sensor=SENSOR, noise=NOISE, gate=1 - 1e-12)
+        run = localize(
+            log, filter=name, start=start, start_covariance=P0, sensor=SENSOR, noise=NOISE, gate=1 - 1e-12
+        )
         values.append(run.nees(log.truth))
     mean = np.mean(values, axis=0)
     assert ((mean > 2.54) & (mean < 3.50)).mean() >= 0.9
-    assert mean.min() > 2.14 and mean.max() < 4.05
+    assert mean.min() > 2.14
+    assert mean.max() < 4.05
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -234,7 +248,8 @@ def test_a_start_known_exactly_is_legal_but_for_the_information_form(name):
             localize(log, filter=name, start_covariance=np.zeros((3, 3)), sensor=SENSOR, noise=NOISE)
     else:
         run = localize(log, filter=name, start_covariance=np.zeros((3, 3)), sensor=SENSOR, noise=NOISE)
-        assert run and np.isfinite(run.smoothed().poses).all()
+        assert run
+        assert np.isfinite(run.smoothed().poses).all()
         np.testing.assert_allclose(run.smoothed().poses[0], log.truth.poses[0], atol=1e-9)
 
 
@@ -251,7 +266,9 @@ def test_one_of_range_and_bearing_is_enough(missing):
     log = log_of(10)
     less = replace(log, readings=replace(log.readings, **{missing: np.full(len(log.readings), np.nan)}))
     run = localize(less, sensor=SENSOR, noise=NOISE)
-    assert run and (run.dof == 1).all() and np.isnan(run.innovations[:, 1]).all()
+    assert run
+    assert (run.dof == 1).all()
+    assert np.isnan(run.innovations[:, 1]).all()
     assert rmse(run, log) < 0.5 * rmse(localize(Log(log.odometry, truth=log.truth), noise=NOISE), log)
 
 
@@ -262,9 +279,13 @@ def test_compass_and_gps_bound_the_drift():
     lever = cs.transform_points_2d(cs.pose_2d(xytheta=truth.poses), np.array([0.4, 0.2]))
     fixes = Fixes(truth.times[::10], (lever + 0.5 * rng.normal(size=lever.shape))[::10])
     sensed = Log(log.odometry, headings=headings, fixes=fixes, truth=truth)
-    run = localize(sensed, compass=Compass(0.05, bias=0.1), gps=Gps(0.5, lever=(0.4, 0.2)), noise=RandomWalk())
+    run = localize(
+        sensed, compass=Compass(0.05, bias=0.1), gps=Gps(0.5, lever=(0.4, 0.2)), noise=RandomWalk()
+    )
     alone = localize(Log(log.odometry, truth=truth))
-    assert run and rmse(run, log) < 0.4 and rmse(run, log) < rmse(alone, log)
+    assert run
+    assert rmse(run, log) < 0.4
+    assert rmse(run, log) < rmse(alone, log)
     assert run.stats.mean_nis == pytest.approx(1.0, abs=0.25)
 
 
@@ -274,10 +295,13 @@ def test_false_readings_are_rejected_and_a_kidnapping_is_said():
     wrong = r.range.copy()
     wrong[::17] += 3.0
     run = localize(replace(log, readings=replace(r, range=wrong)), sensor=SENSOR, noise=NOISE)
-    assert run and run.rejected[::17].all() and run.rejected.sum() < len(wrong) / 17 + 6
+    assert run
+    assert run.rejected[::17].all()
+    assert run.rejected.sum() < len(wrong) / 17 + 6
     jumped = r.range + np.where(r.times > 30.0, 2.5, 0.0)
     lost = localize(replace(log, readings=replace(r, range=jumped)), sensor=SENSOR, noise=NOISE)
-    assert lost.lost.any() and lost.stats.inflations > 0
+    assert lost.lost.any()
+    assert lost.stats.inflations > 0
     assert not lost.lost[lost.times < 30.0].any()
 
 
@@ -305,7 +329,8 @@ def test_a_late_sensor_is_calibrated_and_used():
     assert fit.delay == pytest.approx(0.2, abs=0.03)
     assert fit.range_bias == pytest.approx(0.07, abs=0.02)
     assert fit.bearing_bias == pytest.approx(-0.03, abs=0.005)
-    assert fit.range_sigma == pytest.approx(0.1, rel=0.15) and fit.bearing_sigma == pytest.approx(0.02, rel=0.15)
+    assert fit.range_sigma == pytest.approx(0.1, rel=0.15)
+    assert fit.bearing_sigma == pytest.approx(0.02, rel=0.15)
 
 
 @pytest.mark.parametrize("dof", [1, 2, 3])
@@ -324,7 +349,8 @@ def test_standing_still_for_an_hour_neither_drifts_nor_collapses():
     still = TimedPoses(times, np.zeros((len(times), 3)))
     log = simulate(still, log_of(1, 1.0).landmarks, sensor=SENSOR, noise=NOISE, period=5.0, rng=3)
     run = localize(log, sensor=SENSOR, noise=NOISE)
-    assert run and np.abs(run.poses).max() < 0.1
+    assert run
+    assert np.abs(run.poses).max() < 0.1
     assert np.linalg.eigvalsh(run.covariances).min() > 0
 
 
@@ -360,7 +386,8 @@ def test_what_a_log_lacks_is_named():
 
 
 def test_mrclam_within_the_bars_of_the_project():
-    """Defaults and odometry calibrated on the first half: filter 0.18 m, smoother 0.14 m, mean of three robots."""
+    """Defaults and odometry calibrated on the first half: filter 0.18 m, smoother 0.14 m, mean of three
+    robots."""
     filtered, smoothed = [], []
     for robot in (1, 2, 3):
         log = cs.read_log(shared_data() / "localization/mrclam6", robot=robot)
@@ -369,4 +396,5 @@ def test_mrclam_within_the_bars_of_the_project():
             times = log.odometry.times
             error = each.at(times) - log.truth.at(times)
             results.append(np.sqrt(np.nanmean((error[:, :2] ** 2).sum(axis=1))))
-    assert np.mean(filtered) < 0.18 and np.mean(smoothed) < 0.14
+    assert np.mean(filtered) < 0.18
+    assert np.mean(smoothed) < 0.14

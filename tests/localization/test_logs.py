@@ -60,10 +60,12 @@ def test_robotlaser_has_its_angles(tmp_path):
 def test_a_clock_is_mended_with_the_fewest_changes():
     times = np.array([0.0, 1.0, 9.0, 2.0, 3.0, 2.5, 4.0])
     mended, notes = mend_clock(times)
-    assert (np.diff(mended) >= 0).all() and len(notes) == 1
+    assert (np.diff(mended) >= 0).all()
+    assert len(notes) == 1
     assert (mended != times).sum() == 2
     same, none = mend_clock(np.arange(5.0))
-    assert none == [] and (same == np.arange(5.0)).all()
+    assert none == []
+    assert (same == np.arange(5.0)).all()
 
 
 def test_mrclam_names_landmarks_by_their_barcodes():
@@ -77,7 +79,8 @@ def test_mrclam_names_landmarks_by_their_barcodes():
 
 def test_victoria_park_is_read_whole():
     log = read_log(shared_data() / "localization/victoria/victoria_park.txt")
-    assert len(log.odometry) == 6968 and len(log.readings) == 3640
+    assert len(log.odometry) == 6968
+    assert len(log.readings) == 3640
     assert log.readings.range[0] == pytest.approx(np.hypot(11.5387, -3.2007))
 
 
@@ -94,7 +97,8 @@ def test_a_trajectory_of_tum(tmp_path):
     half = np.sqrt(0.5)
     log = read_log(write(tmp_path, f"# t\n5 1 2 0 0 0 0 1\n6 1 3 0 0 0 {half} {half}\n"))
     np.testing.assert_allclose(log.truth.poses, [[1, 2, 0], [1, 3, np.pi / 2]], atol=1e-12)
-    assert log.truth.times.tolist() == [0.0, 1.0] and log.notes == ()
+    assert log.truth.times.tolist() == [0.0, 1.0]
+    assert log.notes == ()
 
 
 @pytest.mark.parametrize(
@@ -119,7 +123,8 @@ def test_a_trajectory_of_tum(tmp_path):
 def test_a_bad_file_is_named_with_its_line(tmp_path, text, part):
     with pytest.raises(LogError) as error:
         read_log(write(tmp_path, text))
-    assert part in str(error.value) and "log.txt" in str(error.value)
+    assert part in str(error.value)
+    assert "log.txt" in str(error.value)
 
 
 def test_a_file_that_is_cut_in_the_middle_is_named(tmp_path):

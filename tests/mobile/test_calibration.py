@@ -42,8 +42,12 @@ def test_the_covariance_tells_the_error():
         rng = np.random.default_rng(100 + seed)
         true = drive_around(seed)
         noise = rng.normal(size=true.steps.shape) * [0.01, 0.0, 0.02]
-        fit = calibrate(Odometry(true.times, true.steps + noise), true.dead_reckoning(), part=1.0, window=10.0)
-        errors.append((np.array([fit.distance, fit.turn, fit.drift]) - [1, 1, 0]) / np.sqrt(np.diag(fit.covariance)))
+        fit = calibrate(
+            Odometry(true.times, true.steps + noise), true.dead_reckoning(), part=1.0, window=10.0
+        )
+        errors.append(
+            (np.array([fit.distance, fit.turn, fit.drift]) - [1, 1, 0]) / np.sqrt(np.diag(fit.covariance))
+        )
     assert 0.4 < np.sqrt(np.mean(np.square(errors))) < 2.0
 
 
@@ -109,4 +113,5 @@ def test_the_second_half_of_the_intel_log_drifts_less():
     log = read_log(shared_data() / "localization/carmen/intel-corrected.log.gz")
     fit = calibrate(log.odometry, log.truth)
     raw, corrected = fit.held_out
-    assert raw > 25 and corrected < 6
+    assert raw > 25
+    assert corrected < 6

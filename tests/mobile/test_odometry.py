@@ -111,7 +111,11 @@ def test_the_models_of_thrun_depend_on_the_step(model):
 @pytest.mark.parametrize("model", MODELS, ids=["walk", "velocity", "odometry"])
 @pytest.mark.parametrize("step", [[0.5, 0.0, 0.3], [-0.5, 0.0, 0.3], [0.001, 0.0, 0.1], [0.2, 0.0, 0.0]])
 def test_samples_have_the_covariance_of_the_model(model, step):
-    small = model.__class__(**{k: tuple(0.1 * a for a in v) for k, v in vars(model).items()}) if hasattr(model, "alpha") else model
+    small = (
+        model.__class__(**{k: tuple(0.1 * a for a in v) for k, v in vars(model).items()})
+        if hasattr(model, "alpha")
+        else model
+    )
     n = 40_000
     drawn = small.sample(np.tile(step, (n, 1)), 0.5, rng=7)
     w = cs.log_se2(np.linalg.inv(cs.exp_se2(step)) @ cs.exp_se2(drawn))
@@ -137,14 +141,17 @@ def test_driving_backwards_costs_no_half_turns_of_noise():
 def test_headings_are_interpolated_the_short_way():
     poses = TimedPoses([0.0, 1.0], [[0.0, 0.0, 3.0], [1.0, 2.0, -3.0]])
     x, y, theta = poses.at(0.5)
-    assert (x, y) == (0.5, 1.0) and abs(abs(theta) - np.pi) < 1e-12
+    assert (x, y) == (0.5, 1.0)
+    assert abs(abs(theta) - np.pi) < 1e-12
     assert np.isnan(poses.at([-0.1, 1.1])).all()
     assert np.isnan(poses.at(0.5, max_gap=0.9)).all()
 
 
 def test_nothing_to_drive_is_an_answer():
     empty = Odometry([], np.empty((0, 3)))
-    assert len(empty) == 0 and len(empty.dead_reckoning()) == 0 and len(empty.split([1.0])) == 0
+    assert len(empty) == 0
+    assert len(empty.dead_reckoning()) == 0
+    assert len(empty.split([1.0])) == 0
 
 
 @pytest.mark.parametrize(

@@ -125,7 +125,9 @@ def test_jacobians_of_an_arc_are_its_differences(turn):
         d[k] = h
         start = np.linalg.inv(end) @ cs.exp_se2(d) @ end
         np.testing.assert_allclose(cs.log_se2(start) / h, F[:, k], atol=1e-5)
-        np.testing.assert_allclose(cs.log_se2(np.linalg.inv(end) @ cs.exp_se2((twist + d) * dt)) / h, G[:, k], atol=1e-5)
+        np.testing.assert_allclose(
+            cs.log_se2(np.linalg.inv(end) @ cs.exp_se2((twist + d) * dt)) / h, G[:, k], atol=1e-5
+        )
 
 
 @pytest.mark.parametrize(

@@ -29,9 +29,10 @@ def calibrate_sensor(
 ) -> RangeBearing:
     """Biases, deviations and delay of a sensor of landmarks, from reference poses (n, 3).
 
-    Biases are medians of the residuals, deviations 1.4826 times the median of their distances from it, so that
-    false readings do not count; the delay is that of the least deviation of the bearings. max_gap: longest gap
-    of the reference to interpolate in [s]. Raises InputError for fewer than 20 readings that can be compared.
+    Biases are medians of the residuals, deviations 1.4826 times the median of their distances from it, so
+    that false readings do not count; the delay is that of the least deviation of the bearings. max_gap:
+    longest gap of the reference to interpolate in [s]. Raises InputError for fewer than 20 readings that can
+    be compared.
     """
     named = readings.subset(readings.landmark != UNKNOWN)
     points = landmarks.points[landmarks.rows_of(named.landmark)]
@@ -49,7 +50,7 @@ def calibrate_sensor(
     count = int(np.isfinite(ranges).sum() + np.isfinite(bearings).sum())
     if count < FEWEST_READINGS:
         raise InputError(
-            f"{count} readings of named landmarks can be compared with the reference; {FEWEST_READINGS} are needed"
+            f"{count} readings of named landmarks have a reference pose; {FEWEST_READINGS} are needed"
         )
     (range_bias, range_sigma), (bearing_bias, bearing_sigma) = map(measure_spread, (ranges, bearings))
     fallback = RangeBearing()

@@ -13,10 +13,10 @@ from cspace.errors import InputError
 class RangeBearing:
     """A sensor that measures ranges and bearings of landmarks, or only one of the two.
 
-    range_sigma [m], bearing_sigma [rad]: standard deviations. range_bias [m], bearing_bias [rad]: what it reads
-    too much. delay [s]: how late its stamps are. mount: pose x, y, θ of the sensor on base (3,) [m, rad].
-    most_range [m] and field_of_view [rad], centred on its x axis: which landmarks it can see; readings without
-    a name are associated with these alone. Raises InputError for a deviation that is not above zero.
+    range_sigma [m], bearing_sigma [rad]: standard deviations. range_bias [m], bearing_bias [rad]: what it
+    reads too much. delay [s]: how late its stamps are. mount: pose x, y, θ of the sensor on base (3,) [m,
+    rad]. most_range [m] and field_of_view [rad], centred on its x axis: which landmarks it can see; readings
+    without a name are associated with these alone. Raises InputError for a deviation that is not above zero.
     """
 
     range_sigma: float = 0.15
@@ -41,7 +41,8 @@ class RangeBearing:
 
 @dataclass(frozen=True)
 class Compass:
-    """A sensor of the heading. sigma [rad]: its standard deviation. bias [rad]: what it reads too much, such as
+    """A sensor of the heading. sigma [rad]: its standard deviation. bias [rad]: what it reads too much, such
+    as
     the declination. Raises InputError for a deviation that is not above zero."""
 
     sigma: float = 0.05
@@ -54,7 +55,8 @@ class Compass:
 
 @dataclass(frozen=True)
 class Gps:
-    """A sensor of its own position. sigma [m]: standard deviation of x and of y. lever (2,): where on base its
+    """A sensor of its own position. sigma [m]: standard deviation of x and of y. lever (2,): where on base
+    its
     antenna is [m]. Raises InputError for a deviation that is not above zero."""
 
     sigma: float = 2.0

@@ -27,7 +27,7 @@ def simulate(
 ) -> Log:
     """The log of a robot that drove a run: noisy odometry, and readings of the landmarks in view.
 
-    run: anything with times (n,) [s] and poses (n, 3), such as the answer of cspace.navigation.follow. Readings
+    run: anything with times (n,) [s] and poses (n, 3), such as that of navigation.follow. Readings
     come at the run's times, every `period` [s], with the biases, deviations and delay of the sensor. The true
     step is the measured one with noise added, as the filters assume. rng: int, Generator or None.
     """
@@ -35,7 +35,9 @@ def simulate(
     truth = TimedPoses(run.times, run.poses)
     if not len(truth):
         raise InputError("the run has no poses; simulate needs one at least")
-    odometry = disturb_odometry(Odometry.from_poses(truth.times, truth.poses), noise or RandomWalk(), generator)
+    odometry = disturb_odometry(
+        Odometry.from_poses(truth.times, truth.poses), noise or RandomWalk(), generator
+    )
     marks = np.arange(truth.times[0], truth.times[-1], positive_number(period, "period"))
     rows = np.unique(np.searchsorted(truth.times, marks))
     readings = draw_readings(truth.times[rows], truth.poses[rows], landmarks, model, generator)

@@ -117,7 +117,9 @@ class VelocityNoise:
         xi, time = read_steps(steps, dt)
         twist, variances = self._velocities(xi, time)
         noise = np.sqrt(variances) * as_generator(rng).standard_normal(variances.shape)
-        twist = np.stack([twist[..., 0] + noise[..., 0], twist[..., 1], twist[..., 2] + noise[..., 1]], axis=-1)
+        twist = np.stack(
+            [twist[..., 0] + noise[..., 0], twist[..., 1], twist[..., 2] + noise[..., 1]], axis=-1
+        )
         last = np.zeros_like(twist)
         last[..., 2] = noise[..., 2] * time
         return log_se2(exp_se2(twist * time[..., None]) @ exp_se2(last))
@@ -133,7 +135,8 @@ class VelocityNoise:
 
 @dataclass(frozen=True)
 class OdometryNoise:
-    """The odometry model of Thrun, in variances: a step is a turn, a straight line and a turn, each with noise.
+    """The odometry model of Thrun, in variances: a step is a turn, a straight line and a turn, each with
+    noise.
 
     Variances: α1 rot1² + α2 trans² of rot1, α3 trans² + α4 (rot1² + rot2²) of trans, α1 rot2² + α2 trans² of
     rot2. alpha (4,). The noise depends on the step as that of VelocityNoise does. A step backwards turns by

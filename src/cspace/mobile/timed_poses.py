@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,9 +31,7 @@ class TimedPoses:
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "poses", read_rows(self.poses, "poses", times, (3,)))
         if self.covariances is not None:
-            object.__setattr__(
-                self, "covariances", read_rows(self.covariances, "covariances", times, (3, 3))
-            )
+            object.__setattr__(self, "covariances", read_rows(self.covariances, "covariances", times, (3, 3)))
 
     def __len__(self) -> int:
         """How many poses there are."""
@@ -76,15 +75,17 @@ def read_times(times: npt.ArrayLike, subject: str = "times") -> Array:
     if len(back):
         k = int(back[0]) + 1
         raise InputError(
-            f"{subject} runs backwards at row {k}, from {numbers[k - 1]:.9g} to {numbers[k]:.9g} s; sort the rows"
-            " by time, or mend the clock"
+            f"{subject} runs backwards at row {k}, from {numbers[k - 1]:.9g} to {numbers[k]:.9g} s; sort the"
+            " rows by time, or mend the clock"
         )
     return numbers
 
 
-def read_rows(values: npt.ArrayLike, subject: str, times: Array, last: tuple[int, ...]) -> Array:
+def read_rows(values: npt.ArrayLike, subject: str, times: npt.NDArray[Any], last: tuple[int, ...]) -> Array:
     """An array (n, *last) with a row per time; InputError where the numbers of rows differ."""
     rows = one_array(values, subject, (None, *last))
     if len(rows) != len(times):
-        raise InputError(f"{subject} has {len(rows)} rows and there are {len(times)} times; give one per time")
+        raise InputError(
+            f"{subject} has {len(rows)} rows and there are {len(times)} times; give one per time"
+        )
     return rows

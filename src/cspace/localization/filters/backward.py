@@ -1,8 +1,9 @@
 """Smoothers: what was known later about where the robot was earlier.
 
-Between two nodes without a measurement in between, a step of the Rauch–Tung–Striebel smoother spans any number of
-steps of odometry, as their transitions are adjoints: C = P Ad(T⁻⁻¹ T)ᵀ (P⁻)⁻¹ with T⁻, P⁻ predicted at the later
-one. With ζ = log(T⁻⁻¹ Tˢ) there, the earlier one becomes Tˢ = T exp(C ζ) with Pˢ = P + C (Jr⁻¹ Pˢ Jr⁻ᵀ − P⁻) Cᵀ.
+Between two nodes without a measurement in between, a step of the Rauch–Tung–Striebel smoother spans any
+number of steps of odometry, as their transitions are adjoints: C = P Ad(T⁻⁻¹ T)ᵀ (P⁻)⁻¹ with T⁻, P⁻
+predicted at the later one. With ζ = log(T⁻⁻¹ Tˢ) there, the earlier one becomes Tˢ = T exp(C ζ) with Pˢ = P
++ C (Jr⁻¹ Pˢ Jr⁻ᵀ − P⁻) Cᵀ.
 """
 
 from __future__ import annotations
@@ -62,7 +63,8 @@ def go_back(passed: Passed, to: Ids, later: Ids, poses: Array, covariances: Arra
     inverse = np.linalg.pinv(P_before, rcond=tolerances.KNOWN_EXACTLY, hermitian=True)
     C = passed.covariances[to] @ np.swapaxes(A, -1, -2) @ inverse
     zeta = find_twist(before, poses)
-    inside = carry_covariance(np.linalg.inv(left_jacobian(-zeta)), covariances) - P_before
+    to_earlier: Array = np.asarray(np.linalg.inv(left_jacobian(-zeta)), dtype=np.float64)
+    inside = carry_covariance(to_earlier, covariances) - P_before
     xi = np.einsum("nij,nj->ni", C, zeta)
     P = carry_covariance(left_jacobian(-xi), passed.covariances[to] + carry_covariance(C, inside))
     return move_pose(passed.poses[to], xi), 0.5 * (P + np.swapaxes(P, -1, -2))

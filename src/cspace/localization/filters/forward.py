@@ -29,8 +29,8 @@ ORIGIN: Final = np.zeros(3)
 @dataclass(frozen=True, eq=False)
 class Passed:
     """What a filter computed. poses (n, 3) and covariances (n, 3, 3) after the measurements of each node, and
-    before them; lost (n,); per measurement nis, dof, accepted, and innovations (k, 2), NaN where there is no second
-    number; inflated: nodes at which the covariance was inflated."""
+    before them; lost (n,); per measurement nis, dof, accepted, and innovations (k, 2), NaN where there is no
+    second number; inflated: nodes at which the covariance was inflated."""
 
     poses: Array
     covariances: Array
@@ -45,7 +45,8 @@ class Passed:
 
 
 Read = Callable[[int, Array, Array], Measurement | None]
-"""The measurement of a number, given pose and covariance; None where there is nothing to associate it with."""
+"""The measurement of a number, given pose and covariance; None where there is nothing to associate it
+with."""
 
 
 class Pass:
@@ -70,7 +71,9 @@ class Pass:
         last = np.searchsorted(self.timeline.node, anchors, side="right")
         for k, anchor in enumerate(anchors):
             if k % ANCHORS_PER_LOOK == 0 and perf_counter() > self.end:
-                raise TimeLimitError(f"the filter reached {k} of {len(anchors)} measurements within its time_limit")
+                raise TimeLimitError(
+                    f"the filter reached {k} of {len(anchors)} measurements within its time_limit"
+                )
             begin = anchors[k - 1] + 1 if k else 0
             if k:
                 pose, P = self.predict(begin, anchor + 1, pose, P)
@@ -95,7 +98,8 @@ class Pass:
         )
 
     def predict(self, begin: int, end: int, pose: Array, P: Array) -> tuple[Array, Array]:
-        """All nodes up to the next anchor: T ← T D, P ← A (P + Q) Aᵀ with A = Ad(D⁻¹) and Q in axes of the start.
+        """All nodes up to the next anchor: T ← T D, P ← A (P + Q) Aᵀ with A = Ad(D⁻¹) and Q in axes of the
+        start.
 
         That is exact in ξ, as poses are a group (Barrau & Bonnabel 2017), so that the sigma points of an
         unscented prediction would give the same.

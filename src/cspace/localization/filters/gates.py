@@ -6,8 +6,8 @@ from functools import cache
 from math import erf, exp, pi, sqrt
 
 import numpy as np
+import numpy.typing as npt
 
-from cspace import tolerances
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.localization.filters.measurements import linearize_points, see_point
@@ -45,9 +45,15 @@ def chi2_share(value: float, dof: int) -> float:
 
 
 def associate_reading(
-    pose: Array, P: Array, value: Array, used: Array, landmarks: Landmarks, sensor: RangeBearing
+    pose: Array,
+    P: Array,
+    value: Array,
+    used: npt.NDArray[np.intp],
+    landmarks: Landmarks,
+    sensor: RangeBearing,
 ) -> int:
-    """The row of the landmark that most likely made a reading, among those that the sensor can see; −1 without any.
+    """The row of the landmark that most likely made a reading, among those that the sensor can see; −1
+    without any.
 
     Least νᵀ S⁻¹ ν + log det S (maximum likelihood). The gate is tested afterwards, as for named readings.
     """

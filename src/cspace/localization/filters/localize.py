@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy.typing as npt
 from cspace import tolerances
 from cspace.arrays import Array, one_array, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.localization.filters.forward import Pass, Passed, Read
+from cspace.localization.filters.forward import Pass, Passed
 from cspace.localization.filters.gates import associate_reading
 from cspace.localization.filters.measurements import (
     CompassReading,
@@ -54,8 +53,8 @@ def localize(
     and 0.01 rad. sensor, compass, gps: models of readings, headings and fixes. noise: of the odometry, a
     RandomWalk unless given. gate: the share of χ² beyond which a measurement is rejected. Readings without a
     name are associated with the landmark that most likely made them. time_limit [s]: TimeLimitError beyond
-    it. Raises InputError for a log without odometry, a start that is unknown, or a landmark that is not on the
-    map. Source: Thrun, Burgard & Fox 2005, chapters 3 and 7.
+    it. Raises InputError for a log without odometry, a start that is unknown, or a landmark that is not on
+    the map. Source: Thrun, Burgard & Fox 2005, chapters 3 and 7.
     """
     begun = perf_counter()
     if not isinstance(log, Log):
@@ -87,7 +86,9 @@ class Reader:
         if readings is None or not len(readings):
             return
         if landmarks is None or not len(landmarks):
-            raise InputError("the log has readings of landmarks, and there is no map of them; give landmarks=")
+            raise InputError(
+                "the log has readings of landmarks, and there is no map of them; give landmarks="
+            )
         self.rows = landmarks.rows_of(readings.landmark)
         both = np.stack([readings.range - sensor.range_bias, readings.bearing - sensor.bearing_bias], axis=-1)
         self.values = both
@@ -136,9 +137,12 @@ def read_start(
         return pose, np.diag(np.square(START_DEVIATIONS))
     P = one_array(covariance, "start_covariance", (3, 3))
     least = float(np.linalg.eigvalsh(P)[0])
-    if np.abs(P - P.T).max() > tolerances.COVARIANCE_SYMMETRY * max(1.0, np.abs(P).max()) or least < -abs(P).max() * tolerances.COVARIANCE_SYMMETRY:
+    if (
+        np.abs(P - P.T).max() > tolerances.COVARIANCE_SYMMETRY * max(1.0, np.abs(P).max())
+        or least < -abs(P).max() * tolerances.COVARIANCE_SYMMETRY
+    ):
         raise InputError(
-            f"start_covariance is not symmetric and positive semi-definite, its least eigenvalue is {least:.3g};"
+            f"start_covariance is not symmetric and positive semi-definite (least eigenvalue {least:.3g});"
             " give variances on the diagonal, np.diag(...)"
         )
     return pose, 0.5 * (P + P.T)

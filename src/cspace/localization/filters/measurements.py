@@ -23,9 +23,13 @@ Columns = npt.NDArray[np.bool_]
 class Measurement(Protocol):
     """Numbers (d,) that a pose predicts."""
 
-    value: Array
-    angular: Columns
-    """Which of the numbers are angles, (d,): their differences are wrapped."""
+    @property
+    def value(self) -> Array:
+        """The numbers (d,)."""
+
+    @property
+    def angular(self) -> Columns:
+        """Which of the numbers are angles, (d,): their differences are wrapped."""
 
     def predict(self, poses: Array) -> Array:
         """What poses (..., 3) would make the sensor read, (..., d)."""

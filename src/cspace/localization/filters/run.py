@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, suggest
 from cspace.localization.filters.backward import smooth_interval, smooth_lag
 from cspace.localization.filters.forward import REJECTIONS, Passed
 from cspace.localization.filters.rows import find_twist
@@ -24,8 +24,10 @@ FRAMES = ("base", "map")
 @show_fields
 @dataclass(frozen=True)
 class LocalizationStats:
-    """What a filter did: measurements used, rejected at their gate, and outside of the odometry; how often its
-    covariance was inflated; the mean NIS per degree of freedom (1 for a consistent filter); seconds of wall time."""
+    """What a filter did: measurements used, rejected at their gate, and outside of the odometry; how often
+    its
+    covariance was inflated; the mean NIS per degree of freedom (1 for a consistent filter); seconds of wall
+    time."""
 
     updates: int
     rejected: int
@@ -80,14 +82,15 @@ class Localization:
             if not s.updates:
                 return "no measurement was used; the poses are dead reckoning"
             return f"the last {REJECTIONS} measurements or more contradict the filter"
-        return f"{s.updates} measurements used, {s.rejected} rejected, NIS per degree of freedom {s.mean_nis:.2f}"
+        return f"{s.updates} measurements used, {s.rejected} rejected, mean NIS per dof {s.mean_nis:.2f}"
 
     def at(self, times: npt.ArrayLike) -> Array:
         """The poses at times, interpolated: (...) [s] → (..., 3); NaN outside of the log."""
         return TimedPoses(self.times, self.poses).at(times)
 
     def covariance(self, *, frame: str = "base") -> Array:
-        """The covariances (n, 3, 3) in axes of base or of map, blkdiag(R, 1) P blkdiag(R, 1)ᵀ: the ellipses of
+        """The covariances (n, 3, 3) in axes of base or of map, blkdiag(R, 1) P blkdiag(R, 1)ᵀ: the ellipses
+        of
         pictures. Raises UnknownNameError for another frame."""
         if frame not in FRAMES:
             raise suggest("frame", frame, FRAMES)
@@ -103,16 +106,20 @@ class Localization:
         (n,); NaN where the truth is unknown.
         """
         error = find_twist(self.poses, truth.at(self.times))
-        return np.asarray(np.einsum("ni,nij,nj->n", error, np.linalg.pinv(self.covariances, hermitian=True), error))
+        return np.asarray(
+            np.einsum("ni,nij,nj->n", error, np.linalg.pinv(self.covariances, hermitian=True), error)
+        )
 
     def smoothed(self, *, lag: float | None = None) -> Localization:
         """The poses given later measurements too: all of them, or those up to a lag [s] after each pose.
 
-        The same object with smoothed poses (n, 3) and covariances (n, 3, 3). Raises InputError if it is smoothed
-        already. Source: Rauch, Tung & Striebel 1965.
+        The same object with smoothed poses (n, 3) and covariances (n, 3, 3). Raises InputError if it is
+        smoothed already. Source: Rauch, Tung & Striebel 1965.
         """
         if self.filter.endswith(SMOOTHED):
-            raise InputError(f"this is the result of a smoother already, {self.filter}; smooth that of a filter")
+            raise InputError(
+                f"this is the result of a smoother already, {self.filter}; smooth that of a filter"
+            )
         if lag is None:
             poses, covariances = smooth_interval(self._timeline, self._passed)
             name = self.filter + SMOOTHED

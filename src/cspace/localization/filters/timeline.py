@@ -1,7 +1,9 @@
-"""Everything a filter passes, by time: steps of odometry, cut where something was measured, and measurements."""
+"""Everything a filter passes, by time: steps of odometry, cut where something was measured, and
+measurements."""
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import Final
 
@@ -21,10 +23,10 @@ KINDS: Final = ("readings", "headings", "fixes")
 class Timeline:
     """Nodes in time, of which anchors are those with measurements, the first, and the last.
 
-    times (n,) [s]. anchors (r,): their nodes, increasing. node, kind, row (k,): where each measurement belongs, by
-    node. Of each node as seen from the anchor before it (of an anchor: the one before that): poses (n, 3), and
-    noise (n, 3, 3), the sum of the noise of the steps from there, in axes of the anchor. skipped: how many
-    measurements lie outside of the odometry.
+    times (n,) [s]. anchors (r,): their nodes, increasing. node, kind, row (k,): where each measurement
+    belongs, by node. Of each node as seen from the anchor before it (of an anchor: the one before that):
+    poses (n, 3), and noise (n, 3, 3), the sum of the noise of the steps from there, in axes of the anchor.
+    skipped: how many measurements lie outside of the odometry.
     """
 
     times: Array
@@ -51,7 +53,14 @@ def lay_timeline(log: Log, sensor: RangeBearing, noise: MotionNoise) -> Timeline
     Q[1:] = noise.covariance(split.steps, split.durations)
     poses, summed = follow_anchors(split.dead_reckoning().poses, Q, anchors)
     return Timeline(
-        split.times, anchors, node[order], kind[order], row[order], poses, summed, int(np.count_nonzero(~inside))
+        split.times,
+        anchors,
+        node[order],
+        kind[order],
+        row[order],
+        poses,
+        summed,
+        int(np.count_nonzero(~inside)),
     )
 
 
@@ -74,6 +83,6 @@ def follow_anchors(reckoned: Array, Q: Array, anchors: Ids) -> tuple[Array, Arra
     before = anchors[np.maximum(np.searchsorted(anchors, np.arange(len(reckoned)), side="left") - 1, 0)]
     poses = relate_rows(reckoned[before], reckoned)
     summed = carry_covariance(adjoin_rows(poses), Q)
-    for first, last in zip(anchors[:-1], anchors[1:], strict=True):
+    for first, last in itertools.pairwise(anchors):
         summed[first + 1 : last + 1] = np.cumsum(summed[first + 1 : last + 1], axis=0)
     return poses, summed

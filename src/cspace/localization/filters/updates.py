@@ -1,8 +1,8 @@
 """Updates of a pose and its covariance by a measurement: extended, iterated, unscented, information form.
 
 The state is a pose T with a disturbance on the right, T exp ξ, ξ normal with covariance P in base, so every
-update is T ← T exp ξ⁺ with P ← Jr(ξ⁺) P⁺ Jr(ξ⁺)ᵀ. Sources: Thrun, Burgard & Fox 2005, chapter 3; Barfoot 2017,
-section 8.2; Bell & Cathey 1993 (the iterated filter is Gauss–Newton).
+update is T ← T exp ξ⁺ with P ← Jr(ξ⁺) P⁺ Jr(ξ⁺)ᵀ. Sources: Thrun, Burgard & Fox 2005, chapter 3; Barfoot
+2017, section 8.2; Bell & Cathey 1993 (the iterated filter is Gauss–Newton).
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ def update_information(pose: Array, P: Array, measurement: Measurement) -> tuple
             " above zero, or use filter='ekf'"
         ) from None
     weighted = np.linalg.solve(R, H).T
-    after = np.linalg.inv(Y + weighted @ H)
+    after: Array = np.asarray(np.linalg.inv(Y + weighted @ H), dtype=np.float64)
     residual = subtract(measurement, measurement.value, measurement.predict(pose))
     return finish_update(pose, after, after @ weighted @ residual)
 

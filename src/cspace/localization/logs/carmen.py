@@ -45,8 +45,8 @@ def read_carmen(lines: Lines) -> Log:
     """A log of CARMEN; LogError for an unknown message, a line that is cut, or scans of changing size.
 
     FLASER has no angles: beam k of n lies at −90° + k 180°/n. In a corrected log an ODOM without a time
-    repeats the corrected pose of the scan before it, and the ODOM messages after it go on from there with the raw
-    increments: these are chained into the raw odometry, and the poses of the scans are the truth.
+    repeats the corrected pose of the scan before it, and the ODOM messages after it go on from there with
+    the raw increments: these are chained into the raw odometry, and the poses of the scans are the truth.
     """
     messages = Messages()
     for number, words in lines.rows():
@@ -93,7 +93,9 @@ def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) ->
         tail = tail[1 + int(lines.numbers(number, tail[:1], "the number of remissions")[0]) :]
     place = 6 if is_plain else 11
     if count < 1 or len(ranges) < count or len(tail) <= place:
-        raise lines.error(number, f"{words[0]} of {count} ranges has {len(words) - 1} values; the line is cut")
+        raise lines.error(
+            number, f"{words[0]} of {count} ranges has {len(words) - 1} values; the line is cut"
+        )
     if messages.ranges and len(messages.ranges[-1]) != count:
         raise lines.error(
             number, f"the scan has {count} beams and the one before {len(messages.ranges[-1])}; split the log"
@@ -156,7 +158,9 @@ def pack_scans(messages: Messages, scans: Array, times: Array, notes: list[str])
     """The scans with the pose of the laser on the robot, which their lines repeat."""
     mounts = to_xytheta(inverse_pose_2d(pose_2d(xytheta=scans[:, 3:6])) @ pose_2d(xytheta=scans[:, :3]))
     mount = np.median(mounts, axis=0)
-    spread = np.abs(np.concatenate([mounts[:, :2] - mount[:2], wrap_angle(mounts[:, 2:] - mount[2])], axis=1)).max()
+    spread = np.abs(
+        np.concatenate([mounts[:, :2] - mount[:2], wrap_angle(mounts[:, 2:] - mount[2])], axis=1)
+    ).max()
     if spread > MOUNT_SPREAD:
         notes.append(f"the pose of the laser on the robot varies by {spread:.2g}; the median is used")
     assert messages.angles is not None
@@ -164,4 +168,5 @@ def pack_scans(messages: Messages, scans: Array, times: Array, notes: list[str])
 
 
 MOUNT_SPREAD = 0.01
-"""By how much the pose of the laser on the robot may vary [m, rad]: the rounding of printed poses far away."""
+"""By how much the pose of the laser on the robot may vary [m, rad]: the rounding of printed poses far
+away."""

@@ -1,4 +1,5 @@
-"""Text files of numbers, plain or compressed: their lines, and rows of numbers with the line of each fault."""
+"""Text files of numbers, plain or compressed: their lines, and rows of numbers with the line of each
+fault."""
 
 from __future__ import annotations
 

@@ -10,7 +10,8 @@ from cspace.mobile import Odometry
 
 
 def read_victoria(lines: Lines) -> Log:
-    """Odometry and readings of trees; LogError for a line that is cut, or poses that do not follow each other.
+    """Odometry and readings of trees; LogError for a line that is cut, or poses that do not follow each
+    other.
 
     ODOMETRY i j x y θ and the covariance xx xy xθ yy yθ θθ; LANDMARK i l x y and xx xy yy, in base. The lines
     have no times: pose k of the drive is given the time k [s]. Landmarks share their numbering with poses.
@@ -40,7 +41,10 @@ def read_victoria(lines: Lines) -> Log:
     rows = np.array(seen, dtype=np.float64).reshape(-1, 4)
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     readings = Readings(
-        rows[:, 0], rows[:, 1].astype(np.int64), np.hypot(rows[:, 2], rows[:, 3]), np.arctan2(rows[:, 3], rows[:, 2])
+        rows[:, 0],
+        rows[:, 1].astype(np.int64),
+        np.hypot(rows[:, 2], rows[:, 3]),
+        np.arctan2(rows[:, 3], rows[:, 2]),
     )
     odometry = Odometry.from_increments(
         np.arange(len(increments) + 1.0), np.array(increments, dtype=np.float64).reshape(-1, 3)
