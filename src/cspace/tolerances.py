@@ -572,6 +572,9 @@ CLOSEST_LANDMARK: Final = 1e-3
 """Distance of a landmark [m] below which its bearing has the derivative that it has there: nearer than any
 sensor sees, the derivative grows without bound."""
 
+ITERATED_STEP: Final = 1e-10
+"""Step [m, rad] at which an iterated filter has converged: far below what any sensor resolves."""
+
 KNOWN_EXACTLY: Final = 1e-14
 """Ratio of eigenvalues of a covariance below which a direction counts as known exactly: a smoother learns
 nothing

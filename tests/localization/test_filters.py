@@ -28,7 +28,7 @@ from cspace.localization import (
 from cspace.localization.filters.gates import chi2_quantile
 from cspace.localization.filters.measurements import LandmarkReading, Measurement, PositionReading
 from cspace.localization.filters.rows import find_twist, move_pose
-from cspace.localization.filters.updates import UPDATES, subtract
+from cspace.localization.filters.updates import UPDATES, subtract_values
 from cspace.mobile import RandomWalk
 from data import shared_data
 from localization.worlds import NOISE, SENSOR, disturbed_start, log_of, rmse
@@ -64,7 +64,7 @@ def test_derivatives_of_measurements_are_their_differences(used, heading):
         for k in range(3):
             d = np.zeros(3)
             d[k] = 1e-6
-            difference = subtract(m, m.predict(move_pose(pose, d)), m.predict(move_pose(pose, -d))) / 2e-6
+            difference = subtract_values(m, m.predict(move_pose(pose, d)), m.predict(move_pose(pose, -d))) / 2e-6
             np.testing.assert_allclose(H[:, k], difference, atol=1e-7)
 
 
@@ -101,7 +101,7 @@ def test_the_iterated_filter_is_gauss_newton(seed):
     L, M = np.linalg.inv(np.linalg.cholesky(P)), np.linalg.inv(np.linalg.cholesky(R))
 
     def residuals(xi):
-        return np.concatenate([L @ xi, M @ subtract(m, m.value, m.predict(move_pose(pose, xi)))])
+        return np.concatenate([L @ xi, M @ subtract_values(m, m.value, m.predict(move_pose(pose, xi)))])
 
     best = optimize.least_squares(residuals, np.zeros(3), xtol=1e-14, ftol=1e-14, gtol=1e-14).x
     after, _ = UPDATES["iekf"](pose, P, m)
@@ -194,7 +194,7 @@ def test_the_smoother_is_dense_least_squares():
         for value, point, row in zip(values, points, rows, strict=True):
             m = LandmarkReading(value, np.array([False, True]), np.array([0, 1]), sensor, point, None)
             parts.append(
-                subtract(m, value, m.predict(poses[row])) / [sensor.range_sigma, sensor.bearing_sigma]
+                subtract_values(m, value, m.predict(poses[row])) / [sensor.range_sigma, sensor.bearing_sigma]
             )
         return np.concatenate(parts)
 

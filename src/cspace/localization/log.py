@@ -27,7 +27,7 @@ class Readings:
 
     times (k,) [s], increasing. landmark (k,): the name of the landmark, or −1 where it is unknown. range (k,)
     [m]. bearing (k,) [rad], in the frame of the sensor, counter-clockwise from its x axis. Raises InputError
-    for rows with neither, ranges below zero, and bearings that are all beyond a whole turn (degrees).
+    for rows with neither, ranges below zero, and bearings that are all beyond ±2π (degrees).
     """
 
     times: Array

@@ -93,7 +93,7 @@ class VelocityNoise:
     Burgard & Fox 2005, Table 5.3.
     """
 
-    alpha: tuple[float, ...] = (0.02, 0.005, 0.01, 0.02, 0.001, 0.001)
+    alpha: tuple[float, ...] = (0.02, 0.005, 0.01, 0.02, 0.002, 0.002)
 
     def __post_init__(self) -> None:
         read_alphas(self, 6)

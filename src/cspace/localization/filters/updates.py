@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from cspace import tolerances
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.localization.filters.measurements import Measurement
@@ -22,8 +23,6 @@ from cspace.spatial.planar_twists import left_jacobian
 
 ITERATIONS: Final = 10
 """Most iterations of the iterated filter; three to five reach the last digit."""
-STEP: Final = 1e-10
-"""Step [m, rad] at which the iterated filter has converged."""
 
 SPREAD: Final = 0.5
 """α of the unscented filter: how far its sigma points lie out, in √3 standard deviations."""
@@ -53,10 +52,10 @@ def measure_innovation(pose: Array, P: Array, measurement: Measurement) -> Innov
     S = H @ P @ H.T + R
     if not np.linalg.det(S) > 0:
         raise InputError("the covariance of an innovation is singular; give the sensor deviations above zero")
-    return Innovation(subtract(measurement, measurement.value, measurement.predict(pose)), S)
+    return Innovation(subtract_values(measurement, measurement.value, measurement.predict(pose)), S)
 
 
-def subtract(measurement: Measurement, a: Array, b: Array) -> Array:
+def subtract_values(measurement: Measurement, a: Array, b: Array) -> Array:
     """a − b (..., d), with angles wrapped after the subtraction."""
     return np.where(measurement.angular, wrap_angle(a - b), a - b)
 
@@ -80,8 +79,8 @@ def iterate_update(pose: Array, P: Array, measurement: Measurement, most: int) -
         H = H @ right_jacobian(xi)
         K = np.linalg.solve(H @ P @ H.T + R, H @ P).T
         before = xi
-        xi = K @ (subtract(measurement, measurement.value, measurement.predict(at)) + H @ xi)
-        if np.abs(xi - before).max() < STEP:
+        xi = K @ (subtract_values(measurement, measurement.value, measurement.predict(at)) + H @ xi)
+        if np.abs(xi - before).max() < tolerances.ITERATED_STEP:
             break
     A = np.eye(3) - K @ H
     return finish_update(pose, A @ P @ A.T + K @ R @ K.T, xi)
@@ -99,7 +98,7 @@ def update_information(pose: Array, P: Array, measurement: Measurement) -> tuple
         ) from None
     weighted = np.linalg.solve(R, H).T
     after: Array = np.asarray(np.linalg.inv(Y + weighted @ H), dtype=np.float64)
-    residual = subtract(measurement, measurement.value, measurement.predict(pose))
+    residual = subtract_values(measurement, measurement.value, measurement.predict(pose))
     return finish_update(pose, after, after @ weighted @ residual)
 
 
@@ -116,14 +115,14 @@ def update_unscented(pose: Array, P: Array, measurement: Measurement) -> tuple[A
     weights = np.full(2 * n + 1, 0.5 / spread)
     weights[0] = 1.0 - n / spread
     seen = measurement.predict(move_pose(pose, chi))
-    offsets = subtract(measurement, seen, seen[0])
+    offsets = subtract_values(measurement, seen, seen[0])
     mean = weights @ offsets
     spread_weights = weights.copy()
     spread_weights[0] += 1.0 - SPREAD**2 + PRIOR
     around = offsets - mean
     S = (around * spread_weights[:, None]).T @ around + measurement.linearize(pose)[1]
     K = np.linalg.solve(S, (around * spread_weights[:, None]).T @ chi).T
-    residual = subtract(measurement, subtract(measurement, measurement.value, seen[0]), mean)
+    residual = subtract_values(measurement, subtract_values(measurement, measurement.value, seen[0]), mean)
     return finish_update(pose, P - K @ S @ K.T, K @ residual)
 
 
