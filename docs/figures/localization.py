@@ -43,7 +43,7 @@ def draw_noise() -> None:
         ax.set_xlabel("x [m]")
     axes[0].set_ylabel("y [m]")
     figure.tight_layout()
-    figure.savefig(HERE / "motion_noise.png", dpi=DPI)
+    figure.savefig(HERE / "motion_noise.png", dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 
 
@@ -79,7 +79,7 @@ def draw_filter() -> None:
         ax.legend(fontsize=8, frameon=False, loc="center")
     axes[0].set_ylabel("y [m]")
     figure.tight_layout()
-    figure.savefig(HERE / "localization.png", dpi=DPI)
+    figure.savefig(HERE / "localization.png", dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 
 

@@ -64,7 +64,9 @@ def test_derivatives_of_measurements_are_their_differences(used, heading):
         for k in range(3):
             d = np.zeros(3)
             d[k] = 1e-6
-            difference = subtract_values(m, m.predict(move_pose(pose, d)), m.predict(move_pose(pose, -d))) / 2e-6
+            difference = (
+                subtract_values(m, m.predict(move_pose(pose, d)), m.predict(move_pose(pose, -d))) / 2e-6
+            )
             np.testing.assert_allclose(H[:, k], difference, atol=1e-7)
 
 
