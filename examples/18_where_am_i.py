@@ -23,7 +23,7 @@ def main(folder: Path) -> None:
 
     found = cs.localize(log, landmarks, filter="ekf", sensor=sensor)
     past = found.smoothed()
-    assert found and found.status == "localised"
+    assert found.status == "localised"
     print(found)
 
     def rmse(poses: np.ndarray) -> float:
