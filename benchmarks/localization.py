@@ -1,8 +1,8 @@
 """Localisation on the public logs: position errors of filters and smoothers, and of dead reckoning.
 
 Usage: python benchmarks/localization.py [--filters ekf iekf ukf information] [--save FILE]. Prints a row per
-log, RMSE [m] over the times of the odometry for which there is a truth. Odometry is calibrated on the first half
-of each log, everything else is a default. The data are found through $CSPACE_DATA.
+log, RMSE [m] over the times of the odometry for which there is a truth. Odometry is calibrated on the first
+half of each log, everything else is a default. The data are found through $CSPACE_DATA.
 """
 
 from __future__ import annotations

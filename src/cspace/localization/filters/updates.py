@@ -89,13 +89,13 @@ def iterate_update(pose: Array, P: Array, measurement: Measurement, most: int) -
 def update_information(pose: Array, P: Array, measurement: Measurement) -> tuple[Array, Array]:
     """The information form: Y ← Y + Hᵀ R⁻¹ H, ξ = Y⁻¹ Hᵀ R⁻¹ ν. Raises InputError where P has no inverse."""
     H, R = measurement.linearize(pose)
-    try:
-        Y = np.linalg.inv(P)
-    except np.linalg.LinAlgError:
+    known = np.linalg.eigvalsh(P)
+    if known[0] <= tolerances.KNOWN_EXACTLY * known[-1]:
         raise InputError(
             "the information form has no finite information for a pose known exactly; give start_covariance"
             " above zero, or use filter='ekf'"
-        ) from None
+        )
+    Y = np.linalg.inv(P)
     weighted = np.linalg.solve(R, H).T
     after: Array = np.asarray(np.linalg.inv(Y + weighted @ H), dtype=np.float64)
     residual = subtract_values(measurement, measurement.value, measurement.predict(pose))
