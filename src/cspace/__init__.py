@@ -14,8 +14,10 @@ if TYPE_CHECKING:
         export,
         ik,
         kinematics,
+        localization,
         maps,
         mechanisms,
+        mobile,
         model,
         navigation,
         planning,
@@ -35,8 +37,10 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
+    from cspace.localization import localize, read_log
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
+    from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
     from cspace.plan_motion import move, plan, plan_many
@@ -76,8 +80,11 @@ __all__ = [
     "ik",
     "kinematics",
     "load_robot",
+    "localization",
+    "localize",
     "maps",
     "mechanisms",
+    "mobile",
     "model",
     "move",
     "navigate",
@@ -85,10 +92,12 @@ __all__ = [
     "plan",
     "plan_many",
     "planning",
+    "read_log",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
 __all__ += ["blend", "spline", "time_parametrize"]
+__all__ += ["Car", "DifferentialDrive", "Mecanum", "Omni", "Tracked", "Unicycle"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
     __all__ += spatial.__all__
@@ -100,16 +109,20 @@ _OWN: list[str] = globals().pop("__all__")
 _LATER = {
     "Box": "cspace.shapes",
     "Capsule": "cspace.shapes",
+    "Car": "cspace.mobile",
     "CenterOfMassTask": "cspace.ik",
     "Cylinder": "cspace.shapes",
+    "DifferentialDrive": "cspace.mobile",
     "DirectionTask": "cspace.ik",
     "HalfSpace": "cspace.shapes",
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
     "Limits": "cspace.model",
     "Mechanism": "cspace.mechanisms",
+    "Mecanum": "cspace.mobile",
     "Mesh": "cspace.shapes",
     "OccupancyGrid": "cspace.maps",
+    "Omni": "cspace.mobile",
     "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
     "PoseTask": "cspace.ik",
@@ -118,6 +131,8 @@ _LATER = {
     "Robot": "cspace.robot",
     "Scene": "cspace.collision",
     "Sphere": "cspace.shapes",
+    "Tracked": "cspace.mobile",
+    "Unicycle": "cspace.mobile",
     "__version__": "cspace._core",
     "blend": "cspace.trajectory",
     "cartesian": "",
@@ -128,8 +143,11 @@ _LATER = {
     "ik": "",
     "kinematics": "",
     "load_robot": "cspace.robots",
+    "localization": "",
+    "localize": "cspace.localization",
     "maps": "",
     "mechanisms": "",
+    "mobile": "",
     "model": "",
     "move": "cspace.plan_motion",
     "navigate": "cspace.navigation",
@@ -138,6 +156,7 @@ _LATER = {
     "plan_many": "cspace.plan_motion",
     "planning": "",
     "plot": "",
+    "read_log": "cspace.localization",
     "robots": "",
     "shapes": "",
     "spatial": "",

@@ -24,6 +24,8 @@ ROOMS = {
     "plot": "plot",
     "maps": "maps",
     "navigation": "navigation",
+    "mobile": "mobile",
+    "localization": "localization",
 }
 
 
