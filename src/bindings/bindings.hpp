@@ -9,7 +9,8 @@
     bind(ik_solver) bind(dynamics) bind(robot) bind(ik_result) bind(ik) bind(ik_self_motion) bind(ik_goals)               \
     bind(ik_numeric) bind(ik_redundancy) bind(ik_tracking) bind(ik_description) bind(maps) bind(shapes)    \
     bind(collision) bind(collision_solids) bind(planning_arm) bind(navigation_route) bind(navigation_grid) \
-    bind(navigation_polygons) bind(navigation_vehicles) bind(planning_two_joints) bind(planning_fields)
+    bind(navigation_polygons) bind(navigation_vehicles) bind(planning_two_joints) bind(planning_fields) \
+    bind(localization_graph)
 // clang-format on
 
 #define CSPACE_DECLARE_BINDING(part) void bind_##part(nanobind::module_& m);
