@@ -13,6 +13,7 @@ __all__ = [
     "DescriptionError",
     "InputError",
     "InputTypeError",
+    "LogError",
     "MapError",
     "MeshError",
     "MissingExtraError",
@@ -134,6 +135,10 @@ class _FileError(CspaceError, ValueError):
 
 class DescriptionError(_FileError):
     """A robot or scene description that cannot be read; contains the file and, if known, the line."""
+
+
+class LogError(_FileError):
+    """A log of a robot that cannot be read; contains the file and, if known, the line."""
 
 
 class MapError(_FileError):

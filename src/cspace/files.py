@@ -16,6 +16,7 @@ from cspace.errors import (
     DescriptionError,
     InputError,
     InputTypeError,
+    LogError,
     MapError,
     MeshError,
     RoadmapError,
@@ -43,7 +44,7 @@ STEM: Final = 40
 CONTENT: Final = re.compile(r"""(?:(?<!\S)'(?:[^']|'')*'|(?<!\S)"[^"]*"|[^#]|(?<=\S)#)*""")
 """The content of a line of YAML before its comment: a # that follows a blank and is outside quotes."""
 
-FileError = DescriptionError | MapError | MeshError | RoadmapError
+FileError = DescriptionError | LogError | MapError | MeshError | RoadmapError
 """What is raised for a file that cannot be read."""
 
 ENTRY: Final = re.compile(r"( *)(?:(-)|([A-Za-z_][\w.-]*)\s*:)(?:\s+(.*))?")

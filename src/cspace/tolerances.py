@@ -552,4 +552,18 @@ LOST_MOTION: Final = 1e-12
 """How much a unit wrench moves a frame, relative to that of the best one, that is nothing: rounding leaves
 1e-16, and of the root, as a singular value, 1e-6 is nearly singular."""
 
+SIDE_SLIP: Final = 1e-9
+"""Part of a twist [m/s or rad/s] that may lie outside of what wheels allow, and of a wheel matrix that may miss a
+direction: rounding is far below, and a slide that was meant far above."""
+
+SHORT_STEP: Final = 0.01
+"""Length of a step of odometry [m] below which its direction of travel is noise, so that the odometry model
+of Thrun takes the first turn as zero."""
+
+LOG_BYTES: Final = 1 << 30
+"""Largest log that is read, after decompression: a day of a laser scanner; the numbers take as much again."""
+
+LEVEL_TILT: Final = 1e-3
+"""Tilt [rad] up to which a pose of space counts as planar: rounding of quaternions printed with four digits."""
+
 __all__ = [name for name in globals() if name.isupper()]

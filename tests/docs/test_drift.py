@@ -21,6 +21,8 @@ ROOMS = {
     "plot": "plot",
     "maps": "maps",
     "navigation": "navigation",
+    "mobile": "mobile",
+    "localization": "localization",
 }
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cspace import tolerances
 from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
 from cspace.spatial.checks import as_pose_2d
 from cspace.spatial.planar import angle_of, matrix_of_angle, to_theta
 from cspace.spatial.poses import assemble
@@ -149,3 +150,75 @@ def pole_of(T: Any) -> Pole:
         angle=np.where(exists, angle, 0.0)[()],
         translation=np.where(exists[..., None], 0.0, T[..., :2, 2]),
     )
+
+
+def left_jacobian_se2(twist: npt.ArrayLike) -> Array:
+    """J with exp(ξ + δ) = exp(J δ) exp(ξ) to first order, in the order [v; ω].
+
+    J = [[a, −b, p x + q y], [b, a, p y − q x], [0, 0, 1]] with a = sin ω/ω, b = (1 − cos ω)/ω,
+    p = (1 − a)/ω and q = b/ω.
+
+    twist: ξ = (x, y, ω) (..., 3) [m, rad] → (..., 3, 3). Source: Solà, Deray & Atchuthan 2018, section VI.
+    """
+    return left_jacobian(as_floats(twist, "planar twist", last=(3,)))
+
+
+def right_jacobian_se2(twist: npt.ArrayLike) -> Array:
+    """J with exp(ξ + δ) = exp(ξ) exp(J δ) to first order: left_jacobian_se2 at −ξ.
+
+    twist: ξ (..., 3) [m, rad] → (..., 3, 3).
+    """
+    return left_jacobian(-as_floats(twist, "planar twist", last=(3,)))
+
+
+def left_jacobian_inv_se2(twist: npt.ArrayLike) -> Array:
+    """The inverse of left_jacobian_se2.
+
+    twist: ξ (..., 3) [m, rad] → (..., 3, 3). Raises InputError at ω = 2π, 4π, …, where J is singular.
+    """
+    xi = as_floats(twist, "planar twist", last=(3,))
+    half = 0.5 * xi[..., 2]
+    if (np.abs(sinc(half)) <= tolerances.WHOLE_TURN).any():
+        raise InputError("the Jacobian has no inverse at multiples of 2π other than zero (|ω| = 2π, 4π, …)")
+    a = x_cot_x(half)
+    inverse = _planar_block(a, -half)
+    inverse[..., :2, 2] = -np.einsum("...ij,...j->...i", inverse[..., :2, :2], left_jacobian(xi)[..., :2, 2])
+    return inverse
+
+
+def right_jacobian_inv_se2(twist: npt.ArrayLike) -> Array:
+    """The inverse of right_jacobian_se2; the derivative of log(T exp(δ)) with respect to δ.
+
+    twist: ξ (..., 3) [m, rad] → (..., 3, 3). Raises InputError at multiples of 2π other than zero.
+    """
+    return left_jacobian_inv_se2(-as_floats(twist, "planar twist", last=(3,)))
+
+
+def left_jacobian(xi: Array) -> Array:
+    """left_jacobian_se2 without checks."""
+    x, y, angle = xi[..., 0], xi[..., 1], xi[..., 2]
+    half = 0.5 * angle
+    p, q = _sine_rest(angle), 0.5 * sinc(half) ** 2
+    J = _planar_block(sinc(angle), np.sin(half) * sinc(half))
+    J[..., 0, 2] = p * x + q * y
+    J[..., 1, 2] = p * y - q * x
+    return J
+
+
+def _planar_block(a: Array, b: Array) -> Array:
+    """[[a, −b, 0], [b, a, 0], [0, 0, 1]]."""
+    J = np.zeros((*np.shape(a), 3, 3))
+    J[..., 0, 0] = J[..., 1, 1] = a
+    J[..., 1, 0], J[..., 0, 1] = b, -b
+    J[..., 2, 2] = 1.0
+    return J
+
+
+def _sine_rest(angle: Array) -> Array:
+    """(1 − sin ω/ω)/ω: by its series below a radian, where the difference cancels."""
+    square = angle * angle
+    series = np.ones_like(square)
+    for k in (17, 15, 13, 11, 9, 7, 5):
+        series = 1.0 - square * series / (k * (k - 1))
+    is_small = square < 1.0
+    return np.where(is_small, angle * series / 6.0, (1.0 - sinc(angle)) / np.where(is_small, 1.0, angle))

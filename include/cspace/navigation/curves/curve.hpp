@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "cspace/math/wrapping.hpp"
+#include "cspace/mobile/car_pose.hpp"
 #include "cspace/navigation/route.hpp"
 
 namespace cspace::navigation {
 
-// The pose of a car: the middle of its rear axle [m] and its heading [rad].
-struct CarPose {
-    double x, y, theta;
-};
+using mobile::CarPose;
 
 // A piece of a curve in units of its radius; a negative length is driven backwards.
 struct Piece {

@@ -10,10 +10,10 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, one_array
 from cspace.errors import InputError, InputTypeError
+from cspace.mobile import Car
 from cspace.navigation.cars.car_route import CarRoute
 from cspace.navigation.checks import need_grid, need_number
 from cspace.navigation.curves.curve import Curve
-from cspace.navigation.following.vehicles import Car
 from cspace.navigation.route import STATUSES, Stats
 from cspace.tolerances import LARGEST_NUMBER
 

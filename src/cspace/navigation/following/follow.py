@@ -10,10 +10,10 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.math.wrapping import wrap_angle
+from cspace.mobile import Car, Unicycle
 from cspace.navigation.checks import need_grid
 from cspace.navigation.curves.curve import Curve
 from cspace.navigation.following.run import OUTCOMES, Run
-from cspace.navigation.following.vehicles import Car, Unicycle
 from cspace.tolerances import LARGEST_NUMBER, SIMULATION_STEPS, TRACK_POSES
 
 OPTIONS: Final[dict[str, dict[str, Any]]] = {

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.navigation.following.vehicles import Car
+from cspace.mobile import Car
 from cspace.tables import one_line
 
 OUTCOMES: Final = ("arrived", "stuck", "collision", "timeout", "missed")

@@ -1,0 +1,17 @@
+"""Localisation of mobile robots: logs, filters and smoothers on maps of landmarks."""
+
+from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
+from cspace.localization.logs import read_log
+from cspace.mobile import Odometry, TimedPoses
+
+__all__ = [
+    "Fixes",
+    "Headings",
+    "Landmarks",
+    "Log",
+    "Odometry",
+    "Readings",
+    "Scans",
+    "TimedPoses",
+    "read_log",
+]

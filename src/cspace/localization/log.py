@@ -1,0 +1,257 @@
+"""Logs of mobile robots as arrays: odometry, scans, readings of landmarks, reference poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, one_array, positive_number
+from cspace.errors import InputError
+from cspace.mobile import Odometry, TimedPoses
+from cspace.mobile.timed_poses import read_rows, read_times
+from cspace.spatial import as_pose_2d
+from cspace.tables import count_things, one_line
+
+Ids = npt.NDArray[np.int64]
+Mask = npt.NDArray[np.bool_]
+
+UNKNOWN = -1
+"""The landmark of a reading that does not say which one it saw."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Readings:
+    """Ranges and bearings of landmarks, a row per reading; NaN where one of the two was not measured.
+
+    times (k,) [s], increasing. landmark (k,): the name of the landmark, or −1 where it is unknown. range (k,)
+    [m]. bearing (k,) [rad], in the frame of the sensor, counter-clockwise from its x axis. Raises InputError
+    for rows with neither, ranges below zero, and bearings that are all beyond a whole turn (degrees).
+    """
+
+    times: Array
+    landmark: Ids
+    range: Array
+    bearing: Array
+
+    def __post_init__(self) -> None:
+        times = read_times(self.times)
+        object.__setattr__(self, "times", times)
+        object.__setattr__(self, "landmark", read_names(self.landmark, "landmark", len(times)))
+        for name in ("range", "bearing"):
+            object.__setattr__(self, name, read_column(getattr(self, name), name, len(times)))
+        self._check_values()
+
+    def _check_values(self) -> None:
+        empty = np.flatnonzero(np.isnan(self.range) & np.isnan(self.bearing))
+        if len(empty):
+            raise InputError(f"reading {empty[0]} has neither range nor bearing; leave the row out")
+        below = np.flatnonzero(self.range < 0)
+        if len(below):
+            raise InputError(f"range is {self.range[below[0]]:g} at row {below[0]}; ranges are not below zero")
+        measured = self.bearing[~np.isnan(self.bearing)]
+        if len(measured) and (np.abs(measured) > 2 * np.pi).all():
+            raise InputError(
+                f"bearing is {measured[0]:g} and all others lie beyond ±2π too; give radians, np.radians(bearing)"
+            )
+
+    def __len__(self) -> int:
+        """How many readings there are."""
+        return len(self.times)
+
+    def __repr__(self) -> str:
+        seen = len(np.unique(self.landmark[self.landmark != UNKNOWN]))
+        return one_line("Readings", f"{len(self)} of {count_things(seen, 'landmark')}")
+
+    def between(self, first: float, last: float) -> Readings:
+        """The readings with times from first to last [s]."""
+        keep = (self.times >= first) & (self.times <= last)
+        return self.subset(keep)
+
+    def subset(self, keep: Mask | Ids) -> Readings:
+        """The readings of a mask, or of increasing row numbers, (k,)."""
+        return Readings(self.times[keep], self.landmark[keep], self.range[keep], self.bearing[keep])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Landmarks:
+    """A map of points with names.
+
+    names (m,), whole numbers from 0, each once. points (m, 2): x, y [m] in map. covariances (m, 2, 2) of the points [m²], or None for
+    points known exactly.
+    """
+
+    names: Ids
+    points: Array
+    covariances: Array | None = None
+
+    def __post_init__(self) -> None:
+        points = one_array(self.points, "points", (None, 2))
+        names = read_names(self.names, "names", len(points))
+        if len(names) and names.min() < 0:
+            raise InputError(f"names has {names.min()}; names are whole numbers from 0, and −1 means unknown")
+        twice = np.flatnonzero(np.bincount(np.searchsorted(np.unique(names), names)) > 1)
+        if len(twice):
+            raise InputError(f"landmark {np.unique(names)[twice[0]]} is there twice; give each name once")
+        object.__setattr__(self, "names", names)
+        object.__setattr__(self, "points", points)
+        if self.covariances is not None:
+            object.__setattr__(
+                self, "covariances", read_rows(self.covariances, "covariances", names, (2, 2))
+            )
+
+    def __len__(self) -> int:
+        """How many landmarks there are."""
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return one_line("Landmarks", count_things(len(self), "landmark"))
+
+    def rows_of(self, names: npt.ArrayLike) -> Ids:
+        """The rows of names (k,) → (k,), −1 for unknown ones; InputError for a name not on the map."""
+        asked = read_names(names, "landmark", None)
+        order = np.argsort(self.names, kind="stable")
+        at = np.searchsorted(self.names[order], asked)
+        rows = order[np.minimum(at, len(order) - 1)] if len(order) else np.zeros(len(asked), int)
+        missing = (asked != UNKNOWN) & ((self.names[rows] != asked) if len(order) else True)
+        if missing.any():
+            raise InputError(
+                f"landmark {asked[missing][0]} is read but not on the map of {len(self)}; add it, or name it"
+                f" {UNKNOWN} to have it associated"
+            )
+        return np.where(asked == UNKNOWN, UNKNOWN, rows)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Headings:
+    """Headings of a compass, θ of base in map. times (k,) [s], increasing. angles (k,) [rad]."""
+
+    times: Array
+    angles: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "times", read_times(self.times))
+        object.__setattr__(self, "angles", read_rows(self.angles, "angles", self.times, ()))
+
+    def __len__(self) -> int:
+        """How many headings there are."""
+        return len(self.times)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fixes:
+    """Positions of a satellite receiver in map. times (k,) [s], increasing. points (k, 2): x, y [m]."""
+
+    times: Array
+    points: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "times", read_times(self.times))
+        object.__setattr__(self, "points", read_rows(self.points, "points", self.times, (2,)))
+
+    def __len__(self) -> int:
+        """How many fixes there are."""
+        return len(self.times)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Scans:
+    """Scans of a planar laser range finder.
+
+    times (n,) [s], increasing. ranges (n, b) float32 [m]. angles (b,) [rad] of the beams in the frame of the
+    laser. most [m]: a range that is NaN, infinite or not below it is no return. T_base_laser (3, 3).
+    """
+
+    times: Array
+    ranges: npt.NDArray[np.float32]
+    angles: Array
+    most: float = 80.0
+    T_base_laser: Array = field(default_factory=lambda: np.eye(3))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "times", read_times(self.times))
+        object.__setattr__(self, "angles", one_array(self.angles, "angles", (None,)))
+        ranges = np.ascontiguousarray(self.ranges, dtype=np.float32)
+        if ranges.shape != (len(self.times), len(self.angles)):
+            raise InputError(
+                f"ranges has shape {ranges.shape}; expected a row per time and a column per angle,"
+                f" ({len(self.times)}, {len(self.angles)})"
+            )
+        object.__setattr__(self, "ranges", ranges)
+        object.__setattr__(self, "most", positive_number(self.most, "most"))
+        object.__setattr__(self, "T_base_laser", as_pose_2d(self.T_base_laser, "T_base_laser"))
+
+    def __len__(self) -> int:
+        """How many scans there are."""
+        return len(self.times)
+
+    def __repr__(self) -> str:
+        return one_line("Scans", f"{len(self)} of {count_things(len(self.angles), 'beam')}")
+
+    @property
+    def returns(self) -> Mask:
+        """Which beams returned, (n, b)."""
+        return np.isfinite(self.ranges) & (self.ranges < self.most)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Log:
+    """A drive of a robot: what it measured, and what is known of where it was.
+
+    odometry; scans, readings, headings and fixes, or None; landmarks: a map that came with the log, or None;
+    truth: reference poses, or None; notes: what the reader dropped or mended. Times are seconds from the
+    first of the log.
+    """
+
+    odometry: Odometry
+    scans: Scans | None = None
+    readings: Readings | None = None
+    headings: Headings | None = None
+    fixes: Fixes | None = None
+    landmarks: Landmarks | None = None
+    truth: TimedPoses | None = None
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        parts = [self.odometry, self.scans, self.readings, self.landmarks, self.truth]
+        return one_line("Log", ", ".join(repr(part)[1:-1] for part in parts if part is not None))
+
+    def events(self) -> list[tuple[float, str, int]]:
+        """Time, kind ("odometry", "scans", "readings", "headings", "fixes") and row of everything, by time.
+
+        Of equal times odometry comes first, then the kinds in this order.
+        """
+        kinds = [
+            ("odometry", self.odometry.times),
+            *((kind, part.times) for kind in SENSED if (part := getattr(self, kind)) is not None),
+        ]
+        times = np.concatenate([when for _, when in kinds])
+        rows = np.concatenate([np.arange(len(when)) for _, when in kinds])
+        which = np.repeat(np.arange(len(kinds)), [len(when) for _, when in kinds])
+        order = np.argsort(times, kind="stable")
+        return [(float(times[k]), kinds[which[k]][0], int(rows[k])) for k in order]
+
+
+SENSED = ("scans", "readings", "headings", "fixes")
+"""The kinds of measurements of a log, in the order in which equal times are merged."""
+
+
+def read_names(values: npt.ArrayLike, subject: str, count: int | None) -> Ids:
+    """Names of landmarks as whole numbers; InputError for others, or another number of them."""
+    numbers = one_array(values, subject, (None,))
+    if (numbers != np.round(numbers)).any():
+        raise InputError(f"{subject} must be whole numbers; number the landmarks from 0")
+    if count is not None and len(numbers) != count:
+        raise InputError(f"{subject} has {len(numbers)} rows; expected {count}, one per row")
+    return numbers.astype(np.int64)
+
+
+def read_column(values: npt.ArrayLike, subject: str, count: int) -> Array:
+    """A column in which NaN means not measured; InputError for infinity, or another number of rows."""
+    column = np.array(values, dtype=np.float64, ndmin=1)
+    if column.shape != (count,):
+        raise InputError(f"{subject} has shape {column.shape}; expected ({count},), one number per time")
+    if np.isinf(column).any():
+        raise InputError(f"{subject} is infinite at row {int(np.isinf(column).argmax())}; use NaN for no value")
+    return column

@@ -1,0 +1,167 @@
+"""Logs of the Carnegie Mellon Robot Navigation Toolkit (CARMEN): ODOM, FLASER and ROBOTLASER1 messages."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array
+from cspace.errors import LogError
+from cspace.localization.log import Log, Scans
+from cspace.localization.logs.lines import Lines, mend_clock
+from cspace.math.wrapping import wrap_angle
+from cspace.mobile import Odometry, TimedPoses
+from cspace.spatial import inverse_pose_2d, pose_2d, to_xytheta
+
+SKIPPED = {"NEFF", "SYNC", "RLASER", "LASER3", "LASER4", "LASER5", "RAWLASER1", "RAWLASER2", "RAWLASER3"}
+SKIPPED |= {"RAWLASER4", "ROBOTLASER2", "TRUEPOS", "SIMULATOR_TRUEPOS", "GPS", "NMEAGGA", "NMEARMC", "IMU"}
+SKIPPED |= {"BUMPER", "SONAR", "POSITION", "MARKER", "PANTILT", "SCANMARK", "POSITIONHEAD", "MOVEMENT"}
+"""Messages that are known and not read."""
+RECORDS = {"ODOM", "FLASER", "ROBOTLASER1", "PARAM"} | SKIPPED
+SAME_TIME = 2.0
+"""Seconds by which an ODOM message may differ from the scan before it and still belong to the same moment."""
+DEFAULT_MOST = 81.0
+"""From this range on [m] a reading of a SICK laser means that nothing returned."""
+
+
+@dataclass
+class Messages:
+    """What the lines say: poses with times, and scans with their poses."""
+
+    odometry: list[list[float]] = field(default_factory=list)  # x, y, θ, time, 1 if it repeats a scan, line
+    scans: list[list[float]] = field(default_factory=list)  # laser x, y, θ, robot x, y, θ, time, line
+    ranges: list[np.ndarray[tuple[int], np.dtype[np.float32]]] = field(default_factory=list)
+    angles: Array | None = None
+    most: float = DEFAULT_MOST
+    skipped: Counter[str] = field(default_factory=Counter)
+    resets: int = 0  # repetitions with a time that is not their own
+    after_scan: bool = False  # no ODOM since the last scan
+
+
+def read_carmen(lines: Lines) -> Log:
+    """A log of CARMEN; LogError for an unknown message, a line that is cut, or scans of changing size.
+
+    FLASER has no angles: beam k of n lies at −90° + k 180°/n. In a corrected log an ODOM without a time
+    repeats the corrected pose of the scan before it, and the ODOM messages after it go on from there with the raw
+    increments: these are chained into the raw odometry, and the poses of the scans are the truth.
+    """
+    messages = Messages()
+    for number, words in lines.rows():
+        if words[0] in SKIPPED:
+            messages.skipped[words[0]] += 1
+        elif words[0] == "ODOM":
+            add_odometry(messages, lines, number, words)
+        elif words[0] in ("FLASER", "ROBOTLASER1"):
+            add_scan(messages, lines, number, words)
+        elif words[0] == "PARAM":
+            if words[1:2] == ["robot_front_laser_max"] and len(words) > 2:
+                messages.most = lines.numbers(number, words[2:3], "a range")[0]
+        else:
+            raise lines.error(number, f"no message {words[0]!r} is known in logs of CARMEN")
+    if not messages.odometry and not messages.scans:
+        raise LogError("the log has neither ODOM nor FLASER nor ROBOTLASER1 messages", path=lines.path)
+    return assemble_log(messages)
+
+
+def add_odometry(messages: Messages, lines: Lines, number: int, words: list[str]) -> None:
+    """ODOM x y θ tv rv acceleration time host logger-time."""
+    if len(words) < 8:
+        raise lines.error(number, f"ODOM has {len(words) - 1} values; 9 expected, the line is cut")
+    x, y, theta = lines.numbers(number, words[1:4], "x, y and θ of ODOM")
+    time = lines.numbers(number, words[7:8], "the time of ODOM")[0]
+    repeats = messages.after_scan and [x, y, theta] == messages.scans[-1][3:6]
+    if repeats and abs(time - messages.scans[-1][6]) > SAME_TIME:
+        messages.resets += 1
+    messages.after_scan = False
+    messages.odometry.append([x, y, theta, time, float(repeats), number])
+
+
+def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) -> None:
+    """FLASER n ranges, laser pose, robot pose, time; ROBOTLASER1 with its angles before the ranges."""
+    is_plain = words[0] == "FLASER"
+    at = 1 if is_plain else 8
+    if len(words) <= at:
+        raise lines.error(number, f"{words[0]} has {len(words) - 1} values; the line is cut")
+    head = lines.numbers(number, words[1 : at + 1], f"the head of {words[0]}")
+    count = int(head[-1])
+    ranges = words[at + 1 : at + 1 + count]
+    tail = words[at + 1 + count :]
+    if not is_plain and tail:
+        tail = tail[1 + int(lines.numbers(number, tail[:1], "the number of remissions")[0]) :]
+    place = 6 if is_plain else 11
+    if count < 1 or len(ranges) < count or len(tail) <= place:
+        raise lines.error(number, f"{words[0]} of {count} ranges has {len(words) - 1} values; the line is cut")
+    if messages.ranges and len(messages.ranges[-1]) != count:
+        raise lines.error(
+            number, f"the scan has {count} beams and the one before {len(messages.ranges[-1])}; split the log"
+        )
+    if messages.angles is None:
+        messages.angles = beam_angles(head, count)
+        if not is_plain:
+            messages.most = head[4]
+    try:
+        messages.ranges.append(np.array(ranges, dtype=np.float32))
+    except ValueError:
+        raise lines.error(number, f"a range of {words[0]} is no number") from None
+    messages.after_scan = True
+    messages.scans.append(lines.numbers(number, [*tail[:6], tail[place], str(number)], "a pose"))
+
+
+def beam_angles(head: list[float], count: int) -> Array:
+    """The angles of the beams (b,): from the head of ROBOTLASER1, or over half a turn."""
+    if len(head) == 1:
+        return np.asarray(-0.5 * np.pi + np.pi / count * np.arange(count))
+    return np.asarray(head[1] + head[3] * np.arange(count))
+
+
+def assemble_log(messages: Messages) -> Log:
+    """Odometry, scans and truth on one clock that starts at the first message."""
+    rows = np.array(messages.odometry).reshape(-1, 6)
+    scans = np.array(messages.scans).reshape(-1, 8)
+    is_corrected = 2 * messages.resets > len(scans)
+    jumps = (rows[:, 4] == 1) & is_corrected  # in a raw log a robot at rest repeats its pose
+    notes = [f"{count} {name} messages are not read" for name, count in sorted(messages.skipped.items())]
+    order = np.argsort(np.concatenate([rows[~jumps, 5], scans[:, 7]]), kind="stable")
+    stamps = np.concatenate([rows[~jumps, 3], scans[:, 6]])
+    mended, clock = mend_clock(stamps[order])
+    stamps[order] = mended - mended[0]
+    notes += clock
+    times, scan_times = stamps[: len(rows) - jumps.sum()], stamps[len(rows) - jumps.sum() :]
+    if len(rows):
+        odometry = chain_odometry(rows[:, :3], jumps, times)
+    else:
+        odometry = Odometry.from_poses(scan_times, scans[:, 3:6])
+        notes.append("the odometry is that of the scans")
+    truth = None
+    if is_corrected:
+        truth = TimedPoses(scan_times, scans[:, 3:6])
+        notes.append(f"{len(truth)} corrected poses are the truth; the raw odometry was chained between")
+    packed = pack_scans(messages, scans, scan_times, notes) if len(scans) else None
+    return Log(odometry, packed, truth=truth, notes=tuple(notes))
+
+
+def chain_odometry(poses: Array, jumps: npt.NDArray[np.bool_], times: Array) -> Odometry:
+    """Odometry from poses (n, 3) whose frame jumps where a row is marked: increments are taken after it."""
+    T = pose_2d(xytheta=poses)
+    increments = to_xytheta(inverse_pose_2d(T[:-1]) @ T[1:])[~jumps[1:]]
+    if jumps[0]:  # when the first step began is unknown
+        increments = increments[1:]
+    return Odometry.from_increments(times, increments)
+
+
+def pack_scans(messages: Messages, scans: Array, times: Array, notes: list[str]) -> Scans:
+    """The scans with the pose of the laser on the robot, which their lines repeat."""
+    mounts = to_xytheta(inverse_pose_2d(pose_2d(xytheta=scans[:, 3:6])) @ pose_2d(xytheta=scans[:, :3]))
+    mount = np.median(mounts, axis=0)
+    spread = np.abs(np.concatenate([mounts[:, :2] - mount[:2], wrap_angle(mounts[:, 2:] - mount[2])], axis=1)).max()
+    if spread > MOUNT_SPREAD:
+        notes.append(f"the pose of the laser on the robot varies by {spread:.2g}; the median is used")
+    assert messages.angles is not None
+    return Scans(times, np.array(messages.ranges), messages.angles, messages.most, pose_2d(xytheta=mount))
+
+
+MOUNT_SPREAD = 0.01
+"""By how much the pose of the laser on the robot may vary [m, rad]: the rounding of printed poses far away."""

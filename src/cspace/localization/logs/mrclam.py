@@ -1,0 +1,92 @@
+"""The data sets of UTIAS, Multi-Robot Cooperative Localization and Mapping (MRCLAM): a folder of tables."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import LogError
+from cspace.localization.log import Landmarks, Log, Readings
+from cspace.localization.logs.lines import mend_clock, read_lines
+from cspace.mobile import Odometry, TimedPoses
+
+ROBOTS = 5
+"""Subjects from 1 to this are robots, the others landmarks."""
+FILE = re.compile(r"Robot(\d+)_(Odometry|Measurement|Groundtruth)\.dat(\.gz)?")
+
+
+def is_mrclam(folder: Path) -> bool:
+    """Whether the folder has the map of landmarks of such a data set."""
+    return any((folder / f"Landmark_Groundtruth.dat{ending}").is_file() for ending in ("", ".gz"))
+
+
+def read_mrclam(folder: Path, robot: int | None) -> Log:
+    """The log of one robot, the first unless given, with landmarks and truth.
+
+    Readings name the barcode that was seen; Barcodes.dat says whose it is. Readings of other robots and of
+    unknown barcodes are left out. The odometry is the commanded velocity. Source: Leung et al. 2011.
+    """
+    numbers = sorted({int(found[1]) for path in folder.iterdir() if (found := FILE.fullmatch(path.name))})
+    if not numbers:
+        raise LogError("no Robot1_Odometry.dat, Robot2_… in the folder", path=str(folder))
+    if robot is not None and robot not in numbers:
+        raise LogError(f"no robot {robot} in the folder; robots: {', '.join(map(str, numbers))}", path=str(folder))
+    chosen = numbers[0] if robot is None else robot
+    notes = [f"robot {chosen} of {', '.join(map(str, numbers))}"] if len(numbers) > 1 else []
+    speeds = read_table(folder, f"Robot{chosen}_Odometry", 3, "time, forward velocity, angular velocity")
+    seen = read_table(folder, f"Robot{chosen}_Measurement", 4, "time, barcode, range, bearing")
+    truth = read_table(folder, f"Robot{chosen}_Groundtruth", 4, "time, x, y, orientation")
+    if not len(speeds):
+        raise LogError(f"Robot{chosen}_Odometry.dat has no rows", path=str(folder))
+    zero = speeds[0, 0]
+    times, clock = mend_clock(speeds[:, 0] - zero)
+    twists = np.stack([speeds[:, 1], np.zeros(len(speeds)), speeds[:, 2]], axis=-1)
+    notes += [f"odometry: {note}" for note in clock]
+    repeated = int(np.count_nonzero(np.diff(times) == 0))
+    if repeated:
+        notes.append(f"odometry: {repeated} stamps are repeated; the last velocity of each holds")
+    readings, more = name_landmarks(folder, seen, zero)
+    truth_times, clock = mend_clock(truth[:, 0] - zero)
+    notes += more + [f"truth: {note}" for note in clock]
+    return Log(
+        Odometry.from_twists(times, twists),
+        readings=readings,
+        landmarks=read_landmarks(folder),
+        truth=TimedPoses(truth_times, truth[:, 1:]),
+        notes=tuple(notes),
+    )
+
+
+def name_landmarks(folder: Path, seen: Array, zero: float) -> tuple[Readings, list[str]]:
+    """Readings with the subjects of their barcodes, of landmarks alone, and notes of those left out."""
+    codes = read_table(folder, "Barcodes", 2, "subject, barcode")
+    subject_of = {int(code): int(subject) for subject, code in codes}
+    subjects = np.array([subject_of.get(int(code), 0) for code in seen[:, 1]], dtype=np.int64)
+    times, clock = mend_clock(seen[:, 0] - zero)
+    notes = [f"readings: {note}" for note in clock]
+    unknown, robots = int((subjects == 0).sum()), int(((subjects > 0) & (subjects <= ROBOTS)).sum())
+    if unknown:
+        notes.append(f"readings: {unknown} of unknown barcodes are left out")
+    if robots:
+        notes.append(f"readings: {robots} of other robots are left out")
+    keep = subjects > ROBOTS
+    return Readings(times[keep], subjects[keep], seen[keep, 2], seen[keep, 3]), notes
+
+
+def read_landmarks(folder: Path) -> Landmarks:
+    """The map with the standard deviations of its points."""
+    rows = read_table(folder, "Landmark_Groundtruth", 5, "subject, x, y and their standard deviations")
+    covariances = np.zeros((len(rows), 2, 2))
+    covariances[:, 0, 0], covariances[:, 1, 1] = rows[:, 3] ** 2, rows[:, 4] ** 2
+    return Landmarks(rows[:, 0].astype(np.int64), rows[:, 1:3], covariances)
+
+
+def read_table(folder: Path, name: str, columns: int, what: str) -> Array:
+    """The rows of a file of the folder, plain or compressed."""
+    for ending in (".dat", ".dat.gz"):
+        if (folder / (name + ending)).is_file():
+            return read_lines(str(folder / (name + ending))).table(columns, what)
+    raise LogError(f"there is no {name}.dat in the folder; it belongs to the data set", path=str(folder))
