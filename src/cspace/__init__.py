@@ -34,6 +34,7 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
+    from cspace.localization import PoseGraph
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
@@ -61,6 +62,7 @@ __all__ = [
     "Limits",
     "OccupancyGrid",
     "PolygonWorld",
+    "PoseGraph",
     "Robot",
     "Scene",
     "__version__",
@@ -105,6 +107,7 @@ _LATER = {
     "OccupancyGrid": "cspace.maps",
     "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
+    "PoseGraph": "cspace.localization",
     "PoseTask": "cspace.ik",
     "PositionTask": "cspace.ik",
     "PostureTask": "cspace.ik",
