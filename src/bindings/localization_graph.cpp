@@ -69,6 +69,7 @@ void bind_localization_graph(nb::module_& m) {
                          const auto used = solver.used();
                          return std::vector<bool>(used.begin(), used.end());
                      })
+        .def_prop_ro("limit_scale", &GraphSolver::limit_scale)
         .def_prop_ro("singular_variable", &GraphSolver::singular_variable)
         .def_prop_ro("stats",
                      [](const GraphSolver& solver) {

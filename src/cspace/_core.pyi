@@ -854,6 +854,9 @@ class GraphSolver:
     def used(self) -> list[bool]: ...
 
     @property
+    def limit_scale(self) -> float: ...
+
+    @property
     def singular_variable(self) -> int: ...
 
     @property

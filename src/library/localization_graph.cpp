@@ -118,6 +118,7 @@ class SolverOf : public GraphSolver {
         return found;
     }
     std::vector<std::uint8_t> used() const override { return {is_used_.begin(), is_used_.end()}; }
+    double limit_scale() const override { return limit_scale_; }
     int singular_variable() const override { return singular_; }
 
     bool write_covariances(std::span<const std::int32_t> pairs, double* to) override {
@@ -147,15 +148,18 @@ class SolverOf : public GraphSolver {
     GraphStatus reject_loops(const SolveRule& rule) {
         FalseLoopSolver<Space, KernelFronts> solver(graph_, rule.options);
         const GraphState<Space> start = state_;
-        RobustAnswer<Space> best;
-        const auto accept_answer = [&](RobustAnswer<Space> answer) {
-            if (!(answer.cost < best.cost)) return;
-            best = std::move(answer);
-            state_ = best.state;
-            is_used_ = best.is_used;
+        std::vector<RobustAnswer<Space>> answers;
+        const auto keep_answer = [&](RobustAnswer<Space> answer) {
+            answers.push_back(std::move(answer));
+            state_ = answers[0].state, is_used_ = answers[0].is_used;
         };
-        if (rule.false_loops != FalseLoops::gnc) accept_answer(solver.scale_covariances(start, rule.width));
-        if (rule.false_loops != FalseLoops::dcs) accept_answer(solver.graduate(start));
+        if (rule.false_loops != FalseLoops::gnc) keep_answer(solver.scale_covariances(start, rule.width));
+        if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
+        const double scale = std::min(answers.front().scale, answers.back().scale);
+        const bool is_second = solver.truncated_cost(answers.back(), scale) < solver.truncated_cost(answers.front(), scale);
+        const RobustAnswer<Space>& best = is_second ? answers.back() : answers.front();
+        state_ = best.state, is_used_ = best.is_used;
+        limit_scale_ = best.scale;
         stats_ = solver.optimizer().stats();
         singular_ = best.status == GraphStatus::singular ? variable_of(solver.optimizer().failed_block()) : -1;
         weights_ = {};
@@ -222,6 +226,7 @@ class SolverOf : public GraphSolver {
     FactorWeights weights_;
     GraphStats stats_;
     bool found_start_ = true;
+    double limit_scale_ = 1;
     int singular_ = -1;
     std::unique_ptr<Equations> factorized_;
     int solved_block_ = -1;

@@ -45,6 +45,8 @@ class GraphSolver {
     // The squared errors of all measurements: edges, then sightings; and whether each one counted.
     virtual std::vector<double> squares() const = 0;
     virtual std::vector<std::uint8_t> used() const = 0;
+    // What the quantiles of the errors were multiplied with to reject measurements.
+    virtual double limit_scale() const = 0;
     // The pose or landmark (after all poses) next to which the equations are singular; −1: none.
     virtual int singular_variable() const = 0;
     // Covariances of the variables (first, second), blocks one after the other, with [v; ω] in the base for poses;

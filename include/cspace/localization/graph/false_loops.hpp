@@ -2,8 +2,10 @@
 // 2013) and graduated non-convexity (Yang, Antonante, Tzoumas & Carlone 2020).
 //
 // Both start from dead reckoning along trusted edges. What they reject is tested again at the answer: measurements
-// within the quantile of 99.9 % count, the others do not, and the graph is solved again until nothing changes. Of
-// several answers that with the least truncated cost is the better one.
+// within the quantile of 99.9 % count, the others do not, and the graph is solved again until nothing changes. The
+// information of many files is far too small, so that false measurements would pass as well; the quantile is scaled by
+// χ² per degree of freedom of the measurements that count. Of several answers that with the least truncated cost is
+// the better one.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +46,8 @@ struct RobustAnswer {
     GraphState<Space> state;
     GraphStatus status = GraphStatus::stopped;
     std::vector<char> is_used;  // by measurement
-    double cost = INFINITY;     // with errors truncated at their limits
+    double scale = 1;           // of the limits of the squared errors
+    std::vector<double> squares;
 };
 
 template <class Space, class Fronts>
@@ -54,7 +57,10 @@ class FalseLoopSolver {
 
     FalseLoopSolver(const PoseGraph<Space>& graph, const GraphOptions& options)
         : graph_(graph), options_(options), optimizer_(graph, options), trusted_(find_trusted(graph)),
-          limits_(find_limits(graph)) {}
+          limits_(find_limits(graph)) {
+        unknowns_ = Space::freedom * std::count(graph.is_held.begin(), graph.is_held.end(), 0) +
+                    Space::dimension * std::count(graph.is_landmark_held.begin(), graph.is_landmark_held.end(), 0);
+    }
 
     GraphOptimizer<Space, Fronts>& optimizer() { return optimizer_; }
 
@@ -70,7 +76,7 @@ class FalseLoopSolver {
                 weights[k] = trusted_[k] ? 1.0 : evaluate_kernel(RobustKernel::dcs, squares_[k], width).weight;
             if (!(step_with(weights, state) > least_step)) break;
         }
-        return settle(state);
+        return settle(state, find_kept(weights));
     }
 
     // Graduated non-convexity of truncated least squares.
@@ -84,7 +90,7 @@ class FalseLoopSolver {
         std::vector<double> weights(graph_.factors(), 1.0);
         for (int round = 0; round < most_rounds; ++round, convexity *= growth) {
             for (int step = 0; step < steps_per_round; ++step) {
-                if (!std::isfinite(step_with(weights, state))) return settle(start);
+                if (!std::isfinite(step_with(weights, state))) return settle(start, trusted_);
             }
             measure_squares(graph_, state, options_.residual, squares_);
             double farthest = 0;
@@ -94,7 +100,15 @@ class FalseLoopSolver {
             }
             if (farthest < binary && round >= least_rounds) break;
         }
-        return settle(state);
+        return settle(state, find_kept(weights));
+    }
+
+    // The squared errors of an answer, those of doubted measurements truncated at their limits times a scale.
+    double truncated_cost(const RobustAnswer<Space>& answer, double scale) const {
+        double cost = 0;
+        for (std::size_t k = 0; k < answer.squares.size(); ++k)
+            cost += trusted_[k] ? answer.squares[k] : std::min(answer.squares[k], scale * limits_[k]);
+        return cost;
     }
 
   private:
@@ -112,8 +126,8 @@ class FalseLoopSolver {
         return std::max(found, least);
     }
 
-    // Measurements of less weight are left out.
-    static constexpr double least_weight = 1e-3;
+    // Measurements of less weight are left out. Many of hardly any weight still pull together, when they are true.
+    static constexpr double least_weight = 1e-6;
 
     // A step of Gauss–Newton with these weights; its largest entry.
     double step_with(const std::vector<double>& weights, State& state) {
@@ -134,26 +148,45 @@ class FalseLoopSolver {
         return optimizer_.take_step(state);
     }
 
-    // Solves with the measurements within their limits, until these stay the same.
-    RobustAnswer<Space> settle(const State& start) {
-        constexpr int most_rounds = 8;
+    // χ² per degree of freedom of these measurements, between the bounds of a scale.
+    double find_scale(const std::vector<char>& is_used) const {
+        constexpr double least = 0.1;  // errors have heavier tails than the quantile knows
+        double sum = 0;
+        std::ptrdiff_t numbers = -unknowns_;
+        for (std::size_t k = 0; k < is_used.size(); ++k) {
+            if (!is_used[k]) continue;
+            sum += squares_[k];
+            numbers += k < graph_.edges.size() ? Space::freedom : Space::dimension;
+        }
+        return numbers > 0 ? std::clamp(sum / double(numbers), least, 1.0) : 1.0;
+    }
+
+    // Solves with the measurements within their limits, until these stay the same. is_kept: those that count at first.
+    RobustAnswer<Space> settle(const State& start, const std::vector<char>& is_kept) {
+        constexpr int most_rounds = 12;
         RobustAnswer<Space> answer;
         answer.state = start;
         optimizer_.weights().fixed.clear();
+        std::vector<char> kept = is_kept;
         for (int round = 0; round < most_rounds; ++round) {
             measure_squares(graph_, answer.state, options_.residual, squares_);
-            std::vector<char> within(squares_.size());
-            for (std::size_t k = 0; k < within.size(); ++k) within[k] = trusted_[k] || squares_[k] <= limits_[k];
-            if (within == answer.is_used) break;
-            answer.is_used = is_used_ = within;
+            answer.scale = find_scale(kept);
+            for (std::size_t k = 0; k < kept.size(); ++k)
+                kept[k] = trusted_[k] || squares_[k] <= answer.scale * limits_[k];
+            if (kept == answer.is_used) break;
+            answer.is_used = is_used_ = kept;
             optimizer_.use_factors(is_used_);
             answer.status = optimizer_.optimize(answer.state);
         }
-        measure_squares(graph_, answer.state, options_.residual, squares_);
-        answer.cost = 0;
-        for (std::size_t k = 0; k < squares_.size(); ++k)
-            answer.cost += trusted_[k] ? squares_[k] : std::min(squares_[k], limits_[k]);
+        measure_squares(graph_, answer.state, options_.residual, answer.squares);
         return answer;
+    }
+    // The measurements of so much weight.
+    static std::vector<char> find_kept(const std::vector<double>& weights) {
+        constexpr double least = 0.5;
+        std::vector<char> kept(weights.size());
+        for (std::size_t k = 0; k < kept.size(); ++k) kept[k] = weights[k] >= least;
+        return kept;
     }
 
     const PoseGraph<Space>& graph_;
@@ -161,6 +194,7 @@ class FalseLoopSolver {
     GraphOptimizer<Space, Fronts> optimizer_;
     std::vector<char> trusted_, is_used_;
     std::vector<double> limits_, squares_;
+    std::ptrdiff_t unknowns_ = 0;
 };
 
 }  // namespace cspace::localization

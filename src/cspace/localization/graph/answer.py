@@ -38,9 +38,11 @@ class RejectedLoop(NamedTuple):
     """The squared error up to which it would have counted."""
 
 
-def list_rejected(graph: PoseGraph, squares: Array, is_rejected: npt.NDArray[np.bool_]) -> tuple[RejectedLoop, ...]:
-    """The rejected edges, the row of the first first."""
-    limit = LIMITS[6 if graph.is_spatial else 3]
+def list_rejected(
+    graph: PoseGraph, squares: Array, is_rejected: npt.NDArray[np.bool_], scale: float
+) -> tuple[RejectedLoop, ...]:
+    """The rejected edges by row; scale: of the limits."""
+    limit = scale * LIMITS[6 if graph.is_spatial else 3]
     assert graph.ids is not None
     ids = graph.ids[graph.edges]
     return tuple(

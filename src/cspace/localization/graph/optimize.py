@@ -194,7 +194,7 @@ def make_answer(
         reason=explain_status(graph, solver, request, status, seconds, int(iterations)),
         edge_chi2=squares[:k],
         sighting_chi2=squares[k:],
-        rejected=list_rejected(graph, squares[:k], ~used[:k]),
+        rejected=list_rejected(graph, squares[:k], ~used[:k], solver.limit_scale),
         rejected_sightings=np.flatnonzero(~used[k:]),
         stats=stats,
         graph=graph,
