@@ -32,7 +32,6 @@
 #include "cspace/maps/grid_outlines.hpp"
 #include "cspace/maps/path_clearance.hpp"
 #include "cspace/maps/rasterize.hpp"
-#include "cspace/math/sparse/cholesky.hpp"
 #include "cspace/math/stream.hpp"
 #include "cspace/math/threads.hpp"
 #include "cspace/navigation/any_angle/grid_any_angle.hpp"

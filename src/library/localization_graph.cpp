@@ -156,12 +156,14 @@ class SolverOf : public GraphSolver {
         if (rule.false_loops != FalseLoops::gnc) keep_answer(solver.scale_covariances(start, rule.width));
         if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
         const double scale = std::min(answers.front().scale, answers.back().scale);
-        const bool is_second = solver.truncated_cost(answers.back(), scale) < solver.truncated_cost(answers.front(), scale);
+        const bool is_second =
+            solver.truncated_cost(answers.back(), scale) < solver.truncated_cost(answers.front(), scale);
         const RobustAnswer<Space>& best = is_second ? answers.back() : answers.front();
         state_ = best.state, is_used_ = best.is_used;
         limit_scale_ = best.scale;
         stats_ = solver.optimizer().stats();
-        singular_ = best.status == GraphStatus::singular ? variable_of(solver.optimizer().failed_block()) : -1;
+        singular_ =
+            best.status == GraphStatus::singular ? variable_of(solver.optimizer().failed_block()) : -1;
         weights_ = {};
         return best.status;
     }
@@ -171,7 +173,8 @@ class SolverOf : public GraphSolver {
         if (block < 0) return -1;
         if (pose != numbers.pose.end()) return int(pose - numbers.pose.begin());
         return int(numbers.pose.size()) +
-               int(std::find(numbers.landmark.begin(), numbers.landmark.end(), block) - numbers.landmark.begin());
+               int(std::find(numbers.landmark.begin(), numbers.landmark.end(), block) -
+                   numbers.landmark.begin());
     }
 
     // The equations at the answer, factored, with the inverse on their pattern.
@@ -241,13 +244,15 @@ std::unique_ptr<GraphSolver> make_graph_solver(const GraphArrays& arrays) {
     return std::make_unique<SolverOf<PlanarSpace>>(arrays);
 }
 
-std::vector<int> find_graph_parts(std::size_t poses, std::size_t landmarks, std::span<const std::int32_t> edges,
+std::vector<int> find_graph_parts(std::size_t poses, std::size_t landmarks,
+                                  std::span<const std::int32_t> edges,
                                   std::span<const std::int32_t> sightings) {
     require_indices(edges, poses, poses);
     require_indices(sightings, poses, landmarks);
     PoseGraph<PlanarSpace> graph;
     graph.start.poses.resize(poses), graph.start.landmarks.resize(landmarks);
-    for (std::size_t k = 0; k + 1 < edges.size(); k += 2) graph.edges.push_back({edges[k], edges[k + 1], {}, {}});
+    for (std::size_t k = 0; k + 1 < edges.size(); k += 2)
+        graph.edges.push_back({edges[k], edges[k + 1], {}, {}});
     for (std::size_t k = 0; k + 1 < sightings.size(); k += 2)
         graph.sightings.push_back({sightings[k], sightings[k + 1], SightingKind::point, {}, {}});
     return find_parts(graph);

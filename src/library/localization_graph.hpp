@@ -16,7 +16,7 @@ namespace cspace::localization {
 struct GraphArrays {
     bool is_spatial;
     std::span<const double> poses, landmarks;
-    std::span<const std::int32_t> edges;      // pairs: from, to
+    std::span<const std::int32_t> edges;  // pairs: from, to
     std::span<const double> motions, information;
     std::span<const std::int32_t> sightings;  // pairs: pose, landmark
     std::span<const double> points, point_information;
@@ -49,8 +49,8 @@ class GraphSolver {
     virtual double limit_scale() const = 0;
     // The pose or landmark (after all poses) next to which the equations are singular; −1: none.
     virtual int singular_variable() const = 0;
-    // Covariances of the variables (first, second), blocks one after the other, with [v; ω] in the base for poses;
-    // false where the equations are singular.
+    // Covariances of the variables (first, second), blocks one after the other, with [v; ω] in the base for
+    // poses; false where the equations are singular.
     virtual bool write_covariances(std::span<const std::int32_t> pairs, double* to) = 0;
 };
 
@@ -58,7 +58,8 @@ class GraphSolver {
 std::unique_ptr<GraphSolver> make_graph_solver(const GraphArrays& arrays);
 
 // The part of each pose, then of each landmark.
-std::vector<int> find_graph_parts(std::size_t poses, std::size_t landmarks, std::span<const std::int32_t> edges,
+std::vector<int> find_graph_parts(std::size_t poses, std::size_t landmarks,
+                                  std::span<const std::int32_t> edges,
                                   std::span<const std::int32_t> sightings);
 
 }  // namespace cspace::localization

@@ -36,7 +36,8 @@ Problem random_problem(check::Random& random, int blocks, int pairs, bool is_cha
     for (auto [i, j] : made.pairs) {
         for (int r = made.starts[std::size_t(i)]; r < made.starts[std::size_t(i) + 1]; ++r) {
             for (int c = made.starts[std::size_t(j)]; c < made.starts[std::size_t(j) + 1]; ++c)
-                made.A[std::size_t(r)][std::size_t(c)] = made.A[std::size_t(c)][std::size_t(r)] = random.uniform(-1, 1);
+                made.A[std::size_t(r)][std::size_t(c)] = made.A[std::size_t(c)][std::size_t(r)] =
+                    random.uniform(-1, 1);
         }
     }
     for (std::size_t r = 0; r < n; ++r) {

@@ -49,7 +49,9 @@ class Readings:
             raise InputError(f"reading {empty[0]} has neither range nor bearing; leave the row out")
         below = np.flatnonzero(self.range < 0)
         if len(below):
-            raise InputError(f"range is {self.range[below[0]]:g} at row {below[0]}; ranges are not below zero")
+            raise InputError(
+                f"range is {self.range[below[0]]:g} at row {below[0]}; ranges are not below zero"
+            )
         measured = self.bearing[~np.isnan(self.bearing)]
         if len(measured) and (np.abs(measured) > 2 * np.pi).all():
             raise InputError(
@@ -97,9 +99,7 @@ class Landmarks:
         object.__setattr__(self, "names", names)
         object.__setattr__(self, "points", points)
         if self.covariances is not None:
-            object.__setattr__(
-                self, "covariances", read_rows(self.covariances, "covariances", names, (2, 2))
-            )
+            object.__setattr__(self, "covariances", read_rows(self.covariances, "covariances", names, (2, 2)))
 
     def __len__(self) -> int:
         """How many landmarks there are."""
@@ -253,5 +253,7 @@ def read_column(values: npt.ArrayLike, subject: str, count: int) -> Array:
     if column.shape != (count,):
         raise InputError(f"{subject} has shape {column.shape}; expected ({count},), one number per time")
     if np.isinf(column).any():
-        raise InputError(f"{subject} is infinite at row {int(np.isinf(column).argmax())}; use NaN for no value")
+        raise InputError(
+            f"{subject} is infinite at row {int(np.isinf(column).argmax())}; use NaN for no value"
+        )
     return column

@@ -263,7 +263,9 @@ class WheelCalibration:
 
     def __repr__(self) -> str:
         left, right = self.radii
-        return one_line("WheelCalibration", f"radii {left:.5g}, {right:.5g} m, track {self.vehicle.track:.5g} m")
+        return one_line(
+            "WheelCalibration", f"radii {left:.5g}, {right:.5g} m, track {self.vehicle.track:.5g} m"
+        )
 
 
 def calibrate_wheels(
@@ -285,17 +287,23 @@ def calibrate_wheels(
     unit = Odometry(np.asarray(times, dtype=np.float64), np.column_stack([turns, np.zeros(len(turns))]))
     rows, poses = cut_windows(unit, reference, positive_number(window, "window"), max_gap)
     if len(rows) - 1 < FEWEST_WINDOWS:
-        raise InputError(f"wheels and reference have {max(len(rows) - 1, 0)} windows in common, {FEWEST_WINDOWS} needed")
+        raise InputError(
+            f"wheels and reference have {max(len(rows) - 1, 0)} windows in common, {FEWEST_WINDOWS} needed"
+        )
     sums = sum_windows(turns, rows)
     turned = np.diff(np.unwrap(poses[:, 2][np.isfinite(poses[:, 2])]))
     heading = np.full(len(poses), np.nan)
     heading[np.isfinite(poses[:, 2])] = np.concatenate([[0.0], np.cumsum(turned)])
     found, spread = solve_least_squares(sums, np.diff(heading[rows]), "the ratio of radii and track")
     a, b = map(float, found)
-    steps = np.stack([0.5 * (b * turns[:, 1] - a * turns[:, 0]), np.zeros(len(turns)), turns @ found], axis=-1)
+    steps = np.stack(
+        [0.5 * (b * turns[:, 1] - a * turns[:, 0]), np.zeros(len(turns)), turns @ found], axis=-1
+    )
     track, variance = fit_distance(replace(unit, steps=steps), rows, poses)
     if track <= 0 or a >= 0 or b <= 0:
-        raise InputError("the wheels turn against the reference; the columns are left, then right, forwards above zero")
+        raise InputError(
+            "the wheels turn against the reference; the columns are left, then right, forwards above zero"
+        )
     steps[:, :2] *= track
     J = np.array([[-track, 0.0, -a], [0.0, track, b], [0.0, 0.0, 1.0]])
     inner = np.zeros((3, 3))

@@ -117,7 +117,9 @@ class VelocityNoise:
         xi, time = read_steps(steps, dt)
         twist, variances = self._velocities(xi, time)
         noise = np.sqrt(variances) * as_generator(rng).standard_normal(variances.shape)
-        twist = np.stack([twist[..., 0] + noise[..., 0], twist[..., 1], twist[..., 2] + noise[..., 1]], axis=-1)
+        twist = np.stack(
+            [twist[..., 0] + noise[..., 0], twist[..., 1], twist[..., 2] + noise[..., 1]], axis=-1
+        )
         last = np.zeros_like(twist)
         last[..., 2] = noise[..., 2] * time
         return log_se2(exp_se2(twist * time[..., None]) @ exp_se2(last))

@@ -181,7 +181,9 @@ def wheel_angles(ticks: npt.ArrayLike, *, per_turn: float, bits: int | None = No
     scale = 2.0 * np.pi / positive_number(per_turn, "per_turn")
     counts = np.asarray(ticks)
     if counts.ndim != 2:
-        raise InputError(f"ticks has shape {counts.shape}; give a row per time and a counter per wheel, (n, k)")
+        raise InputError(
+            f"ticks has shape {counts.shape}; give a row per time and a counter per wheel, (n, k)"
+        )
     if not np.issubdtype(counts.dtype, np.integer):
         numbers = one_array(ticks, "ticks", (None, None))
         if (numbers != np.round(numbers)).any():

@@ -30,9 +30,7 @@ class TimedPoses:
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "poses", read_rows(self.poses, "poses", times, (3,)))
         if self.covariances is not None:
-            object.__setattr__(
-                self, "covariances", read_rows(self.covariances, "covariances", times, (3, 3))
-            )
+            object.__setattr__(self, "covariances", read_rows(self.covariances, "covariances", times, (3, 3)))
 
     def __len__(self) -> int:
         """How many poses there are."""
@@ -86,5 +84,7 @@ def read_rows(values: npt.ArrayLike, subject: str, times: Array, last: tuple[int
     """An array (n, *last) with a row per time; InputError where the numbers of rows differ."""
     rows = one_array(values, subject, (None, *last))
     if len(rows) != len(times):
-        raise InputError(f"{subject} has {len(rows)} rows and there are {len(times)} times; give one per time")
+        raise InputError(
+            f"{subject} has {len(rows)} rows and there are {len(times)} times; give one per time"
+        )
     return rows

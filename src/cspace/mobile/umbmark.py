@@ -35,7 +35,11 @@ class SquareTest:
 
 
 def umbmark(
-    clockwise: npt.ArrayLike, counterclockwise: npt.ArrayLike, vehicle: DifferentialDrive, *, side: float = 4.0
+    clockwise: npt.ArrayLike,
+    counterclockwise: npt.ArrayLike,
+    vehicle: DifferentialDrive,
+    *,
+    side: float = 4.0,
 ) -> SquareTest:
     """Track and wheel diameters of a differential drive from where it ended after driving squares both ways.
 
@@ -48,7 +52,10 @@ def umbmark(
     the same from x. Source: Borenstein & Feng 1996, type A and type B errors.
     """
     length = positive_number(side, "side")
-    cw, ccw = (mean_end(ends, name) for ends, name in ((clockwise, "clockwise"), (counterclockwise, "counterclockwise")))
+    cw, ccw = (
+        mean_end(ends, name)
+        for ends, name in ((clockwise, "clockwise"), (counterclockwise, "counterclockwise"))
+    )
     alpha = -((cw[0] + ccw[0]) + (cw[1] - ccw[1])) / (8.0 * length)
     beta = -((cw[0] - ccw[0]) + (cw[1] + ccw[1])) / (8.0 * length)
     track_ratio = (0.5 * pi) / (0.5 * pi - alpha)

@@ -108,7 +108,9 @@ class Car:
         xi = read_rolling_twist(twist, "car")
         v, rate = xi[..., 0], xi[..., 2]
         if ((v == 0) & (rate != 0)).any():
-            raise InputError("the twist turns on the spot, vx = 0 and ω ≠ 0; a car cannot, so vx must not be 0")
+            raise InputError(
+                "the twist turns on the spot, vx = 0 and ω ≠ 0; a car cannot, so vx must not be 0"
+            )
         return np.stack([v, np.arctan(self.wheelbase * rate / np.where(v == 0, 1.0, v))], axis=-1)
 
     def drive(self, T_map_base: Any, twist: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
@@ -138,5 +140,7 @@ def read_rolling_twist(twist: npt.ArrayLike, vehicle: str) -> Array:
     xi = as_floats(twist, "twist", last=(3,))
     if (xi[..., 1] != 0).any():
         first = xi[xi[..., 1] != 0][0, 1]
-        raise InputError(f"the twist slides sideways, vy = {first:g} m/s; a {vehicle} cannot, so vy must be 0")
+        raise InputError(
+            f"the twist slides sideways, vy = {first:g} m/s; a {vehicle} cannot, so vy must be 0"
+        )
     return xi

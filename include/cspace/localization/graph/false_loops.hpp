@@ -1,11 +1,11 @@
-// Pose graphs with false measurements: dynamic covariance scaling (Agarwal, Tipaldi, Spinello, Stachniss & Burgard
-// 2013) and graduated non-convexity (Yang, Antonante, Tzoumas & Carlone 2020).
+// Pose graphs with false measurements: dynamic covariance scaling (Agarwal, Tipaldi, Spinello, Stachniss &
+// Burgard 2013) and graduated non-convexity (Yang, Antonante, Tzoumas & Carlone 2020).
 //
-// Both start from dead reckoning along trusted edges. What they reject is tested again at the answer: measurements
-// within the quantile of 99.9 % count, the others do not, and the graph is solved again until nothing changes. The
-// information of many files is far too small, so that false measurements would pass as well; the quantile is scaled by
-// χ² per degree of freedom of the measurements that count. Of several answers that with the least truncated cost is
-// the better one.
+// Both start from dead reckoning along trusted edges. What they reject is tested again at the answer:
+// measurements within the quantile of 99.9 % count, the others do not, and the graph is solved again until
+// nothing changes. The information of many files is far too small, so that false measurements would pass as
+// well; the quantile is scaled by χ² per degree of freedom of the measurements that count. Of several answers
+// that with the least truncated cost is the better one.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,8 @@ std::vector<double> find_limits(const PoseGraph<Space>& graph) {
     std::vector<double> limits(graph.edges.size(), quantile_999(Space::freedom));
     for (const auto& seen : graph.sightings) {
         int coordinates = 0;
-        for (std::size_t k = 0; k < Space::dimension; ++k) coordinates += seen.W[k * (Space::dimension + 1)] > 0;
+        for (std::size_t k = 0; k < Space::dimension; ++k)
+            coordinates += seen.W[k * (Space::dimension + 1)] > 0;
         limits.push_back(quantile_999(coordinates));
     }
     return limits;
@@ -56,10 +57,14 @@ class FalseLoopSolver {
     using State = GraphState<Space>;
 
     FalseLoopSolver(const PoseGraph<Space>& graph, const GraphOptions& options)
-        : graph_(graph), options_(options), optimizer_(graph, options), trusted_(find_trusted(graph)),
+        : graph_(graph),
+          options_(options),
+          optimizer_(graph, options),
+          trusted_(find_trusted(graph)),
           limits_(find_limits(graph)) {
-        unknowns_ = Space::freedom * std::count(graph.is_held.begin(), graph.is_held.end(), 0) +
-                    Space::dimension * std::count(graph.is_landmark_held.begin(), graph.is_landmark_held.end(), 0);
+        unknowns_ =
+            Space::freedom * std::count(graph.is_held.begin(), graph.is_held.end(), 0) +
+            Space::dimension * std::count(graph.is_landmark_held.begin(), graph.is_landmark_held.end(), 0);
     }
 
     GraphOptimizer<Space, Fronts>& optimizer() { return optimizer_; }
@@ -73,7 +78,8 @@ class FalseLoopSolver {
         for (int step = 0; step < most_steps; ++step) {
             measure_squares(graph_, state, options_.residual, squares_);
             for (std::size_t k = 0; k < weights.size(); ++k)
-                weights[k] = trusted_[k] ? 1.0 : evaluate_kernel(RobustKernel::dcs, squares_[k], width).weight;
+                weights[k] =
+                    trusted_[k] ? 1.0 : evaluate_kernel(RobustKernel::dcs, squares_[k], width).weight;
             if (!(step_with(weights, state) > least_step)) break;
         }
         return settle(state, find_kept(weights));
@@ -82,8 +88,8 @@ class FalseLoopSolver {
     // Graduated non-convexity of truncated least squares.
     RobustAnswer<Space> graduate(const State& start) {
         constexpr int most_rounds = 60, steps_per_round = 2, least_rounds = 4;
-        constexpr double growth = 1.4;    // of the convexity, as in the paper
-        constexpr double binary = 1e-3;   // weights so near to 0 or 1 are that
+        constexpr double growth = 1.4;   // of the convexity, as in the paper
+        constexpr double binary = 1e-3;  // weights so near to 0 or 1 are that
         State state = start;
         measure_squares(graph_, state, options_.residual, squares_);
         double convexity = first_convexity();
@@ -121,17 +127,20 @@ class FalseLoopSolver {
         constexpr double least = 1e-9, no_doubt = 1e9;
         double found = no_doubt;
         for (std::size_t k = 0; k < squares_.size(); ++k) {
-            if (!trusted_[k]) found = std::min(found, limits_[k] / std::max(2 * squares_[k] - limits_[k], least));
+            if (!trusted_[k])
+                found = std::min(found, limits_[k] / std::max(2 * squares_[k] - limits_[k], least));
         }
         return std::max(found, least);
     }
 
-    // Measurements of less weight are left out. Many of hardly any weight still pull together, when they are true.
+    // Measurements of less weight are left out. Many of hardly any weight still pull together, when they are
+    // true.
     static constexpr double least_weight = 1e-6;
 
     // A step of Gauss–Newton with these weights; its largest entry.
     double step_with(const std::vector<double>& weights, State& state) {
-        constexpr double waste = 1.1;  // measurements in use against those needed, before the pattern is found anew
+        constexpr double waste =
+            1.1;  // measurements in use against those needed, before the pattern is found anew
         std::size_t used = 0, needed = 0;
         bool is_covered = !is_used_.empty();
         std::vector<char> wanted(weights.size());
@@ -161,7 +170,8 @@ class FalseLoopSolver {
         return numbers > 0 ? std::clamp(sum / double(numbers), least, 1.0) : 1.0;
     }
 
-    // Solves with the measurements within their limits, until these stay the same. is_kept: those that count at first.
+    // Solves with the measurements within their limits, until these stay the same. is_kept: those that count
+    // at first.
     RobustAnswer<Space> settle(const State& start, const std::vector<char>& is_kept) {
         constexpr int most_rounds = 12;
         RobustAnswer<Space> answer;

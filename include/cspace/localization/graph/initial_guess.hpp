@@ -1,9 +1,10 @@
-// Starts of a pose graph: dead reckoning along trusted edges, and the linear relaxation that finds the rotations
-// first (Carlone, Tron, Daniilidis & Dellaert 2015, "Initialization techniques for 3D SLAM").
+// Starts of a pose graph: dead reckoning along trusted edges, and the linear relaxation that finds the
+// rotations first (Carlone, Tron, Daniilidis & Dellaert 2015, "Initialization techniques for 3D SLAM").
 //
-// The relaxation lets the entries of rotations be any numbers, so that all measurements become linear; the nearest
-// rotations are taken, and the positions solved again with them. Without landmarks the rotations are a problem of
-// their own. With landmarks they are found together with the positions, for landmarks may be all that closes loops.
+// The relaxation lets the entries of rotations be any numbers, so that all measurements become linear; the
+// nearest rotations are taken, and the positions solved again with them. Without landmarks the rotations are
+// a problem of their own. With landmarks they are found together with the positions, for landmarks may be all
+// that closes loops.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +17,19 @@
 
 namespace cspace::localization {
 
-// A linear least-squares problem of blocks: each equation is x_j − A x_i − c with a weight per row. Right sides are
-// solved with one matrix.
+// A linear least-squares problem of blocks: each equation is x_j − A x_i − c with a weight per row. Right
+// sides are solved with one matrix.
 template <class Fronts>
 class LinearGraph {
   public:
     LinearGraph(std::vector<int> sizes, const std::vector<BlockPair>& pairs, int right_sides)
-        : sizes_(sizes), solver_(make_block_graph(std::move(sizes), pairs)), values_(solver_.value_count()),
+        : sizes_(sizes),
+          solver_(make_block_graph(std::move(sizes), pairs)),
+          values_(solver_.value_count()),
           sides_(std::size_t(right_sides), std::vector<double>(std::size_t(solver_.rows()))) {}
 
-    // A: rows × columns of x_i, row by row; weights: one per row. known_i, known_j: the values of a block that is
-    // −1, for all right sides one after the other. c: rows per right side, or null.
+    // A: rows × columns of x_i, row by row; weights: one per row. known_i, known_j: the values of a block
+    // that is −1, for all right sides one after the other. c: rows per right side, or null.
     void add_equation(int i, int j, const double* A, int rows, int columns, const double* weights,
                       const double* known_i, const double* known_j, const double* c) {
         if (j >= 0) add_identity(j, rows, weights);
@@ -126,15 +129,18 @@ std::optional<SeenPoint<Space>> find_seen_point(const Sighting<Space>& sighting)
 
 // Landmarks that no complete sighting places: the point nearest to the lines of sight, or what is given.
 template <class Space>
-void place_by_bearings(const PoseGraph<Space>& graph, GraphState<Space>& state, std::vector<char>& is_placed) {
+void place_by_bearings(const PoseGraph<Space>& graph, GraphState<Space>& state,
+                       std::vector<char>& is_placed) {
     if constexpr (Space::dimension == 2) {
-        constexpr double least_turn = 1e-6;  // of the determinant: lines of sight that are parallel cross nowhere
+        constexpr double least_turn =
+            1e-6;  // of the determinant: lines of sight that are parallel cross nowhere
         struct Lines {
             double xx = 0, xy = 0, yy = 0, x = 0, y = 0;
         };
         std::vector<Lines> lines(is_placed.size());
         for (const Sighting<Space>& seen : graph.sightings) {
-            if (is_placed[std::size_t(seen.landmark)] || seen.kind == SightingKind::point || !(seen.W[3] > 0)) continue;
+            if (is_placed[std::size_t(seen.landmark)] || seen.kind == SightingKind::point || !(seen.W[3] > 0))
+                continue;
             const auto& pose = state.poses[std::size_t(seen.pose)];
             const auto across = Space::rotate(pose, {-std::sin(seen.z[1]), std::cos(seen.z[1])});
             const double offset = across[0] * pose.x + across[1] * pose.y;
@@ -205,7 +211,8 @@ GraphState<Space> reckon_poses(const PoseGraph<Space>& graph) {
 template <class Space, class Fronts>
 class Relaxation {
   public:
-    explicit Relaxation(const PoseGraph<Space>& graph) : graph_(graph), is_free_(graph.is_landmark_held.size(), 0) {
+    explicit Relaxation(const PoseGraph<Space>& graph)
+        : graph_(graph), is_free_(graph.is_landmark_held.size(), 0) {
         for (const auto& seen : graph.sightings) {
             seen_.push_back(find_seen_point(seen));
             if (seen_.back() && !graph.is_landmark_held[std::size_t(seen.landmark)])
@@ -229,8 +236,9 @@ class Relaxation {
 
     BlockNumbers number(int pose_size, int landmark_size) const {
         BlockNumbers numbers = number_blocks(graph_, pose_size, landmark_size);
-        numbers.sizes.resize(numbers.sizes.size() - std::size_t(std::count(graph_.is_landmark_held.begin(),
-                                                                           graph_.is_landmark_held.end(), 0)));
+        numbers.sizes.resize(
+            numbers.sizes.size() -
+            std::size_t(std::count(graph_.is_landmark_held.begin(), graph_.is_landmark_held.end(), 0)));
         for (std::size_t k = 0; k < is_free_.size(); ++k) {
             numbers.landmark[k] = is_free_[k] ? int(numbers.sizes.size()) : -1;
             if (is_free_[k]) numbers.sizes.push_back(landmark_size);
@@ -259,8 +267,9 @@ class Relaxation {
 
     bool solve_rotations(GraphState<Space>& state) const {
         const BlockNumbers numbers = number_blocks(graph_, int(r), 1);
-        LinearGraph<Fronts> system(std::vector<int>(numbers.sizes.begin(), numbers.sizes.begin() + free_poses()),
-                                   pair_blocks(numbers, false), int(sides));
+        LinearGraph<Fronts> system(
+            std::vector<int>(numbers.sizes.begin(), numbers.sizes.begin() + free_poses()),
+            pair_blocks(numbers, false), int(sides));
         for (const auto& edge : graph_.edges) {
             const auto motion = Space::relaxed_motion(edge.z);
             std::array<double, r * r> A;
@@ -270,8 +279,9 @@ class Relaxation {
             std::array<double, r> weights;
             weights.fill(average_information<Space>(edge.W).rotation);
             const auto known_i = known_rotation(edge.from), known_j = known_rotation(edge.to);
-            system.add_equation(numbers.pose[std::size_t(edge.from)], numbers.pose[std::size_t(edge.to)], A.data(),
-                                int(r), int(r), weights.data(), known_i.data(), known_j.data(), nullptr);
+            system.add_equation(numbers.pose[std::size_t(edge.from)], numbers.pose[std::size_t(edge.to)],
+                                A.data(), int(r), int(r), weights.data(), known_i.data(), known_j.data(),
+                                nullptr);
         }
         if (!system.solve()) return false;
         for (std::size_t k = 0; k < state.poses.size(); ++k) {
@@ -307,8 +317,9 @@ class Relaxation {
             std::array<double, n> weights;
             for (std::size_t k = 0; k < n; ++k) weights[k] = k < r ? mean.rotation : mean.position;
             const auto known_i = known_pose(edge.from), known_j = known_pose(edge.to);
-            system.add_equation(numbers.pose[std::size_t(edge.from)], numbers.pose[std::size_t(edge.to)], A.data(),
-                                int(n), int(n), weights.data(), known_i.data(), known_j.data(), nullptr);
+            system.add_equation(numbers.pose[std::size_t(edge.from)], numbers.pose[std::size_t(edge.to)],
+                                A.data(), int(n), int(n), weights.data(), known_i.data(), known_j.data(),
+                                nullptr);
         }
         for (std::size_t k = 0; k < graph_.sightings.size(); ++k) {
             if (counts(k)) add_sighting(system, numbers, k, known_pose(graph_.sightings[k].pose));
@@ -330,8 +341,9 @@ class Relaxation {
         const auto motion = Space::relaxed_motion(Space::with_position(typename Space::Pose{}, seen_[k]->z));
         std::array<double, p> weights;
         weights.fill(seen_[k]->information);
-        system.add_equation(numbers.pose[std::size_t(seen.pose)], numbers.landmark[std::size_t(seen.landmark)],
-                            motion.data() + (n - p) * n, int(p), int(n), weights.data(), known_pose.data(),
+        system.add_equation(numbers.pose[std::size_t(seen.pose)],
+                            numbers.landmark[std::size_t(seen.landmark)], motion.data() + (n - p) * n, int(p),
+                            int(n), weights.data(), known_pose.data(),
                             graph_.start.landmarks[std::size_t(seen.landmark)].data(), nullptr);
     }
 
@@ -345,16 +357,17 @@ class Relaxation {
             const auto known_i = Space::position(from), known_j = Space::position(to);
             const auto c = Space::rotate(from, Space::position(edge.z));
             const double weight = average_information<Space>(edge.W).position;
-            system.add_equation(numbers.pose[std::size_t(edge.from)], numbers.pose[std::size_t(edge.to)], &one, 1, 1,
-                                &weight, known_i.data(), known_j.data(), c.data());
+            system.add_equation(numbers.pose[std::size_t(edge.from)], numbers.pose[std::size_t(edge.to)],
+                                &one, 1, 1, &weight, known_i.data(), known_j.data(), c.data());
         }
         for (std::size_t k = 0; k < graph_.sightings.size(); ++k) {
             if (!counts(k)) continue;
             const auto& seen = graph_.sightings[k];
             const auto& from = state.poses[std::size_t(seen.pose)];
             const auto known = Space::position(from), c = Space::rotate(from, seen_[k]->z);
-            system.add_equation(numbers.pose[std::size_t(seen.pose)], numbers.landmark[std::size_t(seen.landmark)],
-                                &one, 1, 1, &seen_[k]->information, known.data(),
+            system.add_equation(numbers.pose[std::size_t(seen.pose)],
+                                numbers.landmark[std::size_t(seen.landmark)], &one, 1, 1,
+                                &seen_[k]->information, known.data(),
                                 graph_.start.landmarks[std::size_t(seen.landmark)].data(), c.data());
         }
         if (!system.solve()) return false;
@@ -364,7 +377,8 @@ class Relaxation {
             return at;
         };
         for (std::size_t k = 0; k < state.poses.size(); ++k) {
-            if (numbers.pose[k] >= 0) state.poses[k] = Space::with_position(state.poses[k], read(numbers.pose[k]));
+            if (numbers.pose[k] >= 0)
+                state.poses[k] = Space::with_position(state.poses[k], read(numbers.pose[k]));
         }
         for (std::size_t k = 0; k < state.landmarks.size(); ++k) {
             if (numbers.landmark[k] >= 0) state.landmarks[k] = read(numbers.landmark[k]);

@@ -1,7 +1,7 @@
 // The normal equations of a pose graph, JᵀWJ d = −JᵀWe, in blocks.
 //
-// The pattern is analysed for the measurements in use. A solver of robust problems leaves out those of hardly any
-// weight: random false edges fill the factor, and cost a hundred times the rest.
+// The pattern is analysed for the measurements in use. A solver of robust problems leaves out those of hardly
+// any weight: random false edges fill the factor, and cost a hundred times the rest.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,9 @@ class NormalEquations {
 
     // The equations of the measurements in use, at least all trusted ones.
     NormalEquations(const PoseGraph<Space>& graph, const std::vector<char>& is_used)
-        : graph_(&graph), numbers_(number_blocks(graph, Space::freedom, Space::dimension)), is_used_(is_used) {
+        : graph_(&graph),
+          numbers_(number_blocks(graph, Space::freedom, Space::dimension)),
+          is_used_(is_used) {
         std::vector<BlockPair> pairs;
         pairs.reserve(graph.factors());
         visit_factors([&](std::size_t, int a, int b) {
@@ -74,8 +76,8 @@ class NormalEquations {
     const BlockNumbers& numbers() const { return numbers_; }
     bool is_used(std::size_t factor) const { return is_used_[factor] != 0; }
 
-    // Fills the equations at a state; returns the cost of the measurements in use. squares: the squared error of each
-    // measurement in use, by number.
+    // Fills the equations at a state; returns the cost of the measurements in use. squares: the squared error
+    // of each measurement in use, by number.
     double linearize(const GraphState<Space>& state, ResidualKind kind, const FactorWeights& weights,
                      std::vector<double>& squares) {
         std::fill(values_.begin(), values_.end(), 0.0);
@@ -88,15 +90,16 @@ class NormalEquations {
             poll.step();
             const RelativePose<Space>& edge = graph_->edges[k];
             cost += add_model(linearize_edge(edge, state, kind), k, graph_->is_trusted[k] != 0, weights,
-                              numbers_.pose[std::size_t(edge.from)], numbers_.pose[std::size_t(edge.to)], squares);
+                              numbers_.pose[std::size_t(edge.from)], numbers_.pose[std::size_t(edge.to)],
+                              squares);
         }
         for (std::size_t k = 0; k < graph_->sightings.size(); ++k) {
             const std::size_t factor = graph_->edges.size() + k;
             if (!is_used_[factor]) continue;
             poll.step();
             const Sighting<Space>& seen = graph_->sightings[k];
-            cost += add_model(linearize_sighting(seen, state), factor, graph_->is_sighting_trusted[k] != 0, weights,
-                              numbers_.pose[std::size_t(seen.pose)],
+            cost += add_model(linearize_sighting(seen, state), factor, graph_->is_sighting_trusted[k] != 0,
+                              weights, numbers_.pose[std::size_t(seen.pose)],
                               numbers_.landmark[std::size_t(seen.landmark)], squares);
         }
         anchor_unmeasured();
@@ -162,8 +165,8 @@ class NormalEquations {
                      const FactorWeights& weights, int block_a, int block_b, std::vector<double>& squares) {
         squares[factor] = model.square;
         const double fixed = weights.fixed.empty() ? 1.0 : weights.fixed[factor];
-        const KernelValue value =
-            evaluate_kernel(is_trusted ? RobustKernel::none : weights.kernel, fixed * model.square, weights.width);
+        const KernelValue value = evaluate_kernel(is_trusted ? RobustKernel::none : weights.kernel,
+                                                  fixed * model.square, weights.width);
         const double weight = fixed * value.weight;
         if (block_a >= 0) {
             add_diagonal<a>(weight, model.aa, diagonal_[std::size_t(block_a)]);

@@ -1,9 +1,9 @@
-// Least squares on a pose graph: Gauss–Newton, Levenberg–Marquardt (Marquardt 1963; damping as in Nielsen 1999) and
-// Powell's dog-leg (1970).
+// Least squares on a pose graph: Gauss–Newton, Levenberg–Marquardt (Marquardt 1963; damping as in Nielsen
+// 1999) and Powell's dog-leg (1970).
 //
-// Far from the optimum the cost may rise before it falls, by orders of magnitude, while monotone methods crawl.
-// Gauss–Newton therefore tolerates some rises, and keeps the state of least cost; where it does not settle,
-// Levenberg–Marquardt goes on from there.
+// Far from the optimum the cost may rise before it falls, by orders of magnitude, while monotone methods
+// crawl. Gauss–Newton therefore tolerates some rises, and keeps the state of least cost; where it does not
+// settle, Levenberg–Marquardt goes on from there.
 #pragma once
 
 #include <algorithm>
@@ -20,12 +20,12 @@ namespace cspace::localization {
 
 namespace descent {
 
-inline constexpr int most_rises = 8;            // of the cost in a row, before Gauss–Newton gives up
-inline constexpr double least_cost = 1e-12;     // [squared standard deviations]: below it there is no error left
-inline constexpr double first_damping = 1e-5;   // of the diagonal
+inline constexpr int most_rises = 8;         // of the cost in a row, before Gauss–Newton gives up
+inline constexpr double least_cost = 1e-12;  // [squared standard deviations]: below it there is no error left
+inline constexpr double first_damping = 1e-5;  // of the diagonal
 inline constexpr double least_damping = 1e-12, largest_damping = 1e12;
 inline constexpr double settled_damping = 1e-2;  // above it a small step says nothing
-inline constexpr double least_radius = 1e-12;   // of the first one
+inline constexpr double least_radius = 1e-12;    // of the first one
 
 }  // namespace descent
 
@@ -35,7 +35,8 @@ class GraphOptimizer {
     using State = GraphState<Space>;
     using Equations = NormalEquations<Space, Fronts>;
 
-    GraphOptimizer(const PoseGraph<Space>& graph, const GraphOptions& options) : graph_(graph), options_(options) {}
+    GraphOptimizer(const PoseGraph<Space>& graph, const GraphOptions& options)
+        : graph_(graph), options_(options) {}
 
     FactorWeights& weights() { return weights_; }
     GraphStats& stats() { return stats_; }
@@ -53,15 +54,19 @@ class GraphOptimizer {
         prepare_vectors();
         iterations_left_ = options_.most_iterations;
         switch (options_.method) {
-            case GraphMethod::levenberg_marquardt: return descend_damped(best);
-            case GraphMethod::dog_leg: return descend_in_region(best);
-            case GraphMethod::gauss_newton: break;
+            case GraphMethod::levenberg_marquardt:
+                return descend_damped(best);
+            case GraphMethod::dog_leg:
+                return descend_in_region(best);
+            case GraphMethod::gauss_newton:
+                break;
         }
         const Outcome outcome = descend_newton(best);
         return outcome == Outcome::unsettled ? descend_damped(best) : GraphStatus(int(outcome));
     }
 
-    // One step of Gauss–Newton, whatever it does to the cost; its largest entry, or infinity where there is none.
+    // One step of Gauss–Newton, whatever it does to the cost; its largest entry, or infinity where there is
+    // none.
     double take_step(State& state) {
         prepare_vectors();
         const double cost = linearize(state);
@@ -89,8 +94,12 @@ class GraphOptimizer {
     }
 
   private:
-    enum class Outcome { converged = int(GraphStatus::converged), stopped = int(GraphStatus::stopped),
-                         singular = int(GraphStatus::singular), unsettled };
+    enum class Outcome {
+        converged = int(GraphStatus::converged),
+        stopped = int(GraphStatus::stopped),
+        singular = int(GraphStatus::singular),
+        unsettled
+    };
 
     void prepare_vectors() { step_.resize(equations_->gradient().size()); }
     double linearize(const State& state) {
@@ -175,7 +184,8 @@ class GraphOptimizer {
                 if (is_better) {
                     std::swap(best, trial_);
                     const double gain = 2 * (cost - trial_cost) / decrease - 1;
-                    damping = std::max(damping * std::max(0.1, 1 - gain * gain * gain), descent::least_damping);
+                    damping =
+                        std::max(damping * std::max(0.1, 1 - gain * gain * gain), descent::least_damping);
                     growth = 2;
                 }
                 if (ends) return GraphStatus::converged;

@@ -18,7 +18,8 @@ inline double wrap_angle(double angle) {
     return wrapped <= -half_turn ? half_turn : wrapped;
 }
 
-// (1 − (w/2) cot(w/2)) / w², of which the inverse Jacobians of logarithms are made; even, and smooth up to a turn.
+// (1 − (w/2) cot(w/2)) / w², of which the inverse Jacobians of logarithms are made; even, and smooth up to a
+// turn.
 inline double half_cotangent_rest(double w) {
     constexpr double small = 1e-2;  // below it the series has lost less than the difference would
     const double square = w * w;
@@ -38,7 +39,9 @@ struct PlanarSpace {
         double x = 0, y = 0, c = 1, s = 0;
     };
 
-    static Pose read_pose(const double* from) { return {from[0], from[1], std::cos(from[2]), std::sin(from[2])}; }
+    static Pose read_pose(const double* from) {
+        return {from[0], from[1], std::cos(from[2]), std::sin(from[2])};
+    }
     static void write_pose(const Pose& pose, double* to) {
         to[0] = pose.x, to[1] = pose.y, to[2] = wrap_angle(std::atan2(pose.s, pose.c));
     }
@@ -46,7 +49,9 @@ struct PlanarSpace {
         return {a.x + a.c * b.x - a.s * b.y, a.y + a.s * b.x + a.c * b.y, a.c * b.c - a.s * b.s,
                 a.s * b.c + a.c * b.s};
     }
-    static Pose inverse(const Pose& a) { return {-(a.c * a.x + a.s * a.y), a.s * a.x - a.c * a.y, a.c, -a.s}; }
+    static Pose inverse(const Pose& a) {
+        return {-(a.c * a.x + a.s * a.y), a.s * a.x - a.c * a.y, a.c, -a.s};
+    }
     // a⁻¹ b.
     static Pose between(const Pose& a, const Pose& b) {
         const double x = b.x - a.x, y = b.y - a.y;
@@ -90,13 +95,15 @@ struct PlanarSpace {
         return {pose.c * x + pose.s * y, pose.c * y - pose.s * x};
     }
     static Point to_map(const Pose& pose, const Point& point) {
-        return {pose.x + pose.c * point[0] - pose.s * point[1], pose.y + pose.s * point[0] + pose.c * point[1]};
+        return {pose.x + pose.c * point[0] - pose.s * point[1],
+                pose.y + pose.s * point[0] + pose.c * point[1]};
     }
     // d h / dξ of h = X⁻¹ l, and d h / dl.
     static PointByPose point_by_pose(const Point& h) { return {-1, 0, h[1], 0, -1, -h[0]}; }
     static PointSquare point_by_point(const Pose& pose) { return {pose.c, pose.s, -pose.s, pose.c}; }
 
-    // The linear relaxation: a complex number r for the rotation, and the position, in one column of unknowns.
+    // The linear relaxation: a complex number r for the rotation, and the position, in one column of
+    // unknowns.
     static constexpr int relaxed = 4, relaxed_point = 2, rotation_part = 2, right_sides = 1;
     // x_j = A x_i of an exact measurement.
     static std::array<double, 16> relaxed_motion(const Pose& z) {

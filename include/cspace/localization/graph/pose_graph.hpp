@@ -44,15 +44,15 @@ struct PoseGraph {
     std::size_t factors() const { return edges.size() + sightings.size(); }
 };
 
-// The connected parts of a graph: the part of each pose, then of each landmark, numbered from 0 by first member.
+// The connected parts of a graph: the part of each pose, then of each landmark, numbered from 0 by first
+// member.
 template <class Space>
 std::vector<int> find_parts(const PoseGraph<Space>& graph) {
     const std::size_t poses = graph.start.poses.size(), all = poses + graph.start.landmarks.size();
     std::vector<int> root(all);
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&](int i) {
-        while (root[std::size_t(i)] != i)
-            i = root[std::size_t(i)] = root[std::size_t(root[std::size_t(i)])];
+        while (root[std::size_t(i)] != i) i = root[std::size_t(i)] = root[std::size_t(root[std::size_t(i)])];
         return i;
     };
     const auto join = [&](int i, int j) {

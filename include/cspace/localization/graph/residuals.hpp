@@ -1,8 +1,8 @@
 // Residuals of the measurements of a pose graph, and their exact derivatives.
 //
 // A relative pose has the residual e = log(Z⁻¹ Xᵢ⁻¹ Xⱼ), a twist, with the derivatives Jr⁻¹(e) and
-// −Jr⁻¹(e) Ad(Xⱼ⁻¹ Xᵢ) for disturbances on the right; or that of g2o, whose rotational part in space is the vector
-// of the quaternion (Kümmerle et al. 2011).
+// −Jr⁻¹(e) Ad(Xⱼ⁻¹ Xᵢ) for disturbances on the right; or that of g2o, whose rotational part in space is the
+// vector of the quaternion (Kümmerle et al. 2011).
 #pragma once
 
 #include <cmath>
@@ -56,7 +56,8 @@ struct EdgeError {
 };
 
 template <class Space>
-EdgeError<Space> evaluate_edge(const RelativePose<Space>& edge, const GraphState<Space>& state, ResidualKind kind) {
+EdgeError<Space> evaluate_edge(const RelativePose<Space>& edge, const GraphState<Space>& state,
+                               ResidualKind kind) {
     EdgeError<Space> found;
     found.motion = Space::between(state.poses[std::size_t(edge.from)], state.poses[std::size_t(edge.to)]);
     found.error = Space::between(edge.z, found.motion);

@@ -13,16 +13,18 @@ struct KernelValue {
     double weight;  // dρ / ds
 };
 
-// width: the error [standard deviations] beyond which the kernel doubts a measurement. Its square takes the place
-// of φ in dynamic covariance scaling (Agarwal et al. 2013); the others as in Zhang 1997.
+// width: the error [standard deviations] beyond which the kernel doubts a measurement. Its square takes the
+// place of φ in dynamic covariance scaling (Agarwal et al. 2013); the others as in Zhang 1997.
 inline KernelValue evaluate_kernel(RobustKernel kernel, double s, double width) {
     const double square = width * width;
     switch (kernel) {
-        case RobustKernel::none: break;
+        case RobustKernel::none:
+            break;
         case RobustKernel::huber:
             if (s <= square) break;
             return {2 * width * std::sqrt(s) - square, width / std::sqrt(s)};
-        case RobustKernel::cauchy: return {square * std::log1p(s / square), 1 / (1 + s / square)};
+        case RobustKernel::cauchy:
+            return {square * std::log1p(s / square), 1 / (1 + s / square)};
         case RobustKernel::geman_mcclure: {
             const double share = square / (square + s);
             return {s * share, share * share};

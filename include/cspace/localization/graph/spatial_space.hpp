@@ -51,9 +51,10 @@ struct SpatialSpace {
         const Vec3d v{twist[0], twist[1], twist[2]}, w{twist[3], twist[4], twist[5]};
         const double square = dot(w, w), angle = std::sqrt(square);
         const bool is_small = angle < small;
-        const double b = is_small ? 0.5 - square / 24 + square * square / 720 : (1 - std::cos(angle)) / square;
-        const double c =
-            is_small ? 1.0 / 6 - square / 120 + square * square / 5040 : (1 - std::sin(angle) / angle) / square;
+        const double b =
+            is_small ? 0.5 - square / 24 + square * square / 720 : (1 - std::cos(angle)) / square;
+        const double c = is_small ? 1.0 / 6 - square / 120 + square * square / 5040
+                                  : (1 - std::sin(angle) / angle) / square;
         const Vec3d wv = cross(w, v);
         return {spatial::rotation_of_rotvec(w), v + b * wv + c * cross(w, wv)};
     }
@@ -74,7 +75,8 @@ struct SpatialSpace {
         const Pose moved = pose * exponential(twist);
         return {straighten(moved.R), moved.t};
     }
-    // The coefficients of d log(X exp ξ) / dξ in the products of [w] and [v]; see Barfoot 2017, equation 7.86.
+    // The coefficients of d log(X exp ξ) / dξ in the products of [w] and [v]; see Barfoot 2017,
+    // equation 7.86.
     struct CouplingSeries {
         double first, second, third;
     };
@@ -120,11 +122,12 @@ struct SpatialSpace {
     // The unit quaternion (w, x, y, z) of a rotation, w ≥ 0 (Shepperd 1978).
     static std::array<double, 4> quaternion(const Mat3d& R) {
         const double trace = R.m[0][0] + R.m[1][1] + R.m[2][2];
-        const std::array<double, 4> squares = {1 + trace, 1 + 2 * R.m[0][0] - trace, 1 + 2 * R.m[1][1] - trace,
-                                               1 + 2 * R.m[2][2] - trace};
+        const std::array<double, 4> squares = {1 + trace, 1 + 2 * R.m[0][0] - trace,
+                                               1 + 2 * R.m[1][1] - trace, 1 + 2 * R.m[2][2] - trace};
         std::size_t largest = 0;
         for (std::size_t k = 1; k < 4; ++k) largest = squares[k] > squares[largest] ? k : largest;
-        const double a = R.m[2][1] - R.m[1][2], b = R.m[0][2] - R.m[2][0], c = R.m[1][0] - R.m[0][1];
+        const Vec3d axis = 2.0 * spatial::sine_of(R);
+        const double a = axis.x, b = axis.y, c = axis.z;
         const double xy = R.m[0][1] + R.m[1][0], xz = R.m[0][2] + R.m[2][0], yz = R.m[1][2] + R.m[2][1];
         const std::array<std::array<double, 4>, 4> rows = {{{squares[0], a, b, c},
                                                             {a, squares[1], xy, xz},
@@ -180,7 +183,8 @@ struct SpatialSpace {
         return J;
     }
 
-    // The linear relaxation: row k of the rotation and coordinate k of the position are unknowns of the right side k.
+    // The linear relaxation: row k of the rotation and coordinate k of the position are unknowns of the right
+    // side k.
     static constexpr int relaxed = 4, relaxed_point = 1, rotation_part = 3, right_sides = 3;
     static std::array<double, 16> relaxed_motion(const Pose& z) {
         const auto& R = z.R.m;
@@ -204,7 +208,8 @@ struct SpatialSpace {
     // The rotation with the largest trace of RᵀM, from the eigenvector of Horn's matrix (Horn 1987).
     static Mat3d nearest_rotation(const Mat3d& M) {
         const auto& m = M.m;
-        const double a = m[2][1] - m[1][2], b = m[0][2] - m[2][0], c = m[1][0] - m[0][1];
+        const Vec3d axis = 2.0 * spatial::sine_of(M);
+        const double a = axis.x, b = axis.y, c = axis.z;
         const double xy = m[0][1] + m[1][0], xz = m[0][2] + m[2][0], yz = m[1][2] + m[2][1];
         const SymmetricEigen found = decompose_symmetric(
             {m[0][0] + m[1][1] + m[2][2], a, b, c, a, m[0][0] - m[1][1] - m[2][2], xy, xz, b, xy,

@@ -12,9 +12,9 @@
 namespace cspace {
 
 struct BlockGraph {
-    std::vector<int> sizes;                 // rows of each block
-    std::vector<std::size_t> starts;        // of the neighbours of each node, and their number
-    std::vector<int> neighbours;            // each pair in both directions, sorted, without repetition
+    std::vector<int> sizes;           // rows of each block
+    std::vector<std::size_t> starts;  // of the neighbours of each node, and their number
+    std::vector<int> neighbours;      // each pair in both directions, sorted, without repetition
 
     int nodes() const { return int(sizes.size()); }
 };
@@ -51,7 +51,8 @@ inline BlockGraph make_block_graph(std::vector<int> sizes, const std::vector<Blo
     for (const auto& [i, j] : pairs) {
         if (i != j) ++graph.starts[std::size_t(i) + 1], ++graph.starts[std::size_t(j) + 1];
     }
-    for (std::size_t node = 1; node < graph.starts.size(); ++node) graph.starts[node] += graph.starts[node - 1];
+    for (std::size_t node = 1; node < graph.starts.size(); ++node)
+        graph.starts[node] += graph.starts[node - 1];
     graph.neighbours.resize(graph.starts.back());
     std::vector<std::size_t> next(graph.starts.begin(), graph.starts.end() - 1);
     for (const auto& [i, j] : pairs) {

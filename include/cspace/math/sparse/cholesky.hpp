@@ -1,9 +1,10 @@
-// Multifrontal sparse Cholesky factorisation of symmetric positive definite matrices of small blocks, with solves
-// and the selected inverse (Duff & Reid 1983, "The multifrontal solution of indefinite sparse symmetric linear
-// systems"; Takahashi, Fagan & Chin 1973; Erisman & Tinney 1975).
+// Multifrontal sparse Cholesky factorisation of symmetric positive definite matrices of small blocks, with
+// solves and the selected inverse (Duff & Reid 1983, "The multifrontal solution of indefinite sparse
+// symmetric linear systems"; Takahashi, Fagan & Chin 1973; Erisman & Tinney 1975).
 //
-// The pattern is analysed once; matrices of it are then factored as often as needed. A front adds the blocks of its
-// columns and the Schur complements of its children, which wait on a stack, and is factored as a dense matrix.
+// The pattern is analysed once; matrices of it are then factored as often as needed. A front adds the blocks
+// of its columns and the Schur complements of its children, which wait on a stack, and is factored as a dense
+// matrix.
 #pragma once
 
 #include <algorithm>
@@ -34,8 +35,9 @@ struct HeaderFronts {
     }
 };
 
-// Where a block of the matrix stands among the values: column by column, with so many rows. The block of (i, j)
-// off the diagonal is stored once, with the block eliminated later as its rows; transposed: those are of j.
+// Where a block of the matrix stands among the values: column by column, with so many rows. The block of (i,
+// j) off the diagonal is stored once, with the block eliminated later as its rows; transposed: those are of
+// j.
 struct BlockSlot {
     std::size_t at;
     int rows;
@@ -73,8 +75,8 @@ class SparseCholesky {
         return {found->at, factor_.size(found->row), a < b};
     }
 
-    // Factors the matrix of these values, with `added` on its diagonal unless null. False where it is not positive
-    // definite; failed_block() then is near the reason.
+    // Factors the matrix of these values, with `added` on its diagonal unless null. False where it is not
+    // positive definite; failed_block() then is near the reason.
     bool factor_matrix(const double* values, const double* added = nullptr) {
         numbers_.resize(panels_.back());
         stack_.resize(stack_peak_);
@@ -114,8 +116,10 @@ class SparseCholesky {
         std::fill_n(y, rows(), 0.0);
         for (int column = 0; column < factor_.columns(); ++column) {
             const int from = factor_.starts[std::size_t(column)], size = factor_.size(column);
-            for (std::size_t b = first_block_[std::size_t(column)]; b < first_block_[std::size_t(column) + 1]; ++b) {
-                const int to = factor_.starts[std::size_t(blocks_[b].row)], height = factor_.size(blocks_[b].row);
+            for (std::size_t b = first_block_[std::size_t(column)]; b < first_block_[std::size_t(column) + 1];
+                 ++b) {
+                const int to = factor_.starts[std::size_t(blocks_[b].row)],
+                          height = factor_.size(blocks_[b].row);
                 multiply_block(values + blocks_[b].at, x, y, to, height, from, size);
             }
         }
@@ -138,11 +142,13 @@ class SparseCholesky {
         const auto s = std::size_t(factor_.owner[std::size_t(column)]);
         const int offset = local_row(s, row);
         if (offset < 0) return false;
-        const int first = factor_.starts[std::size_t(column)] - factor_.starts[std::size_t(supernode(s).first)];
+        const int first =
+            factor_.starts[std::size_t(column)] - factor_.starts[std::size_t(supernode(s).first)];
         const double* const from = inverse_.data() + panels_[s];
         for (int r = 0; r < factor_.size(row); ++r) {
             for (int c = 0; c < factor_.size(column); ++c) {
-                const double value = from[std::size_t(first + c) * std::size_t(stride(s)) + std::size_t(offset + r)];
+                const double value =
+                    from[std::size_t(first + c) * std::size_t(stride(s)) + std::size_t(offset + r)];
                 out[a >= b ? r * factor_.size(column) + c : c * factor_.size(row) + r] = value;
             }
         }
@@ -151,9 +157,9 @@ class SparseCholesky {
 
   private:
     struct Block {
-        int row;                 // block column of the factor that is its row
-        std::size_t at;          // of its values
-        std::size_t target;      // of its first number in the panels
+        int row;             // block column of the factor that is its row
+        std::size_t at;      // of its values
+        std::size_t target;  // of its first number in the panels
     };
     // Rows of a child that are neighbours in its parent too.
     struct Run {
@@ -187,7 +193,8 @@ class SparseCholesky {
         }
         first_block_.push_back(blocks_.size());
     }
-    // Panels one after the other; complements on a stack, from which the parent removes those of its children.
+    // Panels one after the other; complements on a stack, from which the parent removes those of its
+    // children.
     void place_panels() {
         panels_.reserve(nodes() + 1);
         complements_.resize(nodes());
@@ -227,7 +234,8 @@ class SparseCholesky {
         const Supernode& at = supernode(s);
         for (int k = 0; k < at.count; ++k) {
             const int column = at.first + k;
-            local[std::size_t(column)] = factor_.starts[std::size_t(column)] - factor_.starts[std::size_t(at.first)];
+            local[std::size_t(column)] =
+                factor_.starts[std::size_t(column)] - factor_.starts[std::size_t(at.first)];
         }
         for (std::size_t k = at.begin; k < at.end; ++k) local[std::size_t(factor_.rows[k])] = row_offsets_[k];
     }
@@ -243,8 +251,10 @@ class SparseCholesky {
             const Supernode& at = supernode(s);
             set_local_rows(s, local);
             for (int column = at.first; column < at.first + at.count; ++column) {
-                const std::size_t begin = panels_[s] + std::size_t(local[std::size_t(column)]) * std::size_t(stride(s));
-                for (std::size_t b = first_block_[std::size_t(column)]; b < first_block_[std::size_t(column) + 1]; ++b)
+                const std::size_t begin =
+                    panels_[s] + std::size_t(local[std::size_t(column)]) * std::size_t(stride(s));
+                for (std::size_t b = first_block_[std::size_t(column)];
+                     b < first_block_[std::size_t(column) + 1]; ++b)
                     blocks_[b].target = begin + std::size_t(local[std::size_t(blocks_[b].row)]);
             }
         }
@@ -269,7 +279,8 @@ class SparseCholesky {
     int local_row(std::size_t s, int row) const {
         const Supernode& at = supernode(s);
         if (row < at.first + at.count)
-            return row < at.first ? -1 : factor_.starts[std::size_t(row)] - factor_.starts[std::size_t(at.first)];
+            return row < at.first ? -1
+                                  : factor_.starts[std::size_t(row)] - factor_.starts[std::size_t(at.first)];
         const auto begin = factor_.rows.begin() + std::ptrdiff_t(at.begin);
         const auto end = factor_.rows.begin() + std::ptrdiff_t(at.end);
         const auto found = std::lower_bound(begin, end, row);
@@ -284,7 +295,8 @@ class SparseCholesky {
         std::fill_n(stack_.data() + scratch_[s], size * size, 0.0);
         for (int column = at.first; column < at.first + at.count; ++column) {
             const int width = factor_.size(column);
-            for (std::size_t b = first_block_[std::size_t(column)]; b < first_block_[std::size_t(column) + 1]; ++b) {
+            for (std::size_t b = first_block_[std::size_t(column)]; b < first_block_[std::size_t(column) + 1];
+                 ++b) {
                 const int height = factor_.size(blocks_[b].row);
                 const double* from = values + blocks_[b].at;
                 double* to = numbers_.data() + blocks_[b].target;
@@ -344,7 +356,8 @@ class SparseCholesky {
         const Supernode& at = supernode(s);
         double* to = std::copy_n(x + factor_.starts[std::size_t(at.first)], at.pivots, local_.data());
         for (std::size_t k = at.begin; k < at.end; ++k)
-            to = std::copy_n(x + factor_.starts[std::size_t(factor_.rows[k])], factor_.size(factor_.rows[k]), to);
+            to = std::copy_n(x + factor_.starts[std::size_t(factor_.rows[k])], factor_.size(factor_.rows[k]),
+                             to);
         std::fill(to, local_.data() + stride(s), 0.0);
     }
     void scatter_rows(std::size_t s, double* x, bool below) const {
@@ -409,7 +422,8 @@ class SparseCholesky {
         for (std::size_t k = p; k-- > 0;) {  // columns of G, the last first
             double* const g = gain_.data() + k * below;
             std::copy_n(L + k * step + p, below, g);
-            for (std::size_t m = k + 1; m < p; ++m) add_multiple(-L[k * step + m], gain_.data() + m * below, g, below);
+            for (std::size_t m = k + 1; m < p; ++m)
+                add_multiple(-L[k * step + m], gain_.data() + m * below, g, below);
             for (std::size_t r = 0; r < below; ++r) g[r] /= L[k * step + k];
         }
         for (std::size_t k = 0; k < p; ++k) {
@@ -452,11 +466,11 @@ class SparseCholesky {
     std::vector<std::size_t> first_block_;  // of each column, and the number of blocks
     std::vector<Block> blocks_;
     std::size_t value_count_ = 0;
-    std::vector<std::size_t> panels_;       // begin of each panel, and the numbers of all
+    std::vector<std::size_t> panels_;                 // begin of each panel, and the numbers of all
     std::vector<std::size_t> scratch_, complements_;  // where a complement is made, and where it waits
     std::size_t stack_peak_ = 0;
     std::vector<int> children_, siblings_;
-    std::vector<int> row_offsets_;          // of each block row below its supernode, in the front
+    std::vector<int> row_offsets_;  // of each block row below its supernode, in the front
     std::vector<std::size_t> run_starts_;
     std::vector<Run> runs_;
     std::vector<double> numbers_, stack_, local_;

@@ -1,10 +1,10 @@
-// Dense fronts of a sparse Cholesky factorisation: the lower factor of the pivot columns, the Schur complement
-// on the rows below, and the triangular solves (Duff & Reid 1983; register blocks as in Goto & van de Geijn
-// 2008).
+// Dense fronts of a sparse Cholesky factorisation: the lower factor of the pivot columns, the Schur
+// complement on the rows below, and the triangular solves (Duff & Reid 1983; register blocks as in Goto & van
+// de Geijn 2008).
 //
 // A panel holds the pivot columns of a front, column by column, `stride` numbers each: first the rows of the
-// pivots, then the others, filled with zeros up to a multiple of four. The Schur complement is a square of such
-// a multiple. What stands above the diagonals is undefined.
+// pivots, then the others, filled with zeros up to a multiple of four. The Schur complement is a square of
+// such a multiple. What stands above the diagonals is undefined.
 #pragma once
 
 #include <cstddef>
@@ -123,20 +123,25 @@ CSPACE_INLINE bool factor_columns_of(double* panel, int stride, int first) {
     return true;
 }
 
-// Factors up to four columns of a panel from `first`, a multiple of four, after all columns before them. False
-// where the front is not positive definite.
+// Factors up to four columns of a panel from `first`, a multiple of four, after all columns before them.
+// False where the front is not positive definite.
 CSPACE_INLINE bool factor_columns(double* panel, int stride, int pivots, int first) {
     switch (pivots - first) {
-        case 1: return factor_columns_of<1>(panel, stride, first);
-        case 2: return factor_columns_of<2>(panel, stride, first);
-        case 3: return factor_columns_of<3>(panel, stride, first);
-        default: return factor_columns_of<4>(panel, stride, first);
+        case 1:
+            return factor_columns_of<1>(panel, stride, first);
+        case 2:
+            return factor_columns_of<2>(panel, stride, first);
+        case 3:
+            return factor_columns_of<3>(panel, stride, first);
+        default:
+            return factor_columns_of<4>(panel, stride, first);
     }
 }
 
 // Subtracts the product of the rows below the pivots from one strip of up to twelve rows of the Schur
 // complement, a square of `size` rows, a multiple of four; row: the first of the strip, a multiple of twelve.
-CSPACE_INLINE void update_strip(double* schur, int size, const double* panel, int stride, int pivots, int row) {
+CSPACE_INLINE void update_strip(double* schur, int size, const double* panel, int stride, int pivots,
+                                int row) {
     const std::size_t step = std::size_t(size);
     const double* const below = panel + pivots;
     const int left = size - row;
@@ -174,8 +179,7 @@ CSPACE_INLINE void solve_upper(const double* panel, int stride, int pivots, doub
         int r = k + 1;
         for (; (stride - r) % front_lanes; ++r) sum -= column[r] * x[r];
         FrontPack part = fill<FrontPack>(0.0);
-        for (; r < stride; r += front_lanes)
-            part = mul_add(load_pack(column + r), load_pack(x + r), part);
+        for (; r < stride; r += front_lanes) part = mul_add(load_pack(column + r), load_pack(x + r), part);
         for (int i = 0; i < front_lanes; ++i) sum -= lane(part, i);
         x[k] = sum / column[k];
     }

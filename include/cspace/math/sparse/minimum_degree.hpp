@@ -1,9 +1,10 @@
 // Approximate minimum degree: an elimination order of the blocks of a symmetric matrix with little fill
 // (Amestoy, Davis & Duff 1996, "An approximate minimum degree ordering algorithm").
 //
-// The quotient graph holds variables, which wait, and elements, the cliques that eliminated variables leave. A
-// pivot absorbs the elements it touches; variables with the same neighbours are merged; the degree of a variable is
-// bounded by the sizes of its elements. Degrees count rows, so that blocks of several sizes are compared fairly.
+// The quotient graph holds variables, which wait, and elements, the cliques that eliminated variables leave.
+// A pivot absorbs the elements it touches; variables with the same neighbours are merged; the degree of a
+// variable is bounded by the sizes of its elements. Degrees count rows, so that blocks of several sizes are
+// compared fairly.
 #pragma once
 
 #include <algorithm>
@@ -50,12 +51,13 @@ class MinimumDegree {
     static constexpr int none = -1;
     enum class Kind : std::uint8_t { variable, element, gone };
     struct Node {
-        std::size_t begin = 0;     // of its list: the elements, then the variables; an element has variables only
+        std::size_t begin =
+            0;  // of its list: the elements, then the variables; an element has variables only
         int elements = 0, variables = 0;
-        int degree = 0;            // bound of the rows beside its own
+        int degree = 0;                // bound of the rows beside its own
         int next = none, last = none;  // in the list of its degree
-        int group = none;          // the next variable eliminated together with it
-        int group_end = none;      // the last of its own group
+        int group = none;              // the next variable eliminated together with it
+        int group_end = none;          // the last of its own group
         Kind kind = Kind::variable;
     };
 
@@ -134,7 +136,8 @@ class MinimumDegree {
             }
         }
     }
-    // Removes absorbed elements and covered variables from the lists of the members, and bounds their degrees.
+    // Removes absorbed elements and covered variables from the lists of the members, and bounds their
+    // degrees.
     void update_variables(int pivot) {
         keys_.clear();
         for (int i : members_) {
@@ -160,8 +163,8 @@ class MinimumDegree {
                 outside += rows(v), hash += std::uint64_t(v);
                 items[kept++] = v;
             }
-            // The new element comes first; what it moves goes to the ends of both parts. There is room, for the
-            // pivot or an element of it stood in the list.
+            // The new element comes first; what it moves goes to the ends of both parts. There is room, for
+            // the pivot or an element of it stood in the list.
             at.elements = first + 1, at.variables = kept - first;
             if (kept > first) items[kept] = items[first];
             if (first > 0) items[first] = items[0];
@@ -249,12 +252,12 @@ class MinimumDegree {
     };
 
     int n_, total_ = 0, least_ = 0, member_rows_ = 0;
-    int left_ = 0;              // rows of the variables that wait
-    std::vector<int> rows_;     // of a variable with all that are merged into it; 0 once merged
+    int left_ = 0;           // rows of the variables that wait
+    std::vector<int> rows_;  // of a variable with all that are merged into it; 0 once merged
     std::vector<int> lists_;
     std::vector<Node> nodes_;
-    std::vector<int> heads_;    // the first variable of each degree
-    std::vector<int> weight_;   // rows of an element outside the new one, if stamped
+    std::vector<int> heads_;   // the first variable of each degree
+    std::vector<int> weight_;  // rows of an element outside the new one, if stamped
     std::vector<int> stamp_, mark_, members_;
     std::vector<Key> keys_;
     int tag_ = 0, weigh_tag_ = 0;

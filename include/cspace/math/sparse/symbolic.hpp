@@ -1,8 +1,8 @@
 // The symbolic half of a sparse Cholesky factorisation: elimination tree, column counts, and supernodes.
 //
 // The tree is found by path compression (Liu 1986); its postorder keeps the fill and makes the columns of a
-// supernode neighbours. A supernode is a run of columns with one pattern. A child is amalgamated with its parent
-// where the zeros this stores are few (Ashcraft & Grimes 1989).
+// supernode neighbours. A supernode is a run of columns with one pattern. A child is amalgamated with its
+// parent where the zeros this stores are few (Ashcraft & Grimes 1989).
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,19 @@ namespace cspace {
 
 // A run of block columns, and the block rows below them.
 struct Supernode {
-    int first, count;                    // block columns
-    int pivots = 0;                      // rows of these columns
-    int below = 0;                       // rows of the blocks below
-    int parent = -1;                     // supernode of the first block row below; −1: none
-    std::size_t begin = 0, end = 0;      // of its block rows in SymbolicFactor::rows
+    int first, count;                // block columns
+    int pivots = 0;                  // rows of these columns
+    int below = 0;                   // rows of the blocks below
+    int parent = -1;                 // supernode of the first block row below; −1: none
+    std::size_t begin = 0, end = 0;  // of its block rows in SymbolicFactor::rows
 };
 
 struct SymbolicFactor {
-    std::vector<int> order, place;       // block of the matrix at each column, and column of each block
-    std::vector<int> starts;             // first row of each column, and the number of rows
-    std::vector<Supernode> supernodes;   // children before parents, in postorder
-    std::vector<int> owner;              // supernode of each column
-    std::vector<int> rows;               // block rows below the pivots, ascending
+    std::vector<int> order, place;      // block of the matrix at each column, and column of each block
+    std::vector<int> starts;            // first row of each column, and the number of rows
+    std::vector<Supernode> supernodes;  // children before parents, in postorder
+    std::vector<int> owner;             // supernode of each column
+    std::vector<int> rows;              // block rows below the pivots, ascending
 
     int columns() const { return int(order.size()); }
     int size(int column) const { return starts[std::size_t(column) + 1] - starts[std::size_t(column)]; }
@@ -38,7 +38,7 @@ struct SymbolicFactor {
 
 // How many zeros amalgamation may store, as a share of a supernode of so many columns (found by trial).
 struct Amalgamation {
-    int always = 12;                     // columns that are merged whatever they store
+    int always = 12;  // columns that are merged whatever they store
     int narrow = 48, wide = 96;
     double narrow_share = 0.5, wide_share = 0.15, share = 0.05;
 
@@ -101,7 +101,8 @@ inline std::vector<int> count_rows(const EarlierColumns& earlier, const std::vec
         poll.step();
         seen[row] = int(row);
         for (std::size_t k = earlier.starts[row]; k < earlier.starts[row + 1]; ++k) {
-            for (int at = earlier.columns[k]; seen[std::size_t(at)] != int(row); at = parent[std::size_t(at)]) {
+            for (int at = earlier.columns[k]; seen[std::size_t(at)] != int(row);
+                 at = parent[std::size_t(at)]) {
                 seen[std::size_t(at)] = int(row);
                 count[std::size_t(at)] += sizes[row];
             }
@@ -177,7 +178,8 @@ inline std::vector<Supernode> merge_runs(const std::vector<Supernode>& runs, con
     for (const Supernode& run : runs) {
         merged.push_back(run);
         zeros.push_back(0);
-        while (merged.size() > 1 && try_merge()) {}
+        while (merged.size() > 1 && try_merge()) {
+        }
     }
     return merged;
 }
@@ -192,7 +194,8 @@ inline std::vector<Supernode> find_supernodes(const std::vector<int>& parent, co
         runs.push_back({column, 1, size, count[std::size_t(column)] - size});
     }
     constexpr double least_share = std::numeric_limits<double>::min();
-    return merge_runs(merge_runs(runs, parent, {0, 0, 0, least_share, least_share, least_share}), parent, rule);
+    return merge_runs(merge_runs(runs, parent, {0, 0, 0, least_share, least_share, least_share}), parent,
+                      rule);
 }
 
 // The block rows below each supernode: those of its columns in the matrix, and those of its children.

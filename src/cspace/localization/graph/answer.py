@@ -17,7 +17,7 @@ from cspace.tables import one_line, shown
 
 if TYPE_CHECKING:
     from cspace._core import GraphSolver
-    from cspace.localization.graph.pose_graph import PoseGraph
+    from cspace.localization.graph.graph_arrays import GraphArrays
 
 LIMITS: Final = {1: 10.828, 2: 13.816, 3: 16.266, 6: 22.458}
 """Squared errors that a true measurement of so many numbers exceeds once in a thousand times."""
@@ -39,7 +39,7 @@ class RejectedLoop(NamedTuple):
 
 
 def list_rejected(
-    graph: PoseGraph, squares: Array, is_rejected: npt.NDArray[np.bool_], scale: float
+    graph: GraphArrays, squares: Array, is_rejected: npt.NDArray[np.bool_], scale: float
 ) -> tuple[RejectedLoop, ...]:
     """The rejected edges by row; scale: of the limits."""
     limit = scale * LIMITS[6 if graph.is_spatial else 3]
@@ -73,7 +73,7 @@ class GraphAnswer(Renamed):
     rejected: tuple[RejectedLoop, ...]
     rejected_sightings: npt.NDArray[np.intp]
     stats: Mapping[str, Any]
-    graph: PoseGraph
+    graph: GraphArrays
     _solver: GraphSolver
     _lock: Lock = field(default_factory=Lock)
 
@@ -113,7 +113,7 @@ class GraphAnswer(Renamed):
         first, second = (self._turn(row) for row in rows)
         return np.asarray(first @ found @ second.T)
 
-    def to_graph(self) -> PoseGraph:
+    def to_graph(self) -> GraphArrays:
         """The graph with the answer as its start."""
         return self.graph.with_poses(self.poses, self.landmarks)
 

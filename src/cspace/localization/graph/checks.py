@@ -56,7 +56,9 @@ def read_information(value: Any, subject: str, count: int, size: int) -> Array:
         array = np.broadcast_to(array, (count, size, size))
     array = one_array(array, subject, (None, size, size), "a matrix per measurement")
     if len(array) != count:
-        raise InputError(f"{subject} has {len(array)} matrices and there are {count} measurements; give one each")
+        raise InputError(
+            f"{subject} has {len(array)} matrices and there are {count} measurements; give one each"
+        )
     across = np.abs(array - np.swapaxes(array, 1, 2)).max(axis=(1, 2), initial=0.0)
     bad = np.flatnonzero(across > SYMMETRIC_INFORMATION * np.abs(array).max(axis=(1, 2), initial=0.0))
     if len(bad):

@@ -16,7 +16,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError, LogError, suggest
 from cspace.files import path_of, read_regular
-from cspace.localization.graph.pose_graph import PoseGraph
+from cspace.localization.graph.graph_arrays import Graph
 from cspace.localization.logs.lines import Lines, decompress
 from cspace.spatial import pose
 from cspace.tables import count_things
@@ -80,7 +80,9 @@ class Draft:
         found = []
         for word in words[:count]:
             if not word.isdecimal() or not int(word) <= LARGEST_ID:
-                raise self.lines.error(line, f"{word[:40]!r} is no id; ids are whole numbers from 0 to 2⁶³ − 1")
+                raise self.lines.error(
+                    line, f"{word[:40]!r} is no id; ids are whole numbers from 0 to 2⁶³ − 1"
+                )
             found.append(int(word))
         return found
 
@@ -88,7 +90,7 @@ class Draft:
         """The id and the numbers of a vertex, which must be new."""
         (name,) = self.ids(line, words, 1)
         if name in self.poses or name in self.landmarks:
-            raise self.lines.error(line, f"vertex {name} stands here for the second time; remove one")
+            raise self.lines.error(line, f"vertex {name} is given for the second time; remove one")
         return name, self.values(line, words[1:], count, kind)
 
     def values(self, line: int, words: list[str], count: int, kind: str) -> list[float]:
@@ -114,7 +116,7 @@ class Draft:
     def quaternion_pose(self, line: int, values: list[float]) -> Array:
         """The numbers t and the quaternion x, y, z, w of any length but zero."""
         if not any(values[3:]):
-            raise self.lines.error(line, "the quaternion is zero, which is no rotation; the unit is 0 0 0 1")
+            raise self.lines.error(line, "the quaternion is zero and gives no direction; the identity is 0 0 0 1")
         return np.array(values)
 
     def pair(self, line: int, words: list[str]) -> tuple[int, int]:
@@ -225,8 +227,12 @@ def read_space_point_edge(draft: Draft, line: int, words: list[str]) -> None:
 def read_offset(draft: Draft, line: int, words: list[str]) -> None:
     """PARAMS_SE3OFFSET id x y z qx qy qz qw: where a sensor is mounted; none but the base itself is known"""
     values = draft.values(line, words[1:], 7, "an offset")
-    if not np.allclose(make_poses([draft.quaternion_pose(line, values)])[0], np.eye(4), rtol=0.0, atol=SINGULAR_INFORMATION):
-        raise draft.lines.error(line, "the sensor is not mounted at the base; transform its points into the base")
+    if not np.allclose(
+        make_poses([draft.quaternion_pose(line, values)])[0], np.eye(4), rtol=0.0, atol=SINGULAR_INFORMATION
+    ):
+        raise draft.lines.error(
+            line, "the sensor is not mounted at the base; transform its points into the base"
+        )
 
 
 RECORDS: Final[Mapping[str, Mapping[str, Reader]]] = MappingProxyType(
@@ -256,7 +262,7 @@ RECORDS: Final[Mapping[str, Mapping[str, Reader]]] = MappingProxyType(
 """The records of each format, by their first word."""
 
 
-def read_graph(path: str | os.PathLike[str], format: str | None) -> PoseGraph:
+def read_graph(cls: type[Graph], path: str | os.PathLike[str], format: str | None) -> Graph:
     """See PoseGraph.read."""
     name = path_of(path, "a pose graph is given by its path")
     if format is not None and format not in FORMATS:
@@ -274,9 +280,11 @@ def read_graph(path: str | os.PathLike[str], format: str | None) -> PoseGraph:
             draft.skipped[words[0]] = draft.skipped.get(words[0], 0) + 1
             continue
         if reader is None:
-            raise lines.error(line, f"no record {words[0][:40]!r} of {kind} is known; records: {', '.join(records)}")
+            raise lines.error(
+                line, f"no record {words[0][:40]!r} of {kind} is known; records: {', '.join(records)}"
+            )
         reader(draft, line, words[1:])
-    return finish_draft(draft)
+    return finish_draft(cls, draft)
 
 
 def unpack_lines(name: str) -> Lines:
@@ -319,7 +327,7 @@ def find_format(lines: Lines, name: str, first: tuple[int, list[str]]) -> str:
     )
 
 
-def finish_draft(draft: Draft) -> PoseGraph:
+def finish_draft(cls: type[Graph], draft: Draft) -> Graph:
     """The graph of all lines, its poses in the order of their ids."""
     lines = draft.lines
     start_given = bool(draft.poses)
@@ -327,19 +335,25 @@ def finish_draft(draft: Draft) -> PoseGraph:
     ids, landmark_ids = sorted(draft.poses), sorted(draft.landmarks)
     row = {name: k for k, name in enumerate(ids)}
     landmark_row = {name: k for k, name in enumerate(landmark_ids)}
-    flat = {draft.poses[name].shape == (3,) for name in ids} | {edge.motion.shape == (3,) for edge in draft.edges}
+    flat = {draft.poses[name].shape == (3,) for name in ids} | {
+        edge.motion.shape == (3,) for edge in draft.edges
+    }
     if not ids:
         raise LogError("the file has no poses and no edges", path=lines.path)
     if len(flat) > 1:
-        raise LogError("the file has poses of the plane and poses in space; a graph has one kind", path=lines.path)
+        raise LogError(
+            "the file has poses of the plane and poses in space; a graph has one kind", path=lines.path
+        )
     d, size = (2, 3) if flat.pop() else (3, 6)
     for each in draft.seen:
         if each.point.shape != (d,):
             raise lines.error(each.line, "the sighting is not of the same space as the poses")
     try:
-        return PoseGraph(
+        return cls(
             poses=make_poses([draft.poses[name] for name in ids]),
-            edges=np.array([(row[each.first], row[each.second]) for each in draft.edges], np.int32).reshape(-1, 2),
+            edges=np.array([(row[each.first], row[each.second]) for each in draft.edges], np.int32).reshape(
+                -1, 2
+            ),
             motions=make_poses([each.motion for each in draft.edges]),
             information=stack_information(draft, draft.edges, size),
             landmarks=np.array([draft.landmarks[name] for name in landmark_ids]).reshape(-1, d),
@@ -407,7 +421,9 @@ def add_missing_variables(draft: Draft) -> None:
         if name in own:
             return
         if name in others:
-            raise lines.error(line, f"vertex {name} is of the other kind: edges join poses, sightings end at landmarks")
+            raise lines.error(
+                line, f"vertex {name} is of the other kind: edges join poses, sightings end at landmarks"
+            )
         if known:
             raise lines.error(line, f"there is no vertex {name}; add it, or remove the edge")
         own[name] = no_pose if own is draft.poses else no_point

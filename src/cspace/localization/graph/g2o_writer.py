@@ -14,20 +14,22 @@ from cspace.files import write_text
 from cspace.spatial import to_xyzw
 
 if TYPE_CHECKING:
-    from cspace.localization.graph.pose_graph import PoseGraph
+    from cspace.localization.graph.graph_arrays import GraphArrays
 
 
-def write_g2o(graph: PoseGraph, path: str | os.PathLike[str]) -> None:
+def write_g2o(graph: GraphArrays, path: str | os.PathLike[str]) -> None:
     """See PoseGraph.to_g2o."""
     check_writable(graph)
     write_text(path, "".join(line + "\n" for line in list_lines(graph)))
 
 
-def check_writable(graph: PoseGraph) -> None:
+def check_writable(graph: GraphArrays) -> None:
     """InputError for what g2o has no record for."""
     shared = np.intersect1d(graph.ids, graph.landmark_ids)
     if len(shared):
-        raise InputError(f"id {shared[0]} names a pose and a landmark; g2o numbers both together: change landmark_ids")
+        raise InputError(
+            f"id {shared[0]} names a pose and a landmark; g2o numbers both together: change landmark_ids"
+        )
     if (np.concatenate([graph.ids, graph.landmark_ids]) < 0).any():  # type: ignore[arg-type]
         raise InputError("ids has a negative number; g2o numbers vertices from 0")
     ranges = np.flatnonzero(graph.ranged & graph.measured[:, 0]) if graph.dimension == 2 else []
@@ -38,7 +40,7 @@ def check_writable(graph: PoseGraph) -> None:
         )
 
 
-def list_lines(graph: PoseGraph) -> Iterator[str]:
+def list_lines(graph: GraphArrays) -> Iterator[str]:
     """The records: vertices, what is fixed, edges, sightings."""
     assert graph.ids is not None and graph.landmark_ids is not None
     kind = "SE3:QUAT" if graph.is_spatial else "SE2"
@@ -58,7 +60,7 @@ def list_lines(graph: PoseGraph) -> Iterator[str]:
     yield from list_sightings(graph)
 
 
-def list_sightings(graph: PoseGraph) -> Iterator[str]:
+def list_sightings(graph: GraphArrays) -> Iterator[str]:
     """The records of the sightings."""
     assert graph.ids is not None and graph.landmark_ids is not None and graph.ranged is not None
     upper = np.triu_indices(graph.dimension)

@@ -13,7 +13,7 @@ from cspace.arrays import positive_number, whole_number
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.localization.graph.answer import GraphAnswer, list_rejected
 from cspace.localization.graph.checks import Mask
-from cspace.localization.graph.pose_graph import PoseGraph
+from cspace.localization.graph.graph_arrays import GraphArrays
 from cspace.tables import join_words
 from cspace.tolerances import GRAPH_DECREASE, GRAPH_STEP
 
@@ -22,7 +22,14 @@ RESIDUALS: Final = ("twist", "g2o")
 ROBUST: Final = (None, "dcs", "gnc", "best")
 STARTS: Final = ("given", "odometry", "rotations")
 KERNELS: Final = (None, "huber", "cauchy", "geman_mcclure", "tukey", "dcs")
-WIDTHS: Final = {None: 1.0, "huber": 1.345, "cauchy": 2.3849, "geman_mcclure": 1.0, "tukey": 4.6851, "dcs": 1.0}
+WIDTHS: Final = {
+    None: 1.0,
+    "huber": 1.345,
+    "cauchy": 2.3849,
+    "geman_mcclure": 1.0,
+    "tukey": 4.6851,
+    "dcs": 1.0,
+}
 """Widths of the kernels [standard deviations]: 95 % efficient on Gaussian errors (Zhang 1997); φ = 1 of DCS."""
 MOST_ITERATIONS: Final = 1_000_000
 STATUSES: Final = ("converged", "stopped", "singular")
@@ -46,10 +53,17 @@ class Request(NamedTuple):
 
     def check(self) -> Request:
         """With the defaults filled in; errors for words that are not in the lists."""
-        for name, known in (("method", METHODS), ("residual", RESIDUALS), ("robust", ROBUST), ("kernel", KERNELS)):
+        for name, known in (
+            ("method", METHODS),
+            ("residual", RESIDUALS),
+            ("robust", ROBUST),
+            ("kernel", KERNELS),
+        ):
             find_word(name, getattr(self, name), known)
         if self.robust is not None and self.kernel is not None:
-            raise InputTypeError("robust= and kernel= exclude each other: one rejects measurements, one weighs them")
+            raise InputTypeError(
+                "robust= and kernel= exclude each other: one rejects measurements, one weighs them"
+            )
         start = self.start or ("rotations" if self.robust is None else "odometry")
         find_word("start", start, STARTS)
         return self._replace(
@@ -69,7 +83,7 @@ def find_word(name: str, word: Any, known: tuple[str | None, ...]) -> int:
     return known.index(word)
 
 
-def optimize_graph(graph: PoseGraph, given: Request) -> GraphAnswer:
+def optimize_graph(graph: GraphArrays, given: Request) -> GraphAnswer:
     """See PoseGraph.optimize."""
     request = given.check()
     check_parts(graph)
@@ -84,7 +98,7 @@ def optimize_graph(graph: PoseGraph, given: Request) -> GraphAnswer:
     return make_answer(graph, solver, request, status, perf_counter() - begin)
 
 
-def check_parts(graph: PoseGraph) -> None:
+def check_parts(graph: GraphArrays) -> None:
     """InputError for a part of the graph that nothing holds in place, with one of its members."""
     anchored = set(graph.parts[graph.fixed].tolist())
     parts, first = np.unique(graph.parts, return_index=True)
@@ -99,13 +113,13 @@ def check_parts(graph: PoseGraph) -> None:
     )
 
 
-def name_variable(graph: PoseGraph, at: int) -> str:
+def name_variable(graph: GraphArrays, at: int) -> str:
     """A pose, or behind all poses a landmark, by its id."""
     n = len(graph.poses)
     return f"pose {graph.ids[at]}" if at < n else f"landmark {graph.landmark_ids[at - n]}"  # type: ignore[index]
 
 
-def read_trusted(graph: PoseGraph, value: Any) -> Mask:
+def read_trusted(graph: GraphArrays, value: Any) -> Mask:
     """Which edges are never doubted."""
     if value is None:
         return graph.consecutive
@@ -117,7 +131,7 @@ def read_trusted(graph: PoseGraph, value: Any) -> Mask:
     return mask
 
 
-def make_solver(graph: PoseGraph, is_trusted: Mask) -> GraphSolver:
+def make_solver(graph: GraphArrays, is_trusted: Mask) -> GraphSolver:
     """The compiled solver of a graph."""
     held = np.zeros(len(graph.poses), np.uint8)
     held[graph.fixed] = 1
@@ -167,7 +181,7 @@ def run_solver(solver: GraphSolver, request: Request) -> str:
 
 
 def make_answer(
-    graph: PoseGraph, solver: GraphSolver, request: Request, status: str, seconds: float
+    graph: GraphArrays, solver: GraphSolver, request: Request, status: str, seconds: float
 ) -> GraphAnswer:
     """The state of the solver as arrays, with χ² and what was rejected."""
     poses, landmarks = np.empty(graph.poses.shape), np.empty(graph.landmarks.shape)
@@ -203,7 +217,7 @@ def make_answer(
 
 
 def explain_status(
-    graph: PoseGraph, solver: GraphSolver, request: Request, status: str, seconds: float, iterations: int
+    graph: GraphArrays, solver: GraphSolver, request: Request, status: str, seconds: float, iterations: int
 ) -> str:
     """The verdict in words."""
     if status == "converged":
@@ -215,7 +229,7 @@ def explain_status(
         where = f" near {name_variable(graph, at)}" if at >= 0 else ""
         return f"the normal equations are singular{where}: the measurements do not determine it"
     if iterations >= request.max_iterations:
-        return f"max_iterations={request.max_iterations} iterations did not settle; the answer is the best state"
+        return (
+            f"max_iterations={request.max_iterations} iterations did not settle; the answer is the best state"
+        )
     return f"no step lowered the cost any more after {iterations} iterations, though the steps were not small"
-
-

@@ -93,7 +93,9 @@ def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) ->
         tail = tail[1 + int(lines.numbers(number, tail[:1], "the number of remissions")[0]) :]
     place = 6 if is_plain else 11
     if count < 1 or len(ranges) < count or len(tail) <= place:
-        raise lines.error(number, f"{words[0]} of {count} ranges has {len(words) - 1} values; the line is cut")
+        raise lines.error(
+            number, f"{words[0]} of {count} ranges has {len(words) - 1} values; the line is cut"
+        )
     if messages.ranges and len(messages.ranges[-1]) != count:
         raise lines.error(
             number, f"the scan has {count} beams and the one before {len(messages.ranges[-1])}; split the log"
@@ -156,7 +158,9 @@ def pack_scans(messages: Messages, scans: Array, times: Array, notes: list[str])
     """The scans with the pose of the laser on the robot, which their lines repeat."""
     mounts = to_xytheta(inverse_pose_2d(pose_2d(xytheta=scans[:, 3:6])) @ pose_2d(xytheta=scans[:, :3]))
     mount = np.median(mounts, axis=0)
-    spread = np.abs(np.concatenate([mounts[:, :2] - mount[:2], wrap_angle(mounts[:, 2:] - mount[2])], axis=1)).max()
+    spread = np.abs(
+        np.concatenate([mounts[:, :2] - mount[:2], wrap_angle(mounts[:, 2:] - mount[2])], axis=1)
+    ).max()
     if spread > MOUNT_SPREAD:
         notes.append(f"the pose of the laser on the robot varies by {spread:.2g}; the median is used")
     assert messages.angles is not None

@@ -33,7 +33,9 @@ def read_mrclam(folder: Path, robot: int | None) -> Log:
     if not numbers:
         raise LogError("no Robot1_Odometry.dat, Robot2_… in the folder", path=str(folder))
     if robot is not None and robot not in numbers:
-        raise LogError(f"no robot {robot} in the folder; robots: {', '.join(map(str, numbers))}", path=str(folder))
+        raise LogError(
+            f"no robot {robot} in the folder; robots: {', '.join(map(str, numbers))}", path=str(folder)
+        )
     chosen = numbers[0] if robot is None else robot
     notes = [f"robot {chosen} of {', '.join(map(str, numbers))}"] if len(numbers) > 1 else []
     speeds = read_table(folder, f"Robot{chosen}_Odometry", 3, "time, forward velocity, angular velocity")

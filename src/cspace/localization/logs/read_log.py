@@ -33,7 +33,8 @@ def read_log(path: str | os.PathLike[str], *, robot: int | None = None) -> Log:
     if place.is_dir():
         if not is_mrclam(place):
             raise LogError(
-                "this is a folder without Landmark_Groundtruth.dat of MRCLAM; give the file of a log", path=name
+                "this is a folder without Landmark_Groundtruth.dat of MRCLAM; give the file of a log",
+                path=name,
             )
         return read_mrclam(place, robot)
     found = FILE.fullmatch(place.name)

@@ -40,7 +40,10 @@ def read_victoria(lines: Lines) -> Log:
     rows = np.array(seen, dtype=np.float64).reshape(-1, 4)
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     readings = Readings(
-        rows[:, 0], rows[:, 1].astype(np.int64), np.hypot(rows[:, 2], rows[:, 3]), np.arctan2(rows[:, 3], rows[:, 2])
+        rows[:, 0],
+        rows[:, 1].astype(np.int64),
+        np.hypot(rows[:, 2], rows[:, 3]),
+        np.arctan2(rows[:, 3], rows[:, 2]),
     )
     odometry = Odometry.from_increments(
         np.arange(len(increments) + 1.0), np.array(increments, dtype=np.float64).reshape(-1, 3)
