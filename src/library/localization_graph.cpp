@@ -77,6 +77,10 @@ PoseGraph<Space> read_graph(const GraphArrays& arrays) {
     return graph;
 }
 
+// Dynamic covariance scaling is tried with these shares of its width: the information of files may be a hundredth of
+// the true one, and an honest one lets loops start out far.
+constexpr double scaling_widths[] = {1.0, 0.3, 3.0};
+
 template <class Space>
 class SolverOf : public GraphSolver {
   public:
@@ -153,12 +157,16 @@ class SolverOf : public GraphSolver {
             answers.push_back(std::move(answer));
             state_ = answers[0].state, is_used_ = answers[0].is_used;
         };
-        if (rule.false_loops != FalseLoops::gnc) keep_answer(solver.scale_covariances(start, rule.width));
+        if (rule.false_loops != FalseLoops::gnc) {
+            for (double share : scaling_widths) keep_answer(solver.scale_covariances(start, share * rule.width));
+        }
         if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
-        const double scale = std::min(answers.front().scale, answers.back().scale);
-        const bool is_second =
-            solver.truncated_cost(answers.back(), scale) < solver.truncated_cost(answers.front(), scale);
-        const RobustAnswer<Space>& best = is_second ? answers.back() : answers.front();
+        double scale = 1;
+        for (const auto& answer : answers) scale = std::min(scale, answer.scale);
+        const RobustAnswer<Space>& best =
+            *std::min_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
+                return solver.truncated_cost(a, scale) < solver.truncated_cost(b, scale);
+            });
         state_ = best.state, is_used_ = best.is_used;
         limit_scale_ = best.scale;
         stats_ = solver.optimizer().stats();

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from localization.graph.graphs import chi2, jacobian, matrix, numbers, random_graph
+from localization.graph.graphs import chi2, jacobian, matrix, numbers, random_graph, residuals
 
 SPACES = pytest.mark.parametrize("spatial", [False, True], ids=["plane", "space"])
 
@@ -26,8 +26,6 @@ def test_the_answer_is_stationary_and_its_chi2_the_definition(spatial, landmarks
         assert answer.chi2 == pytest.approx(chi2(graph, answer.poses, answer.landmarks), rel=1e-10)
         assert answer.chi2 == pytest.approx(answer.edge_chi2.sum() + answer.sighting_chi2.sum())
         J = jacobian(graph, answer.poses, answer.landmarks)[:, 6 if spatial else 3 :]
-        from localization.graph.graphs import residuals
-
         e = residuals(graph, [matrix(row) for row in answer.poses], answer.landmarks)
         step = np.linalg.lstsq(J, -e, rcond=None)[0]
         assert np.abs(step).max() < 1e-5

@@ -30,8 +30,8 @@ inline KernelValue evaluate_kernel(RobustKernel kernel, double s, double width) 
             return {s * share, share * share};
         }
         case RobustKernel::tukey: {
-            const double rest = std::max(0.0, 1 - s / square);
-            return {square / 3 * (1 - rest * rest * rest), rest * rest};
+            const double share = std::min(1.0, s / square), rest = 1 - share;
+            return {square * share * (1 - share + share * share / 3), rest * rest};
         }
         case RobustKernel::dcs: {
             if (s <= square) break;
