@@ -44,8 +44,8 @@ def test_parts_with_nothing_fixed_are_named():
     with pytest.raises(InputError, match="2 parts.*pose 12"):
         graph.optimize()
     assert replace(graph, fixed=(0, 2)).optimize()
-    lonely = replace(graph, fixed=(0, 2), landmarks=np.zeros((1, 2)), landmark_ids=None)
-    with pytest.raises(InputError, match="landmark 4"):
+    lonely = replace(graph, fixed=(0, 2), landmarks=np.zeros((1, 2)))
+    with pytest.raises(InputError, match="landmark 14"):
         lonely.optimize()
 
 

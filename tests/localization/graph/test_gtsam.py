@@ -41,7 +41,7 @@ def check_graph(graph, tolerance):
     parameters = gtsam.GaussNewtonParams()
     parameters.setRelativeErrorTol(1e-14)
     theirs = gtsam.GaussNewtonOptimizer(factors, values, parameters).optimize()
-    assert answer.chi2 == pytest.approx(2 * factors.error(values), rel=1e-10, abs=1e-16)
+    assert answer.chi2 == pytest.approx(2 * factors.error(values), rel=1e-10, abs=1e-18)
     assert answer.chi2 == pytest.approx(2 * factors.error(theirs), rel=tolerance)
     return answer, factors, theirs
 
@@ -51,12 +51,12 @@ def test_random_graphs(spatial):
     rng = np.random.default_rng(14)
     for _ in range(5):
         # In the plane gtsam leaves the Jacobian of the logarithm out, which is the identity for small errors.
-        graph = random_graph(rng, spatial=spatial, poses=20, noise=0.05 if spatial else 1e-6)
+        graph = random_graph(rng, spatial=spatial, poses=20, noise=0.05 if spatial else 1e-8)
         answer, factors, theirs = check_graph(graph, 1e-8)
         marginals = gtsam.Marginals(factors, theirs)
         for k in range(1, 20):
             expected = turn_order(marginals.marginalCovariance(k))
-            assert np.allclose(answer.marginals[k], expected, rtol=1e-5, atol=1e-10)
+            assert np.allclose(answer.marginals[k], expected, rtol=1e-5, atol=1e-7)
 
 
 @pytest.mark.parametrize("name", ["intel.g2o", "smallGrid3D.g2o", "manhattanOlson3500_g2o.g2o", "sphere2500.g2o"])

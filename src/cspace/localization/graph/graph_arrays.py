@@ -82,8 +82,9 @@ class GraphArrays:
         self._set("fixed", read_rows(self.fixed, "fixed", n))
         self._set("fixed_landmarks", read_rows(self.fixed_landmarks, "fixed_landmarks", len(self.landmarks)))
         self._set("ids", read_ids(np.arange(n) if self.ids is None else self.ids, "ids", n))
-        m = len(self.landmarks)
-        names = np.arange(n, n + m) if self.landmark_ids is None else self.landmark_ids
+        m, first = len(self.landmarks), int(self.ids.max()) + 1  # type: ignore[union-attr]
+        given = self.landmark_ids is not None and np.size(self.landmark_ids)
+        names = self.landmark_ids if given else np.arange(first, first + m)
         self._set("landmark_ids", read_ids(names, "landmark_ids", m))
 
     def _set(self, name: str, array: Any) -> None:
@@ -110,7 +111,9 @@ class GraphArrays:
         points = as_floats(self.points, "points", finite=False) if len(rows) else np.zeros((0, d))
         if points.shape != (len(rows), d):
             raise InputError(f"points has shape {points.shape}, expected {(len(rows), d)}: one per sighting")
-        ranged = np.zeros(len(rows), bool) if self.ranged is None else np.array(self.ranged, dtype=bool)
+        ranged = np.zeros(len(rows), bool)
+        if self.ranged is not None and np.size(self.ranged):
+            ranged = np.array(self.ranged, dtype=bool)
         if ranged.shape != (len(rows),):
             raise InputError(f"ranged has shape {ranged.shape}, expected ({len(rows)},): one per sighting")
         self._check_points(points, ranged)
