@@ -2,10 +2,10 @@
 
 Usage: python benchmarks/pose_graphs.py [--rounds 5]. Writes benchmarks/results/pose_graphs.json.
 
-Each contender runs in a process of its own, in turn, on one thread. Times are processor time: ours of the whole call
-(start, order and all steps), theirs of the optimizer alone, without making its factors. Theirs is the faster of
-Gauss-Newton and Levenberg-Marquardt that reaches the least χ² within 1e-6; both begin at the poses of the file. χ² is
-computed again here, in plain numpy, by no code of either.
+Each contender runs in a process of its own, in turn, on one thread. Times are processor time: ours of the
+whole call (start, order and all steps), theirs of the optimizer alone, without making its factors. Theirs
+is the faster of Gauss-Newton and Levenberg-Marquardt that reaches the least χ² within 1e-6; both begin at
+the poses of the file. χ² is computed again here, in plain numpy, by no code of either.
 """
 
 from __future__ import annotations
@@ -26,7 +26,13 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = Path(os.environ.get("CSPACE_DATA") or ROOT.parent / "shared/data") / "localization/posegraph"
-GRAPHS = ("manhattanOlson3500_g2o.g2o", "intel.g2o", "input_INTEL.g2o", "parking-garage.g2o", "sphere2500.g2o")
+GRAPHS = (
+    "manhattanOlson3500_g2o.g2o",
+    "intel.g2o",
+    "input_INTEL.g2o",
+    "parking-garage.g2o",
+    "sphere2500.g2o",
+)
 METHODS = ("cspace_given", "cspace_rotations", "gtsam_gauss_newton", "gtsam_levenberg_marquardt")
 SAME = 1e-6
 """Relative difference up to which two values of χ² are the same."""
@@ -169,10 +175,16 @@ def main() -> None:
     for name in GRAPHS:
         results[name] = measure_graph(name, given.rounds)
         for method, each in results[name]["contenders"].items():
-            print(f"{name:28} {method:26} {1e3 * each['median']:8.1f} ms  chi2 {each['chi2']:.9g}", flush=True)
+            print(
+                f"{name:28} {method:26} {1e3 * each['median']:8.1f} ms  chi2 {each['chi2']:.9g}", flush=True
+            )
         print(f"{name:28} times faster: {results[name]['times_faster']}", flush=True)
     versions = {"gtsam": importlib.metadata.version("gtsam"), "python": platform.python_version()}
-    document = {"machine": platform.processor() or platform.machine(), "versions": versions, "graphs": results}
+    document = {
+        "machine": platform.processor() or platform.machine(),
+        "versions": versions,
+        "graphs": results,
+    }
     path = ROOT / "benchmarks/results/pose_graphs.json"
     path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
 

@@ -77,8 +77,8 @@ PoseGraph<Space> read_graph(const GraphArrays& arrays) {
     return graph;
 }
 
-// Dynamic covariance scaling is tried with these shares of its width: the information of files may be a hundredth of
-// the true one, and an honest one lets loops start out far.
+// Dynamic covariance scaling is tried with these shares of its width: the information of files may be a
+// hundredth of the true one, and an honest one lets loops start out far.
 constexpr double scaling_widths[] = {1.0, 0.3, 3.0};
 
 template <class Space>
@@ -158,7 +158,8 @@ class SolverOf : public GraphSolver {
             state_ = answers[0].state, is_used_ = answers[0].is_used;
         };
         if (rule.false_loops != FalseLoops::gnc) {
-            for (double share : scaling_widths) keep_answer(solver.scale_covariances(start, share * rule.width));
+            for (double share : scaling_widths)
+                keep_answer(solver.scale_covariances(start, share * rule.width));
         }
         if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
         double scale = 1;

@@ -34,7 +34,12 @@ def random_information(rng: np.random.Generator, count: int, size: int) -> np.nd
 
 
 def random_graph(
-    rng: np.random.Generator, poses: int = 12, *, spatial: bool = False, noise: float = 0.05, landmarks: int = 0
+    rng: np.random.Generator,
+    poses: int = 12,
+    *,
+    spatial: bool = False,
+    noise: float = 0.05,
+    landmarks: int = 0,
 ) -> Any:
     """A chain with edges across, a start off the truth, and landmarks seen from some poses."""
     size, d = (6, 3) if spatial else (3, 2)
@@ -44,10 +49,14 @@ def random_graph(
         truth.append(move(truth[-1], scale * rng.uniform(-1, 1, size)))
     edges = [(k, k + 1) for k in range(poses - 1)]
     edges += [tuple(rng.choice(poses, 2, replace=False)) for _ in range(poses)]
-    motions = [numbers(move(np.linalg.inv(truth[i]) @ truth[j], noise * rng.normal(size=size))) for i, j in edges]
+    motions = [
+        numbers(move(np.linalg.inv(truth[i]) @ truth[j], noise * rng.normal(size=size))) for i, j in edges
+    ]
     points = rng.uniform(-3, 3, (landmarks, d))
     sightings = [(k, m) for m in range(landmarks) for k in rng.choice(poses, 4, replace=False)]
-    seen = [truth[k][:d, :d].T @ (points[m] - truth[k][:d, d]) + noise * rng.normal(size=d) for k, m in sightings]
+    seen = [
+        truth[k][:d, :d].T @ (points[m] - truth[k][:d, d]) + noise * rng.normal(size=d) for k, m in sightings
+    ]
     return cs.PoseGraph(
         poses=np.array([numbers(move(X, noise * rng.normal(size=size))) for X in truth]),
         edges=np.array(edges),

@@ -23,7 +23,13 @@ def same(a, b):
 @pytest.mark.parametrize("spatial", [False, True], ids=["plane", "space"])
 def test_g2o_is_read_as_written(tmp_path, spatial):
     graph = random_graph(np.random.default_rng(2), spatial=spatial, landmarks=3)
-    graph = replace(graph, fixed=(0, 4), fixed_landmarks=(1,), ids=np.arange(12) * 7 + 5, landmark_ids=(2**62, 2**62 + 9, 3))
+    graph = replace(
+        graph,
+        fixed=(0, 4),
+        fixed_landmarks=(1,),
+        ids=np.arange(12) * 7 + 5,
+        landmark_ids=(2**62, 2**62 + 9, 3),
+    )
     order = np.argsort(graph.landmark_ids)  # a file is read in the order of its ids
     graph.to_g2o(tmp_path / "a.g2o")
     back = cs.PoseGraph.from_g2o(tmp_path / "a.g2o")
@@ -52,7 +58,9 @@ def test_toro_and_graph_have_their_own_order_and_inverse(tmp_path):
         numbers = [M[0, 0], M[0, 1], M[1, 1], M[2, 2], M[0, 2], M[1, 2]]
         path = tmp_path / name
         path.write_text(
-            "VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\nEDGE2 0 1 1 0 0.1 " + " ".join(f"{x:.17g}" for x in numbers) + "\n"
+            "VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0\nEDGE2 0 1 1 0 0.1 "
+            + " ".join(f"{x:.17g}" for x in numbers)
+            + "\n"
         )
         assert np.allclose(cs.PoseGraph.read(path).information[0], W)
 
@@ -61,7 +69,8 @@ def test_edges_without_vertices_and_compressed_files(tmp_path):
     path = tmp_path / "a.g2o.gz"
     path.write_bytes(gzip.compress(b"EDGE_SE2 3 9 1 0 0.5 1 0 0 1 0 1\n"))
     graph = cs.PoseGraph.read(path)
-    assert list(graph.ids) == [3, 9] and not graph.start_given
+    assert list(graph.ids) == [3, 9]
+    assert not graph.start_given
     assert np.allclose(graph.optimize().poses[1], [1, 0, 0.5])
     with pytest.raises(InputError, match="no poses"):
         graph.optimize(start="given")
@@ -110,7 +119,9 @@ def test_half_of_the_loops_may_be_false(name):
     rng = np.random.default_rng(3)
     ends = rng.integers(0, len(truth), (3 * len(loops), 2))
     ends = ends[np.abs(ends[:, 0] - ends[:, 1]) > 1][: len(loops)]
-    motions = np.concatenate([rng.normal(size=(len(ends), 2)), rng.uniform(-np.pi, np.pi, (len(ends), 1))], axis=1)
+    motions = np.concatenate(
+        [rng.normal(size=(len(ends), 2)), rng.uniform(-np.pi, np.pi, (len(ends), 1))], axis=1
+    )
     usual = np.median(graph.information[loops], axis=0)
     wrong = replace(
         graph,

@@ -59,7 +59,9 @@ def test_random_graphs(spatial):
             assert np.allclose(answer.marginals[k], expected, rtol=1e-5, atol=1e-7)
 
 
-@pytest.mark.parametrize("name", ["intel.g2o", "smallGrid3D.g2o", "manhattanOlson3500_g2o.g2o", "sphere2500.g2o"])
+@pytest.mark.parametrize(
+    "name", ["intel.g2o", "smallGrid3D.g2o", "manhattanOlson3500_g2o.g2o", "sphere2500.g2o"]
+)
 def test_public_graphs(name):
     graph = cs.PoseGraph.read(shared_data() / "localization/posegraph" / name)
     check_graph(graph, 1e-9)

@@ -16,7 +16,7 @@ enum class GraphStart { given, odometry, rotations };
 enum class GraphMethod { gauss_newton, levenberg_marquardt, dog_leg };
 enum class GraphStatus { converged, stopped, singular };
 
-inline constexpr double graph_step = 1e-5;      // a hundredth of a millimetre: the next step is smaller by far
+inline constexpr double graph_step = 1e-5;  // a hundredth of a millimetre: the next step is smaller by far
 inline constexpr double graph_decrease = 1e-9;  // of the cost: thousandths of what is asked of its digits
 
 // Converged is where the step is small and with it the decrease of the cost that it predicts.

@@ -43,7 +43,6 @@ def list_rejected(
 ) -> tuple[RejectedLoop, ...]:
     """The rejected edges by row; scale: of the limits."""
     limit = scale * LIMITS[6 if graph.is_spatial else 3]
-    assert graph.ids is not None
     ids = graph.ids[graph.edges]
     return tuple(
         RejectedLoop(int(k), int(ids[k, 0]), int(ids[k, 1]), float(squares[k]), limit)
@@ -56,10 +55,11 @@ class GraphAnswer(Renamed):
     """An optimized pose graph; truthy if it converged.
 
     poses (n, 3) or (n, 4, 4), landmarks (m, 2) or (m, 3): the state of least cost. chi2: Σ eᵀWe over the
-    measurements that count; dof: measured numbers minus unknown ones, so that chi2 / dof is near 1 for honest
-    information. status: "converged", "stopped", "singular" or "time_limit"; reason: the same in words. edge_chi2
-    (k,), sighting_chi2 (s,): eᵀWe of each measurement. rejected: the edges that robust= left out, each with its
-    ids and χ²; rejected_sightings: rows of sightings. stats: iterations, factorizations, costs, seconds.
+    measurements that count; dof: measured numbers minus unknown ones, so that chi2 / dof is near 1 for
+    honest information. status: "converged", "stopped", "singular" or "time_limit"; reason: the same in
+    words. edge_chi2 (k,), sighting_chi2 (s,): eᵀWe of each measurement. rejected: the edges that robust=
+    left out, each with its ids and χ²; rejected_sightings: rows of sightings. stats: iterations,
+    factorizations, costs, seconds.
     """
 
     poses: Array
@@ -82,10 +82,11 @@ class GraphAnswer(Renamed):
 
     @cached_property
     def marginals(self) -> Array:
-        """The covariance of each pose, (n, 3, 3) or (n, 6, 6), of ξ in X exp ξ, [v; ω] in the frame of the pose.
+        """The covariance of each pose, (n, 3, 3) or (n, 6, 6), of ξ in X exp ξ, [v; ω] in the frame of the
+        pose.
 
-        From the selected inverse of the normal equations (Takahashi et al. 1973); zero for fixed poses. Raises
-        InputError where the equations are singular.
+        From the selected inverse of the normal equations (Takahashi et al. 1973); zero for fixed poses.
+        Raises InputError where the equations are singular.
         """
         rows = np.arange(len(self.poses), dtype=np.int32)
         return self._read_covariances(rows, rows, self._size(0), self._size(0))
@@ -99,19 +100,20 @@ class GraphAnswer(Renamed):
     def covariance(self, pose: int, other: int | None = None, *, frame: str = "base") -> Array:
         """The covariance of a pose, or of two poses between each other, by their rows: (3, 3) or (6, 6).
 
-        frame: "base" for disturbances [v; ω] in the frames of the poses, "map" for the same in the axes of the
-        map, the ellipse that people draw. Raises InputError for rows outside of the graph.
+        frame: "base" for disturbances [v; ω] in the frames of the poses, "map" for the same in the axes of
+        the map, the ellipse that people draw. Raises InputError for rows outside of the graph.
         """
         pair = [pose, pose if other is None else other]
         rows = [whole_number(row, "pose", 0, len(self.poses) - 1) for row in pair]
         if frame not in ("base", "map"):
             raise suggest("frame", frame, ("base", "map"))
         a, b = (np.array([row], dtype=np.int32) for row in rows)
-        found = self._read_covariances(a, b, self._size(rows[0]), self._size(rows[1]))[0]
+        found: Array = self._read_covariances(a, b, self._size(rows[0]), self._size(rows[1]))[0]
         if frame == "base":
             return found
         first, second = (self._turn(row) for row in rows)
-        return np.asarray(first @ found @ second.T)
+        turned: Array = first @ found @ second.T
+        return turned
 
     def to_graph(self) -> GraphArrays:
         """The graph with the answer as its start."""
@@ -126,7 +128,7 @@ class GraphAnswer(Renamed):
     def _turn(self, row: int) -> Array:
         """The matrix that turns disturbances of a pose into the axes of the map; angles of the plane stay."""
         if self.graph.is_spatial:
-            return np.kron(np.eye(2), self.poses[row, :3, :3])
+            return np.asarray(np.kron(np.eye(2), self.poses[row, :3, :3]), dtype=np.float64)
         c, s = np.cos(self.poses[row, 2]), np.sin(self.poses[row, 2])
         return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
@@ -138,7 +140,8 @@ class GraphAnswer(Renamed):
             is_regular = self._solver.write_covariances(np.stack([first, second], axis=1), found)
         if not is_regular:
             raise InputError(
-                "the normal equations at the answer are singular, so that there are no covariances; measure what"
+                "the normal equations at the answer are singular, so that there are no covariances;"
+                " measure what"
                 " is undetermined, or fix it"
             )
         return found

@@ -70,7 +70,8 @@ def read_information(value: Any, subject: str, count: int, size: int) -> Array:
         k = int(bad[0])
         kind = "negative" if values[k, 0] < -SINGULAR_INFORMATION * abs(values[k, -1]) else "singular"
         raise InputError(
-            f"{subject} is {kind} at row {k}, with the least eigenvalue {values[k, 0]:.3g}; it must be positive"
+            f"{subject} is {kind} at row {k}, with the least eigenvalue {values[k, 0]:.3g}; it must be"
+            " positive"
             " definite, the inverse of a covariance"
         )
     return np.ascontiguousarray(array)

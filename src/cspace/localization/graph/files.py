@@ -116,7 +116,9 @@ class Draft:
     def quaternion_pose(self, line: int, values: list[float]) -> Array:
         """The numbers t and the quaternion x, y, z, w of any length but zero."""
         if not any(values[3:]):
-            raise self.lines.error(line, "the quaternion is zero and gives no direction; the identity is 0 0 0 1")
+            raise self.lines.error(
+                line, "the quaternion is zero and gives no direction; the identity is 0 0 0 1"
+            )
         return np.array(values)
 
     def pair(self, line: int, words: list[str]) -> tuple[int, int]:
@@ -363,8 +365,10 @@ def finish_draft(cls: type[Graph], draft: Draft) -> Graph:
             points=np.array([each.point for each in draft.seen]).reshape(-1, d),
             point_information=stack_information(draft, draft.seen, d),
             ranged=np.array([each.ranged for each in draft.seen], bool),
-            fixed=[row[name] for name in draft.fixed if name in row] or [0],  # type: ignore[arg-type]
-            fixed_landmarks=[landmark_row[name] for name in draft.fixed if name in landmark_row],  # type: ignore[arg-type]
+            fixed=np.array([row[name] for name in draft.fixed if name in row] or [0], np.intp),
+            fixed_landmarks=np.array(
+                [landmark_row[name] for name in draft.fixed if name in landmark_row], np.intp
+            ),
             ids=np.array(ids, np.int64),
             landmark_ids=np.array(landmark_ids, np.int64),
             start_given=start_given,
@@ -375,7 +379,9 @@ def finish_draft(cls: type[Graph], draft: Draft) -> Graph:
 
 
 def make_poses(rows: list[Array]) -> Array:
-    """Poses (k, 3) or (k, 4, 4) of rows x, y, θ; of x, y, z and three angles; or of x, y, z and a quaternion."""
+    """Poses (k, 3) or (k, 4, 4) of rows x, y, θ; of x, y, z and three angles; or of x, y, z and a
+    quaternion.
+    """
     if not rows:
         return np.zeros((0, 3))
     widths = {len(row) for row in rows}
@@ -396,7 +402,9 @@ def normalize_rows(rows: Array) -> Array:
 
 
 def stack_information(draft: Draft, measured: Sequence[Edge | Seen], size: int) -> Array:
-    """The information matrices of measurements (k, size, size); an error with the line of the first bad one."""
+    """The information matrices of measurements (k, size, size); an error with the line of the first bad
+    one.
+    """
     given = np.array([each.information for each in measured]).reshape(-1, size, size)
     values = np.linalg.eigvalsh(given)
     bad = np.flatnonzero(~(values[:, 0] > SINGULAR_INFORMATION * values[:, -1]))
@@ -406,13 +414,16 @@ def stack_information(draft: Draft, measured: Sequence[Edge | Seen], size: int) 
         kind = "singular" if least >= -SINGULAR_INFORMATION * abs(largest) else "negative"
         raise draft.lines.error(
             measured[bad[0]].line,
-            f"the {what} matrix is {kind}, with the least eigenvalue {least:.3g}; it must be positive definite",
+            f"the {what} matrix is {kind}, with the least eigenvalue {least:.3g}; it must be positive"
+            " definite",
         )
     return np.linalg.inv(given) if draft.covariances else given
 
 
 def add_missing_variables(draft: Draft) -> None:
-    """Files without any vertices leave them to be computed; in others an edge may name none that is missing."""
+    """Files without any vertices leave them to be computed; in others an edge may name none that is
+    missing.
+    """
     lines, has_poses, has_landmarks = draft.lines, bool(draft.poses), bool(draft.landmarks)
     spatial = any(edge.motion.shape != (3,) for edge in draft.edges)
     no_pose, no_point = (np.zeros(6), np.zeros(3)) if spatial else (np.zeros(3), np.zeros(2))

@@ -30,19 +30,19 @@ def check_writable(graph: GraphArrays) -> None:
         raise InputError(
             f"id {shared[0]} names a pose and a landmark; g2o numbers both together: change landmark_ids"
         )
-    if (np.concatenate([graph.ids, graph.landmark_ids]) < 0).any():  # type: ignore[arg-type]
+    if (np.concatenate([graph.ids, graph.landmark_ids]) < 0).any():
         raise InputError("ids has a negative number; g2o numbers vertices from 0")
-    ranges = np.flatnonzero(graph.ranged & graph.measured[:, 0]) if graph.dimension == 2 else []
+    ranges = np.flatnonzero(graph.ranged & graph.measured[:, 0])
     if len(ranges):
         raise InputError(
-            f"sighting {ranges[0]} is a range; g2o has records for points and bearings alone: give points (x, y)"
+            f"sighting {ranges[0]} is a range; g2o has records for points and bearings alone: give"
+            " points (x, y)"
             " instead of ranges"
         )
 
 
 def list_lines(graph: GraphArrays) -> Iterator[str]:
     """The records: vertices, what is fixed, edges, sightings."""
-    assert graph.ids is not None and graph.landmark_ids is not None
     kind = "SE3:QUAT" if graph.is_spatial else "SE2"
     for name, row in zip(graph.ids, flatten_poses(graph.poses), strict=True):
         yield f"VERTEX_{kind} {name} {join_numbers(row)}"
@@ -62,7 +62,6 @@ def list_lines(graph: GraphArrays) -> Iterator[str]:
 
 def list_sightings(graph: GraphArrays) -> Iterator[str]:
     """The records of the sightings."""
-    assert graph.ids is not None and graph.landmark_ids is not None and graph.ranged is not None
     upper = np.triu_indices(graph.dimension)
     for k, (row, landmark) in enumerate(graph.sightings):
         ends = f"{graph.ids[row]} {graph.landmark_ids[landmark]}"

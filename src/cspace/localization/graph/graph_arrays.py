@@ -32,20 +32,20 @@ Graph = TypeVar("Graph", bound="GraphArrays")
 class GraphArrays:
     """The data of a pose graph in the plane or in space; its arrays cannot be changed.
 
-    poses: the start, rows x, y, θ (n, 3) [m, rad], or matrices (n, 4, 4). edges (k, 2): rows i, j of the poses
-    between which the relative pose Xᵢ⁻¹Xⱼ was measured. motions (k, 3) or (k, 4, 4): that relative pose.
-    information (k, 3, 3) or (k, 6, 6): the inverse covariance of its error, a twist [v; ω] in the frame of pose
-    j; one matrix serves all.
+    poses: the start, rows x, y, θ (n, 3) [m, rad], or matrices (n, 4, 4). edges (k, 2): rows i, j of the
+    poses between which the relative pose Xᵢ⁻¹Xⱼ was measured. motions (k, 3) or (k, 4, 4): that relative
+    pose. information (k, 3, 3) or (k, 6, 6): the inverse covariance of its error, a twist [v; ω] in the
+    frame of pose j; one matrix serves all.
 
-    landmarks (m, 2) or (m, 3): the start of the landmarks. sightings (s, 2): rows of the pose and of the landmark
-    that it saw. points (s, 2) or (s, 3): the landmark in the frame of the pose [m], or in the plane range [m] and
-    bearing [rad] where `ranged` (s,) is true, NaN for one that was not measured. point_information (s, 2, 2) or
-    (s, 3, 3): the inverse covariance.
+    landmarks (m, 2) or (m, 3): the start of the landmarks. sightings (s, 2): rows of the pose and of the
+    landmark that it saw. points (s, 2) or (s, 3): the landmark in the frame of the pose [m], or in the
+    plane range [m] and bearing [rad] where `ranged` (s,) is true, NaN for one that was not measured.
+    point_information (s, 2, 2) or (s, 3, 3): the inverse covariance.
 
-    fixed, fixed_landmarks: rows that stay where they are; the first pose by default. ids (n,), landmark_ids (m,):
-    the names of a file. start_given: whether the poses are more than placeholders. notes: what a reader left out.
-    Raises InputError for arrays
-    that do not fit together, edges from a pose to itself, and information that is not positive definite.
+    fixed, fixed_landmarks: rows that stay where they are; the first pose by default. ids (n,), landmark_ids
+    (m,): the names of a file. start_given: whether the poses are more than placeholders. notes: what a
+    reader left out. Raises InputError for arrays that do not fit together, edges from a pose to itself, and
+    information that is not positive definite.
     """
 
     poses: Array
@@ -56,11 +56,11 @@ class GraphArrays:
     sightings: Rows = field(default_factory=lambda: np.zeros((0, 2), np.int32))
     points: Array = field(default_factory=lambda: np.zeros((0, 0)))
     point_information: Array = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    ranged: Mask | None = None
-    fixed: npt.NDArray[np.intp] | tuple[int, ...] = (0,)
-    fixed_landmarks: npt.NDArray[np.intp] | tuple[int, ...] = ()
-    ids: Ids | None = None
-    landmark_ids: Ids | None = None
+    ranged: Mask = field(default_factory=lambda: np.zeros(0, bool))
+    fixed: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(1, np.intp))
+    fixed_landmarks: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
+    ids: Ids = field(default_factory=lambda: np.zeros(0, np.int64))
+    landmark_ids: Ids = field(default_factory=lambda: np.zeros(0, np.int64))
     start_given: bool = True
     notes: tuple[str, ...] = ()
 
@@ -81,10 +81,9 @@ class GraphArrays:
         self._read_sightings()
         self._set("fixed", read_rows(self.fixed, "fixed", n))
         self._set("fixed_landmarks", read_rows(self.fixed_landmarks, "fixed_landmarks", len(self.landmarks)))
-        self._set("ids", read_ids(np.arange(n) if self.ids is None else self.ids, "ids", n))
-        m, first = len(self.landmarks), int(self.ids.max()) + 1  # type: ignore[union-attr]
-        given = self.landmark_ids is not None and np.size(self.landmark_ids)
-        names = self.landmark_ids if given else np.arange(first, first + m)
+        self._set("ids", read_ids(self.ids if np.size(self.ids) else np.arange(n), "ids", n))
+        m, first = len(self.landmarks), int(self.ids.max()) + 1
+        names = self.landmark_ids if np.size(self.landmark_ids) else np.arange(first, first + m)
         self._set("landmark_ids", read_ids(names, "landmark_ids", m))
 
     def _set(self, name: str, array: Any) -> None:
@@ -112,7 +111,7 @@ class GraphArrays:
         if points.shape != (len(rows), d):
             raise InputError(f"points has shape {points.shape}, expected {(len(rows), d)}: one per sighting")
         ranged = np.zeros(len(rows), bool)
-        if self.ranged is not None and np.size(self.ranged):
+        if np.size(self.ranged):
             ranged = np.array(self.ranged, dtype=bool)
         if ranged.shape != (len(rows),):
             raise InputError(f"ranged has shape {ranged.shape}, expected ({len(rows)},): one per sighting")
@@ -133,13 +132,15 @@ class GraphArrays:
         )
         if len(bad):
             raise InputError(
-                f"points holds {points[bad[0]]} at row {bad[0]}; all must be finite, and NaN stands only for a"
+                f"points holds {points[bad[0]]} at row {bad[0]}; all must be finite, and NaN stands"
+                " only for a"
                 " range or a bearing that was not measured"
             )
         bearings = points[ranged & ~missing[:, -1], -1] if len(points) else np.zeros(0)
         if len(bearings) and (np.abs(bearings) > 2 * np.pi).all():
             raise InputError(
-                f"the bearing of the first ranged sighting is {bearings[0]:g} and all others lie beyond ±2π too;"
+                f"the bearing of the first ranged sighting is {bearings[0]:g} and all others lie"
+                " beyond ±2π too;"
                 " give radians"
             )
 
@@ -177,14 +178,15 @@ class GraphArrays:
         """Which edges join neighbouring rows, as odometry does: (k,)."""
         return np.asarray(np.abs(self.edges[:, 1] - self.edges[:, 0]) == 1)
 
-    def with_poses(self: Graph, poses: npt.ArrayLike, landmarks: npt.ArrayLike | None = None) -> Graph:
+    def with_poses(self: Graph, poses: Any, landmarks: Any = None) -> Graph:
         """The graph with another start: poses (n, 3) or (n, 4, 4), and landmarks (m, 2) or (m, 3)."""
         changed = replace(
             self, poses=poses, landmarks=self.landmarks if landmarks is None else landmarks, start_given=True
         )
         if changed.poses.shape != self.poses.shape or changed.landmarks.shape != self.landmarks.shape:
             raise InputError(
-                f"poses has shape {changed.poses.shape} and landmarks {changed.landmarks.shape}; the graph has"
+                f"poses has shape {changed.poses.shape} and landmarks {changed.landmarks.shape}; the"
+                " graph has"
                 f" {self.poses.shape} and {self.landmarks.shape}"
             )
         return changed
@@ -192,5 +194,6 @@ class GraphArrays:
     def __repr__(self) -> str:
         text = f"{count_things(len(self.poses), 'pose')}, {count_things(len(self.edges), 'edge')}"
         if len(self.landmarks):
-            text += f", {count_things(len(self.landmarks), 'landmark')}, {count_things(len(self.sightings), 'sighting')}"
+            text += f", {count_things(len(self.landmarks), 'landmark')}"
+            text += f", {count_things(len(self.sightings), 'sighting')}"
         return one_line("PoseGraph", text + (" in space" if self.is_spatial else " in the plane"))

@@ -30,7 +30,9 @@ WIDTHS: Final = {
     "tukey": 4.6851,
     "dcs": 1.0,
 }
-"""Widths of the kernels [standard deviations]: 95 % efficient on Gaussian errors (Zhang 1997); φ = 1 of DCS."""
+"""Widths of the kernels [standard deviations]: 95 % efficient on Gaussian errors (Zhang 1997); φ = 1 of
+DCS.
+"""
 MOST_ITERATIONS: Final = 1_000_000
 STATUSES: Final = ("converged", "stopped", "singular")
 """The answers of the core, by number."""
@@ -89,7 +91,8 @@ def optimize_graph(graph: GraphArrays, given: Request) -> GraphAnswer:
     check_parts(graph)
     if request.start == "given" and not graph.start_given:
         raise InputError(
-            'start is "given", and the file of the graph has no poses; use "rotations" or "odometry", or with_poses'
+            'start is "given", and the file of the graph has no poses; use "rotations" or "odometry",'
+            " or with_poses"
         )
     is_trusted = read_trusted(graph, request.trusted)
     solver = make_solver(graph, is_trusted)
@@ -108,7 +111,8 @@ def check_parts(graph: GraphArrays) -> None:
     names = [name_variable(graph, at) for at in loose[:SHOWN_PARTS]]
     more = f" and {len(loose) - SHOWN_PARTS} more" if len(loose) > SHOWN_PARTS else ""
     raise InputError(
-        f"the graph has {len(parts)} parts, and nothing is fixed in that of {join_words(names)}{more}; fix a pose of"
+        f"the graph has {len(parts)} parts, and nothing is fixed in that of {join_words(names)}{more};"
+        " fix a pose of"
         " each part (fixed=), or leave the part out"
     )
 
@@ -116,7 +120,7 @@ def check_parts(graph: GraphArrays) -> None:
 def name_variable(graph: GraphArrays, at: int) -> str:
     """A pose, or behind all poses a landmark, by its id."""
     n = len(graph.poses)
-    return f"pose {graph.ids[at]}" if at < n else f"landmark {graph.landmark_ids[at - n]}"  # type: ignore[index]
+    return f"pose {graph.ids[at]}" if at < n else f"landmark {graph.landmark_ids[at - n]}"
 
 
 def read_trusted(graph: GraphArrays, value: Any) -> Mask:
@@ -126,7 +130,8 @@ def read_trusted(graph: GraphArrays, value: Any) -> Mask:
     mask = np.asarray(value)
     if mask.dtype != bool or mask.shape != (len(graph.edges),):
         raise InputError(
-            f"trusted has shape {mask.shape} of {mask.dtype}, expected ({len(graph.edges)},) of bool: one per edge"
+            f"trusted has shape {mask.shape} of {mask.dtype}, expected ({len(graph.edges)},) of bool:"
+            " one per edge"
         )
     return mask
 

@@ -19,20 +19,20 @@ from cspace.localization.graph.optimize import Request, optimize_graph
 class PoseGraph(GraphArrays):
     """A pose graph in the plane or in space; its arrays cannot be changed.
 
-    poses: the start, rows x, y, θ (n, 3) [m, rad], or matrices (n, 4, 4). edges (k, 2): rows i, j of the poses
-    between which the relative pose Xᵢ⁻¹Xⱼ was measured. motions (k, 3) or (k, 4, 4): that relative pose.
-    information (k, 3, 3) or (k, 6, 6): the inverse covariance of its error, a twist [v; ω] in the frame of pose
-    j; one matrix serves all.
+    poses: the start, rows x, y, θ (n, 3) [m, rad], or matrices (n, 4, 4). edges (k, 2): rows i, j of the
+    poses between which the relative pose Xᵢ⁻¹Xⱼ was measured. motions (k, 3) or (k, 4, 4): that relative
+    pose. information (k, 3, 3) or (k, 6, 6): the inverse covariance of its error, a twist [v; ω] in the
+    frame of pose j; one matrix serves all.
 
-    landmarks (m, 2) or (m, 3): the start of the landmarks. sightings (s, 2): rows of the pose and of the landmark
-    that it saw. points (s, 2) or (s, 3): the landmark in the frame of the pose [m], or in the plane range [m] and
-    bearing [rad] where `ranged` (s,) is true, NaN for one that was not measured. point_information (s, 2, 2) or
-    (s, 3, 3): the inverse covariance.
+    landmarks (m, 2) or (m, 3): the start of the landmarks. sightings (s, 2): rows of the pose and of the
+    landmark that it saw. points (s, 2) or (s, 3): the landmark in the frame of the pose [m], or in the
+    plane range [m] and bearing [rad] where `ranged` (s,) is true, NaN for one that was not measured.
+    point_information (s, 2, 2) or (s, 3, 3): the inverse covariance.
 
-    fixed, fixed_landmarks: rows that stay where they are; the first pose by default. ids (n,), landmark_ids (m,):
-    the names of a file. start_given: whether the poses are more than placeholders. notes: what a reader left out.
-    Raises InputError for arrays
-    that do not fit together, edges from a pose to itself, and information that is not positive definite.
+    fixed, fixed_landmarks: rows that stay where they are; the first pose by default. ids (n,), landmark_ids
+    (m,): the names of a file. start_given: whether the poses are more than placeholders. notes: what a
+    reader left out. Raises InputError for arrays that do not fit together, edges from a pose to itself, and
+    information that is not positive definite.
     """
 
     def optimize(
@@ -50,13 +50,14 @@ class PoseGraph(GraphArrays):
     ) -> GraphAnswer:
         """The poses and landmarks of least χ² = Σ eᵀWe, with e = log(Z⁻¹ Xᵢ⁻¹ Xⱼ) for relative poses.
 
-        start: "rotations" solves linear problems for the rotations and then the positions (Carlone et al. 2015);
-        "odometry" composes the trusted edges; "given" begins at the poses of the graph. By default "rotations",
-        and "odometry" with robust=. method: "gauss_newton" with safeguards, "levenberg_marquardt" or "dog_leg".
-        residual: "twist", or "g2o" for χ² as g2o counts it. robust: finds and rejects false measurements, by
-        "dcs" (Agarwal et al. 2013), "gnc" (Yang et al. 2020), or "best" of both. kernel: weighs instead of rejecting:
-        "huber", "cauchy", "geman_mcclure", "tukey" or "dcs"; width: its scale [standard deviations]. trusted (k,):
-        edges that are never doubted; by default those between neighbouring rows. time_limit [s].
+        start: "rotations" solves linear problems for the rotations and then the positions (Carlone et al.
+        2015); "odometry" composes the trusted edges; "given" begins at the poses of the graph. By default
+        "rotations", and "odometry" with robust=. method: "gauss_newton" with safeguards,
+        "levenberg_marquardt" or "dog_leg". residual: "twist", or "g2o" for χ² as g2o counts it. robust:
+        finds and rejects false measurements, by "dcs" (Agarwal et al. 2013), "gnc" (Yang et al. 2020), or
+        "best" of both. kernel: weighs instead of rejecting: "huber", "cauchy", "geman_mcclure", "tukey" or
+        "dcs"; width: its scale [standard deviations]. trusted (k,): edges that are never doubted; by
+        default those between neighbouring rows. time_limit [s].
 
         The answer keeps the best state found. Raises InputError for a part of the graph with nothing fixed.
         """
@@ -77,5 +78,5 @@ class PoseGraph(GraphArrays):
         return cls.read(path, format="g2o")
 
     def to_g2o(self, path: str | os.PathLike[str]) -> None:
-        """Write the graph as a g2o file, complete or not at all. InputError for what g2o has no record for."""
+        """Write the graph as a g2o file, complete or not at all; InputError for what g2o cannot say."""
         write_g2o(self, path)
