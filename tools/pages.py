@@ -27,6 +27,8 @@ COURSE += (
     "navigation",
     "planners",
     "cars",
+    "mobile",
+    "localization",
 )
 COURSE += ("plot", "cli", "cpp")
 """The pages of the rooms, in the order in which they build on each other."""

@@ -34,8 +34,9 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.localization import PoseGraph
+    from cspace.localization import PoseGraph, localize, read_log
     from cspace.maps import OccupancyGrid, PolygonWorld
+    from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
     from cspace.model import Limits
     from cspace.navigation.navigate import navigate
     from cspace.plan_motion import plan, plan_many
@@ -74,6 +75,7 @@ __all__ = [
     "kinematics",
     "load_robot",
     "localization",
+    "localize",
     "maps",
     "mobile",
     "model",
@@ -82,9 +84,11 @@ __all__ = [
     "plan",
     "plan_many",
     "planning",
+    "read_log",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
+__all__ += ["Car", "DifferentialDrive", "Mecanum", "Omni", "Tracked", "Unicycle"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
     __all__ += spatial.__all__
@@ -96,15 +100,19 @@ _OWN: list[str] = globals().pop("__all__")
 _LATER = {
     "Box": "cspace.shapes",
     "Capsule": "cspace.shapes",
+    "Car": "cspace.mobile",
     "CenterOfMassTask": "cspace.ik",
     "Cylinder": "cspace.shapes",
+    "DifferentialDrive": "cspace.mobile",
     "DirectionTask": "cspace.ik",
     "HalfSpace": "cspace.shapes",
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
     "Limits": "cspace.model",
+    "Mecanum": "cspace.mobile",
     "Mesh": "cspace.shapes",
     "OccupancyGrid": "cspace.maps",
+    "Omni": "cspace.mobile",
     "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
     "PoseGraph": "cspace.localization",
@@ -114,6 +122,8 @@ _LATER = {
     "Robot": "cspace.robot",
     "Scene": "cspace.collision",
     "Sphere": "cspace.shapes",
+    "Tracked": "cspace.mobile",
+    "Unicycle": "cspace.mobile",
     "__version__": "cspace._core",
     "collision": "",
     "configuration_space": "cspace.planning",
@@ -123,6 +133,7 @@ _LATER = {
     "kinematics": "",
     "load_robot": "cspace.robots",
     "localization": "",
+    "localize": "cspace.localization",
     "maps": "",
     "mobile": "",
     "model": "",
@@ -132,6 +143,7 @@ _LATER = {
     "plan_many": "cspace.plan_motion",
     "planning": "",
     "plot": "",
+    "read_log": "cspace.localization",
     "robots": "",
     "shapes": "",
     "spatial": "",

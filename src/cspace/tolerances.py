@@ -553,7 +553,8 @@ LOST_MOTION: Final = 1e-12
 1e-16, and of the root, as a singular value, 1e-6 is nearly singular."""
 
 SIDE_SLIP: Final = 1e-9
-"""Part of a twist [m/s or rad/s] that may lie outside of what wheels allow, and of a wheel matrix that may miss a
+"""Part of a twist [m/s or rad/s] that may lie outside of what wheels allow, and of a wheel matrix that may
+miss a
 direction: rounding is far below, and a slide that was meant far above."""
 
 SHORT_STEP: Final = 0.01
@@ -564,7 +565,24 @@ LOG_BYTES: Final = 1 << 30
 """Largest log that is read, after decompression: a day of a laser scanner; the numbers take as much again."""
 
 LEVEL_TILT: Final = 1e-3
-"""Tilt [rad] up to which a pose of space counts as planar: rounding of quaternions printed with four digits."""
+"""Tilt [rad] up to which a pose of space counts as planar: rounding of quaternions printed with four
+digits."""
+
+CLOSEST_LANDMARK: Final = 1e-3
+"""Distance of a landmark [m] below which its bearing has the derivative that it has there: nearer than any
+sensor sees, the derivative grows without bound."""
+
+ITERATED_STEP: Final = 1e-10
+"""Step [m, rad] at which an iterated filter has converged: far below what any sensor resolves."""
+
+KNOWN_EXACTLY: Final = 1e-14
+"""Ratio of eigenvalues of a covariance below which a direction counts as known exactly: a smoother learns
+nothing
+about it, and rounding fills it."""
+
+COVARIANCE_SYMMETRY: Final = 1e-9
+"""Part of its largest entry by which a covariance may miss symmetry, or fall below zero: rounding of
+products."""
 
 SYMMETRIC_INFORMATION: Final = 1e-9
 """Difference of the halves of an information matrix, relative to its largest entry, that is rounding: files print

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
+from cspace.errors import InputError
 from spatial.draws import ANGLES, BATCHES, close, poses, rotvecs, twists
 
 
@@ -126,6 +127,24 @@ def test_the_adjoint_of_the_plane_is_that_of_space_restricted():
     kept = np.ix_(range(5), [0, 1, 5], [0, 1, 5])
     close(cs.adjoint_2d(T), cs.adjoint(cs.embed_pose_2d(T))[kept])
     close(cs.adjoint_2d(T @ T), cs.adjoint_2d(T) @ cs.adjoint_2d(T))
+
+
+def test_the_jacobians_of_the_plane_are_those_of_space_restricted():
+    pairs = [
+        (cs.left_jacobian_se2, cs.left_jacobian_se3),
+        (cs.right_jacobian_se2, cs.right_jacobian_se3),
+        (cs.left_jacobian_inv_se2, cs.left_jacobian_inv_se3),
+        (cs.right_jacobian_inv_se2, cs.right_jacobian_inv_se3),
+    ]
+    kept = np.ix_(range(7), [0, 1, 5], [0, 1, 5])
+    for kind in ("any", "zero", "1e-5", "1e-9"):
+        xi = planar_twists(kind, (7,))
+        embedded = np.zeros((7, 6))
+        embedded[:, [0, 1, 5]] = xi
+        for planar, spatial in pairs:
+            close(planar(xi), spatial(embedded)[kept], atol=1e-10)
+    with pytest.raises(InputError, match="no inverse"):
+        cs.left_jacobian_inv_se2([1.0, 0.0, 2 * np.pi])
 
 
 def test_the_small_adjoint_is_the_bracket_and_the_logarithm_of_the_adjoint():

@@ -27,7 +27,7 @@ class Readings:
 
     times (k,) [s], increasing. landmark (k,): the name of the landmark, or −1 where it is unknown. range (k,)
     [m]. bearing (k,) [rad], in the frame of the sensor, counter-clockwise from its x axis. Raises InputError
-    for rows with neither, ranges below zero, and bearings that are all beyond a whole turn (degrees).
+    for rows with neither, ranges below zero, and bearings that are all beyond ±2π (degrees).
     """
 
     times: Array
@@ -55,7 +55,7 @@ class Readings:
         measured = self.bearing[~np.isnan(self.bearing)]
         if len(measured) and (np.abs(measured) > 2 * np.pi).all():
             raise InputError(
-                f"bearing is {measured[0]:g} and all others lie beyond ±2π too; give radians, np.radians(bearing)"
+                f"bearing is {measured[0]:g} and all lie beyond ±2π; give radians, np.radians(bearing)"
             )
 
     def __len__(self) -> int:
@@ -80,8 +80,8 @@ class Readings:
 class Landmarks:
     """A map of points with names.
 
-    names (m,), whole numbers from 0, each once. points (m, 2): x, y [m] in map. covariances (m, 2, 2) of the points [m²], or None for
-    points known exactly.
+    names (m,), whole numbers from 0, each once. points (m, 2): x, y [m] in map. covariances (m, 2, 2) of the
+    points [m²], or None for points known exactly.
     """
 
     names: Ids

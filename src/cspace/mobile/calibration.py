@@ -1,4 +1,5 @@
-"""Systematic errors of odometry, from a log with reference poses: scale of distance and turn, drift, wheels."""
+"""Systematic errors of odometry, from a log with reference poses: scale of distance and turn, drift,
+wheels."""
 
 from __future__ import annotations
 
@@ -61,9 +62,9 @@ def calibrate(
 
     Over windows of the log: Δθ = k_r Σω dt + k_m Σvx dt, then Δx = k_d Σ R(θ) v dt with the headings found,
     both linear least squares. part: the share of the log that is used, from its start; the rest tests the
-    result. window: length of the stretches [s]; unless given, that of WINDOWS whose result, fitted to the first
-    half of that share, drifts least over its second half. max_gap: longest gap of the reference to interpolate
-    in [s].
+    result. window: length of the stretches [s]; unless given, that of WINDOWS whose result, fitted to the
+    first half of that share, drifts least over its second half. max_gap: longest gap of the reference to
+    interpolate in [s].
     The covariance is that of ordinary least squares. Raises InputError where the two have too little time in
     common, or the robot neither drove nor turned.
     """
@@ -90,11 +91,13 @@ def calibrate(
 
 
 WINDOWS: Final = (5.0, 10.0, 20.0, 40.0)
-"""Lengths of stretches [s] that are tried: short ones are many, in long ones stamps that jitter weigh less."""
+"""Lengths of stretches [s] that are tried: short ones are many, in long ones stamps that jitter weigh
+less."""
 
 
 def choose_window(odometry: Odometry, reference: TimedPoses, share: float, max_gap: float) -> float:
-    """The window of WINDOWS whose factors, fitted to a share of the log, drift least over as much after it."""
+    """The window of WINDOWS whose factors, fitted to a share of the log, drift least over as much after
+    it."""
     best, chosen = np.inf, WINDOWS[0]
     for window in WINDOWS:
         rows, poses = cut_windows(odometry, reference, window, max_gap)
@@ -138,7 +141,8 @@ def correct_odometry(odometry: Odometry, factors: tuple[float, float, float]) ->
 def cut_windows(
     odometry: Odometry, reference: TimedPoses, window: float, max_gap: float
 ) -> tuple[Rows, Array]:
-    """Rows of odometry about `window` apart where the reference is known, and the reference at all rows (n, 3)."""
+    """Rows of odometry about `window` apart where the reference is known, and the reference at all rows (n,
+    3)."""
     poses = reference.at(odometry.times, max_gap=max_gap)
     known = np.flatnonzero(np.isfinite(poses[:, 0]))
     if not len(known):
@@ -171,7 +175,7 @@ def solve_least_squares(A: Array, b: Array, what: str) -> tuple[Array, Array]:
     x = np.linalg.lstsq(A, b, rcond=None)[0]
     rest = b - A @ x
     spread = float(rest @ rest) / max(len(b) - A.shape[1], 1)
-    return x, spread * np.linalg.inv(A.T @ A)
+    return np.asarray(x, dtype=np.float64), spread * np.linalg.inv(A.T @ A)
 
 
 def sum_windows(values: Array, rows: Rows) -> Array:
@@ -193,7 +197,8 @@ def relative_increments(poses: Array) -> Array:
 
 
 def measure_drift(odometry: Odometry, rows: Rows, poses: Array) -> float:
-    """RMSE of positions [m] of dead reckoning at rows, after the best turn and shift of it; NaN for fewer than
+    """RMSE of positions [m] of dead reckoning at rows, after the best turn and shift of it; NaN for fewer
+    than
     two."""
     if len(rows) < 2:
         return float("nan")
@@ -280,8 +285,8 @@ def calibrate_wheels(
 
     times (n,) [s]. wheels (n − 1, 2): turns of the left and the right wheel in each step [rad], such as
     wheel_angles makes from ticks. First Δθ = a Σw_l + b Σw_r, with a = −r_l/track and b = r_r/track, then the
-    positions are linear in the track. Raises InputError where the drive does not determine them. Source: Censi
-    et al. 2013.
+    positions are linear in the track. Raises InputError where the drive does not determine them. Source:
+    Censi et al. 2013.
     """
     turns = np.asarray(wheels, dtype=np.float64)
     unit = Odometry(np.asarray(times, dtype=np.float64), np.column_stack([turns, np.zeros(len(turns))]))

@@ -93,7 +93,7 @@ class VelocityNoise:
     Burgard & Fox 2005, Table 5.3.
     """
 
-    alpha: tuple[float, ...] = (0.02, 0.005, 0.01, 0.02, 0.001, 0.001)
+    alpha: tuple[float, ...] = (0.02, 0.005, 0.01, 0.02, 0.002, 0.002)
 
     def __post_init__(self) -> None:
         read_alphas(self, 6)
@@ -135,7 +135,8 @@ class VelocityNoise:
 
 @dataclass(frozen=True)
 class OdometryNoise:
-    """The odometry model of Thrun, in variances: a step is a turn, a straight line and a turn, each with noise.
+    """The odometry model of Thrun, in variances: a step is a turn, a straight line and a turn, each with
+    noise.
 
     Variances: α1 rot1² + α2 trans² of rot1, α3 trans² + α4 (rot1² + rot2²) of trans, α1 rot2² + α2 trans² of
     rot2. alpha (4,). The noise depends on the step as that of VelocityNoise does. A step backwards turns by

@@ -53,7 +53,8 @@ class Odometry:
     def from_twists(cls, times: npt.ArrayLike, twists: npt.ArrayLike) -> Odometry:
         """Odometry from body twists, each valid from its time to the next.
 
-        times (n,) [s]. twists [vx, vy, ω] (n, 3), of which the last has no duration, or (n − 1, 3) [m/s, rad/s].
+        times (n,) [s]. twists [vx, vy, ω] (n, 3), of which the last has no duration, or (n − 1, 3) [m/s,
+        rad/s].
         """
         checked = read_times(times)
         rows = one_array(twists, "twists", (None, 3))
@@ -161,7 +162,8 @@ class Odometry:
         return Odometry(self.times[keep], self.steps[keep[0] : keep[-1]])
 
     def corrected(self, *, distance: float = 1.0, turn: float = 1.0, drift: float = 0.0) -> Odometry:
-        """The odometry with systematic errors taken out: vx and vy times `distance`, ω times `turn`, plus `drift`
+        """The odometry with systematic errors taken out: vx and vy times `distance`, ω times `turn`, plus
+        `drift`
         [rad/m] for each metre forwards, as cspace.mobile.calibrate finds them."""
         k_d, k_r, k_m = (
             one_number(value, name)
@@ -176,7 +178,8 @@ def wheel_angles(ticks: npt.ArrayLike, *, per_turn: float, bits: int | None = No
     """The turns of wheels between rows of their tick counters, (n, k) → (n − 1, k) [rad].
 
     per_turn: ticks of one turn. bits: width of counters that wrap; differences are then taken in
-    [−2^(bits − 1), 2^(bits − 1)). Raises InputError for counters that are no whole numbers or beyond the width.
+    [−2^(bits − 1), 2^(bits − 1)). Raises InputError for counters that are no whole numbers or beyond the
+    width.
     """
     scale = 2.0 * np.pi / positive_number(per_turn, "per_turn")
     counts = np.asarray(ticks)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -74,13 +75,13 @@ def read_times(times: npt.ArrayLike, subject: str = "times") -> Array:
     if len(back):
         k = int(back[0]) + 1
         raise InputError(
-            f"{subject} runs backwards at row {k}, from {numbers[k - 1]:.9g} to {numbers[k]:.9g} s; sort the rows"
-            " by time, or mend the clock"
+            f"{subject} runs backwards at row {k}, from {numbers[k - 1]:.9g} to {numbers[k]:.9g} s; sort the"
+            " rows by time, or mend the clock"
         )
     return numbers
 
 
-def read_rows(values: npt.ArrayLike, subject: str, times: Array, last: tuple[int, ...]) -> Array:
+def read_rows(values: npt.ArrayLike, subject: str, times: npt.NDArray[Any], last: tuple[int, ...]) -> Array:
     """An array (n, *last) with a row per time; InputError where the numbers of rows differ."""
     rows = one_array(values, subject, (None, *last))
     if len(rows) != len(times):

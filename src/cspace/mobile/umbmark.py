@@ -47,9 +47,9 @@ def umbmark(
     corner. clockwise, counterclockwise: the true end of each run minus the end by odometry, (k, 2) [m].
     vehicle: the nominal drive. side: of the square [m].
 
-    α = −(y_cw − y_ccw)/4L turns too much by its excess at each corner, β = −(y_cw + y_ccw)/4L bends each side.
-    E_b = 90°/(90° − α), R = (L/2)/sin(β/2), E_d = (R + b/2)/(R − b/2); α and β are the means of these and of
-    the same from x. Source: Borenstein & Feng 1996, type A and type B errors.
+    α = −(y_cw − y_ccw)/4L turns too much by its excess at each corner, β = −(y_cw + y_ccw)/4L bends each
+    side. E_b = 90°/(90° − α), R = (L/2)/sin(β/2), E_d = (R + b/2)/(R − b/2); α and β are the means of these
+    and of the same from x. Source: Borenstein & Feng 1996, type A and type B errors.
     """
     length = positive_number(side, "side")
     cw, ccw = (

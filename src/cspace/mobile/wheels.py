@@ -132,8 +132,9 @@ class Omni(WheelBase):
     """Omnidirectional wheels on a circle: rows (−sin αᵢ, cos αᵢ, L)/r of J.
 
     wheel_radius [m]; angles αᵢ (k,) [rad], where the wheels are as seen from the centre, by default three,
-    evenly; distance L of the wheels from it [m]; max_wheel_speed [rad/s]. A wheel rolls tangentially, counter-
-    clockwise, and slides radially. Raises InputError for fewer than three wheels, or if all are on one line.
+    evenly; distance L of the wheels from it [m]; max_wheel_speed [rad/s]. A wheel rolls tangentially,
+    counter- clockwise, and slides radially. Raises InputError for fewer than three wheels, or if all are on
+    one line.
     """
 
     wheel_radius: float = 0.05

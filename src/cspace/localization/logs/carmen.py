@@ -45,8 +45,8 @@ def read_carmen(lines: Lines) -> Log:
     """A log of CARMEN; LogError for an unknown message, a line that is cut, or scans of changing size.
 
     FLASER has no angles: beam k of n lies at −90° + k 180°/n. In a corrected log an ODOM without a time
-    repeats the corrected pose of the scan before it, and the ODOM messages after it go on from there with the raw
-    increments: these are chained into the raw odometry, and the poses of the scans are the truth.
+    repeats the corrected pose of the scan before it, and the ODOM messages after it go on from there with
+    the raw increments: these are chained into the raw odometry, and the poses of the scans are the truth.
     """
     messages = Messages()
     for number, words in lines.rows():
@@ -168,4 +168,5 @@ def pack_scans(messages: Messages, scans: Array, times: Array, notes: list[str])
 
 
 MOUNT_SPREAD = 0.01
-"""By how much the pose of the laser on the robot may vary [m, rad]: the rounding of printed poses far away."""
+"""By how much the pose of the laser on the robot may vary [m, rad]: the rounding of printed poses far
+away."""

@@ -1,4 +1,5 @@
-"""Text files of numbers, plain or compressed: their lines, and rows of numbers with the line of each fault."""
+"""Text files of numbers, plain or compressed: their lines, and rows of numbers with the line of each
+fault."""
 
 from __future__ import annotations
 
@@ -64,7 +65,7 @@ def read_lines(path: str) -> Lines:
     """The lines of a file, decompressed where it is a gzip; LogError where it cannot be read."""
     data = read_regular(path, "log", tolerances.LOG_BYTES, LogError)
     if data.startswith(GZIP):
-        data = decompress(path, data)
+        data = unpack_gzip(path, data)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as fault:
@@ -73,7 +74,7 @@ def read_lines(path: str) -> Lines:
     return Lines(os.fspath(path), text.splitlines())
 
 
-def decompress(path: str, data: bytes) -> bytes:
+def unpack_gzip(path: str, data: bytes) -> bytes:
     """The content of a gzip file; LogError for one that is cut, damaged, or too large."""
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:

@@ -22,9 +22,9 @@ GRAPHS = ("VERTEX", "EDGE", "FIX")
 def read_log(path: str | os.PathLike[str], *, robot: int | None = None) -> Log:
     """The log of a robot: CARMEN, MRCLAM, Victoria Park or TUM, as the content says; files may be gzips.
 
-    path: a file, or for MRCLAM the folder, or a file of one robot in it. robot: which robot of an MRCLAM folder,
-    the first unless given. A log is read whole or not at all; `log.notes` says what was dropped or mended.
-    Raises LogError with file and line for anything else.
+    path: a file, or for MRCLAM the folder, or a file of one robot in it. robot: which robot of an MRCLAM
+    folder, the first unless given. A log is read whole or not at all; `log.notes` says what was dropped or
+    mended. Raises LogError with file and line for anything else.
     """
     name = path_of(path, "a log is given by its path")
     place = Path(name)

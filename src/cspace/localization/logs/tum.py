@@ -17,8 +17,8 @@ COLUMNS = 8
 def read_tum(lines: Lines) -> Log:
     """A trajectory as truth, with the odometry that a perfect robot would have measured.
 
-    Lines `time x y z qx qy qz qw`. Of poses of space x, y and the heading are read; heights and tilts are left
-    out and noted. LogError for a quaternion of zero, or times that run backwards.
+    Lines `time x y z qx qy qz qw`. Of poses of space x, y and the heading are read; heights and tilts are
+    left out and noted. LogError for a quaternion of zero, or times that run backwards.
     """
     rows = lines.table(COLUMNS, "time, x, y, z, qx, qy, qz, qw")
     lengths = np.linalg.norm(rows[:, 4:], axis=1)

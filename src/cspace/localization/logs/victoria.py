@@ -10,7 +10,8 @@ from cspace.mobile import Odometry
 
 
 def read_victoria(lines: Lines) -> Log:
-    """Odometry and readings of trees; LogError for a line that is cut, or poses that do not follow each other.
+    """Odometry and readings of trees; LogError for a line that is cut, or poses that do not follow each
+    other.
 
     ODOMETRY i j x y θ and the covariance xx xy xθ yy yθ θθ; LANDMARK i l x y and xx xy yy, in base. The lines
     have no times: pose k of the drive is given the time k [s]. Landmarks share their numbering with poses.

@@ -1,0 +1,88 @@
+"""Draws the figures of the pages on odometry and localisation: `python docs/figures/localization.py`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.patches import Ellipse
+
+import cspace as cs
+from cspace.localization import Landmarks, RangeBearing, simulate
+from cspace.mobile import Odometry, OdometryNoise, RandomWalk, VelocityNoise
+
+HERE = Path(__file__).parent
+DPI = 80
+INK, FAINT, BLUE, RED, GREEN = "#222222", "#bbbbbb", "#1f6fb2", "#c8442f", "#3a8f4d"
+
+
+def draw_noise() -> None:
+    """Clouds of 400 robots after the same drive, by each model."""
+    n, count = 40, 400
+    twist = np.array([1.0, 0.0, 0.25])
+    steps = np.tile(twist * 0.1, (n, 1))
+    models = {"RandomWalk": RandomWalk(), "VelocityNoise": VelocityNoise(), "OdometryNoise": OdometryNoise()}
+    figure, axes = plt.subplots(1, 3, figsize=(10, 3.2), sharex=True, sharey=True)
+    for ax, (name, model) in zip(axes, models.items(), strict=True):
+        drawn = model.sample(np.tile(steps[:, None], (1, count, 1)), 0.1, rng=1)
+        T = np.tile(np.eye(3), (count, 1, 1))
+        for k, xi in enumerate(drawn):
+            T = T @ cs.exp_se2(xi)
+            if k % 13 == 12:
+                ax.plot(T[:, 0, 2], T[:, 1, 2], ".", ms=2, color=BLUE, alpha=0.5)
+        path = Odometry(np.arange(n + 1) * 0.1, steps).dead_reckoning().poses
+        ax.plot(path[:, 0], path[:, 1], color=INK, lw=1.2)
+        ax.set_title(name, fontsize=10, color=INK)
+        ax.set_aspect("equal")
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.set_xlabel("x [m]")
+    axes[0].set_ylabel("y [m]")
+    figure.tight_layout()
+    figure.savefig(HERE / "motion_noise.png", dpi=DPI, bbox_inches="tight")
+    plt.close(figure)
+
+
+def add_ellipse(ax, pose, P, color) -> None:
+    """The 95 % ellipse of a position, of a covariance in axes of the map."""
+    values, vectors = np.linalg.eigh(P[:2, :2])
+    width, height = 2 * np.sqrt(5.991 * values[::-1])
+    angle = np.degrees(np.arctan2(vectors[1, 1], vectors[0, 1]))
+    ax.add_patch(Ellipse(pose[:2], width, height, angle=angle, fill=False, ec=color, lw=1))
+
+
+def draw_filter() -> None:
+    """Odometry, filter and smoother of a drive past four landmarks, with ellipses of 95 %."""
+    run = cs.navigation.follow([(0, 0), (9, 0), (9, 6), (0, 6), (0, 1)], vehicle=cs.Unicycle())
+    landmarks = Landmarks(range(4), [(1.5, -1.0), (10.5, 1.0), (8.0, 7.5), (-1.5, 6.0)])
+    sensor = RangeBearing(range_sigma=0.1, bearing_sigma=0.02, most_range=3.0)
+    noise = RandomWalk(distance=4e-3, turn=2e-2, drift=1.5e-2)
+    log = simulate(run, landmarks, sensor=sensor, noise=noise, rng=3)
+    found = cs.localize(log, landmarks, sensor=sensor, noise=noise)
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharex=True, sharey=True)
+    for ax, (name, answer) in zip(axes, {"filter": found, "smoother": found.smoothed()}.items(), strict=True):
+        ax.plot(*log.truth.poses[:, :2].T, color=INK, lw=2.5, alpha=0.35, label="truth")
+        reckoned = log.odometry.dead_reckoning(log.truth.poses[0]).poses
+        ax.plot(*reckoned[:, :2].T, color=RED, lw=1, label="odometry")
+        ax.plot(*answer.poses[:, :2].T, color=BLUE, lw=1.2, label=name)
+        P = answer.covariance(frame="map")
+        for k in range(0, len(answer), 35):
+            add_ellipse(ax, answer.poses[k], P[k], BLUE)
+        ax.plot(*landmarks.points.T, "^", color=GREEN, ms=8, label="landmarks")
+        ax.set_aspect("equal")
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.set_xlabel("x [m]")
+        ax.legend(fontsize=8, frameon=False, loc="center")
+    axes[0].set_ylabel("y [m]")
+    figure.tight_layout()
+    figure.savefig(HERE / "localization.png", dpi=DPI, bbox_inches="tight")
+    plt.close(figure)
+
+
+if __name__ == "__main__":
+    draw_noise()
+    draw_filter()

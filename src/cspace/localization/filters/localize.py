@@ -1,0 +1,196 @@
+"""Localisation on a map of landmarks: the front of the filters."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import tolerances
+from cspace.arrays import Array, one_array, positive_number
+from cspace.errors import InputError, InputTypeError, suggest
+from cspace.localization.filters.forward import Pass, Passed
+from cspace.localization.filters.gates import associate_reading
+from cspace.localization.filters.measurements import (
+    CompassReading,
+    LandmarkReading,
+    Measurement,
+    PositionReading,
+)
+from cspace.localization.filters.run import Localization, LocalizationStats
+from cspace.localization.filters.timeline import KINDS, Timeline, lay_timeline
+from cspace.localization.filters.updates import UPDATES
+from cspace.localization.log import UNKNOWN, Landmarks, Log
+from cspace.localization.sensors import Compass, Gps, RangeBearing, read_share
+from cspace.mobile import MotionNoise, RandomWalk
+from cspace.spatial import as_pose_2d, to_xytheta
+
+FILTERS = tuple(UPDATES)
+START_DEVIATIONS = (0.01, 0.01, 0.01)
+"""Standard deviations of a start [m, m, rad] unless given: one that somebody measured."""
+
+
+def localize(
+    log: Log,
+    landmarks: Landmarks | None = None,
+    *,
+    filter: str = "ekf",
+    start: npt.ArrayLike | None = None,
+    start_covariance: npt.ArrayLike | None = None,
+    sensor: RangeBearing | None = None,
+    compass: Compass | None = None,
+    gps: Gps | None = None,
+    noise: MotionNoise | None = None,
+    gate: float = 0.999,
+    time_limit: float | None = None,
+) -> Localization:
+    """Where a robot was during a log, by a Kalman filter on a map of landmarks.
+
+    landmarks: the map; unless given, that of the log. filter: "ekf" (extended), "iekf" (iterated), "ukf"
+    (unscented) or "information". start: pose x, y, θ (3,) or (3, 3) at the first time of the odometry; unless
+    given, that of log.truth. start_covariance (3, 3) of ξ in T exp ξ, which may be zero; unless given, 1 cm
+    and 0.01 rad. sensor, compass, gps: models of readings, headings and fixes. noise: of the odometry, a
+    RandomWalk unless given. gate: the share of χ² beyond which a measurement is rejected. Readings without a
+    name are associated with the landmark that most likely made them. time_limit [s]: TimeLimitError beyond
+    it. Raises InputError for a log without odometry, a start that is unknown, or a landmark that is not on
+    the map. Source: Thrun, Burgard & Fox 2005, chapters 3 and 7.
+    """
+    begun = perf_counter()
+    if not isinstance(log, Log):
+        raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
+    if filter not in UPDATES:
+        raise suggest("filter", filter, FILTERS)
+    model = sensor or RangeBearing()
+    known = landmarks if landmarks is not None else log.landmarks
+    pose, P = read_start(log, start, start_covariance)
+    reader = Reader(log, known, model, compass or Compass(), gps or Gps())
+    timeline = lay_timeline(log, model, noise or RandomWalk())
+    reader.timeline = timeline
+    limit = None if time_limit is None else positive_number(time_limit, "time_limit")
+    run = Pass(timeline, UPDATES[filter], read_share(gate, "gate"), limit)
+    passed = run.run(pose, P, reader.read)
+    return report_run(filter, timeline, passed, perf_counter() - begun)
+
+
+class Reader:
+    """Makes measurements of the rows of a log."""
+
+    timeline: Timeline
+
+    def __init__(
+        self, log: Log, landmarks: Landmarks | None, sensor: RangeBearing, compass: Compass, gps: Gps
+    ) -> None:
+        self.log, self.landmarks, self.sensor, self.compass, self.gps = log, landmarks, sensor, compass, gps
+        readings = log.readings
+        if readings is None or not len(readings):
+            return
+        if landmarks is None or not len(landmarks):
+            raise InputError(
+                "the log has readings of landmarks, and there is no map of them; give landmarks="
+            )
+        self.rows = landmarks.rows_of(readings.landmark)
+        both = np.stack([readings.range - sensor.range_bias, readings.bearing - sensor.bearing_bias], axis=-1)
+        self.values = both
+        self.kinds = ~np.isnan(both)
+
+    def read(self, number: int, pose: Array, P: Array) -> Measurement | None:
+        """The measurement of a number on the timeline."""
+        kind, row = KINDS[self.timeline.kind[number]], int(self.timeline.row[number])
+        if kind == "headings":
+            assert self.log.headings is not None
+            value = self.log.headings.angles[row : row + 1] - self.compass.bias
+            return CompassReading(value, self.compass.sigma, np.array([True]))
+        if kind == "fixes":
+            assert self.log.fixes is not None
+            return PositionReading(
+                self.log.fixes.points[row], self.gps.sigma, self.gps.lever, np.array([False, False])
+            )
+        return self.read_landmark(row, pose, P)
+
+    def read_landmark(self, row: int, pose: Array, P: Array) -> LandmarkReading | None:
+        """A reading of a landmark, associated if it has no name."""
+        assert self.landmarks is not None
+        used = np.flatnonzero(self.kinds[row])
+        value = self.values[row, used]
+        at = int(self.rows[row])
+        if at == UNKNOWN:
+            at = associate_reading(pose, P, value, used, self.landmarks, self.sensor)
+            if at == UNKNOWN:
+                return None
+        spread = None if self.landmarks.covariances is None else self.landmarks.covariances[at]
+        return LandmarkReading(value, used == 1, used, self.sensor, self.landmarks.points[at], spread)
+
+
+def read_start(
+    log: Log, start: npt.ArrayLike | None, covariance: npt.ArrayLike | None
+) -> tuple[Array, Array]:
+    """The first pose (3,) and its covariance (3, 3)."""
+    if not len(log.odometry.times):
+        raise InputError("the log has no odometry; a filter needs its times, at least one")
+    if start is not None:
+        shape = np.shape(start)
+        pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
+    else:
+        pose = find_start(log)
+    if covariance is None:
+        return pose, np.diag(np.square(START_DEVIATIONS))
+    P = one_array(covariance, "start_covariance", (3, 3))
+    least = float(np.linalg.eigvalsh(P)[0])
+    if (
+        np.abs(P - P.T).max() > tolerances.COVARIANCE_SYMMETRY * max(1.0, np.abs(P).max())
+        or least < -abs(P).max() * tolerances.COVARIANCE_SYMMETRY
+    ):
+        raise InputError(
+            f"start_covariance is not symmetric and positive semi-definite (least eigenvalue {least:.3g});"
+            " give variances on the diagonal, np.diag(...)"
+        )
+    return pose, 0.5 * (P + P.T)
+
+
+def find_start(log: Log) -> Array:
+    """The true pose at the first time of the odometry, or the first one after it."""
+    remedy = "give start=(x, y, θ)"
+    if log.truth is None or not len(log.truth):
+        raise InputError(f"the start of the robot is unknown, the log has no truth; {remedy}")
+    pose = log.truth.at(log.odometry.times[0])
+    if np.isnan(pose).any():
+        if log.truth.times[0] > log.odometry.times[0] + START_GAP:
+            raise InputError(f"the start of the robot is unknown, the truth begins later; {remedy}")
+        pose = log.truth.poses[0]
+    return pose
+
+
+START_GAP = 1.0
+"""Seconds by which the truth may begin after the odometry and still tell the start."""
+
+
+def report_run(name: str, timeline: Timeline, passed: Passed, seconds: float) -> Localization:
+    """The answer of a filter."""
+    used = passed.accepted
+    dof = int(passed.dof[used].sum())
+    stats = LocalizationStats(
+        updates=int(used.sum()),
+        rejected=int((~used).sum()),
+        skipped=timeline.skipped,
+        inflations=len(passed.inflated),
+        mean_nis=float(passed.nis[used].sum() / dof) if dof else float("nan"),
+        seconds=seconds,
+    )
+    is_lost = bool(passed.lost[-1]) or not stats.updates
+    return Localization(
+        times=timeline.times,
+        poses=passed.poses,
+        covariances=passed.covariances,
+        filter=name,
+        status="lost" if is_lost else "localised",
+        lost=passed.lost,
+        nis=passed.nis,
+        dof=passed.dof,
+        innovations=passed.innovations,
+        rejected=~used,
+        measured=timeline.node,
+        stats=stats,
+        _timeline=timeline,
+        _passed=passed,
+    )

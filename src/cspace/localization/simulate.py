@@ -1,0 +1,66 @@
+"""Simulated logs: what a robot on a known path would have measured."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array, as_generator, positive_number
+from cspace.errors import InputError
+from cspace.localization.filters.measurements import see_point
+from cspace.localization.log import Landmarks, Log, Readings
+from cspace.localization.sensors import RangeBearing
+from cspace.math.wrapping import wrap_angle
+from cspace.mobile import MotionNoise, Odometry, RandomWalk, TimedPoses
+from cspace.spatial import exp_se2, log_se2
+
+
+def simulate(
+    run: Any,
+    landmarks: Landmarks,
+    *,
+    sensor: RangeBearing | None = None,
+    noise: MotionNoise | None = None,
+    period: float = 0.5,
+    rng: int | np.random.Generator | None = None,
+) -> Log:
+    """The log of a robot that drove a run: noisy odometry, and readings of the landmarks in view.
+
+    run: anything with times (n,) [s] and poses (n, 3), such as that of navigation.follow. Readings
+    come at the run's times, every `period` [s], with the biases, deviations and delay of the sensor. The true
+    step is the measured one with noise added, as the filters assume. rng: int, Generator or None.
+    """
+    generator, model = as_generator(rng), sensor or RangeBearing()
+    truth = TimedPoses(run.times, run.poses)
+    if not len(truth):
+        raise InputError("the run has no poses; simulate needs one at least")
+    odometry = disturb_odometry(
+        Odometry.from_poses(truth.times, truth.poses), noise or RandomWalk(), generator
+    )
+    marks = np.arange(truth.times[0], truth.times[-1], positive_number(period, "period"))
+    rows = np.unique(np.searchsorted(truth.times, marks))
+    readings = draw_readings(truth.times[rows], truth.poses[rows], landmarks, model, generator)
+    return Log(odometry, readings=readings, landmarks=landmarks, truth=truth)
+
+
+def disturb_odometry(true: Odometry, noise: MotionNoise, rng: np.random.Generator) -> Odometry:
+    """Odometry of which the truth is a sample: log(exp(ξ) exp(−w)) with w of the covariance of the step."""
+    Q = noise.covariance(true.steps, true.durations)
+    values, vectors = np.linalg.eigh(Q)
+    scale = np.sqrt(np.maximum(values, 0.0))
+    w = np.einsum("nij,nj->ni", vectors, scale * rng.standard_normal(true.steps.shape))
+    return Odometry(true.times, log_se2(exp_se2(true.steps) @ exp_se2(-w)))
+
+
+def draw_readings(
+    times: Array, poses: Array, landmarks: Landmarks, sensor: RangeBearing, rng: np.random.Generator
+) -> Readings:
+    """Readings of all landmarks in view from poses (k, 3) at times (k,)."""
+    p = see_point(landmarks.points, poses[:, None], sensor.mount)
+    r, b = np.hypot(p[..., 0], p[..., 1]), np.arctan2(p[..., 1], p[..., 0])
+    at, which = np.nonzero((r <= sensor.most_range) & (np.abs(b) <= 0.5 * sensor.field_of_view))
+    noise = rng.standard_normal((len(at), 2))
+    ranges = r[at, which] + sensor.range_bias + sensor.range_sigma * noise[:, 0]
+    bearings = b[at, which] + sensor.bearing_bias + sensor.bearing_sigma * noise[:, 1]
+    return Readings(times[at] + sensor.delay, landmarks.names[which], np.abs(ranges), wrap_angle(bearings))
