@@ -17,7 +17,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError, LogError, suggest
 from cspace.files import path_of, read_regular
 from cspace.localization.graph.graph_arrays import Graph
-from cspace.localization.logs.lines import Lines, decompress
+from cspace.localization.logs.lines import Lines, unpack_gzip
 from cspace.spatial import pose
 from cspace.tables import count_things
 from cspace.tolerances import LOG_BYTES, SINGULAR_INFORMATION
@@ -293,7 +293,7 @@ def unpack_lines(name: str) -> Lines:
     """The lines of a file, of a gzip, or of the only graph in a zip."""
     data = read_regular(name, "pose graph", LOG_BYTES, LogError)
     if data.startswith(GZIP):
-        data = decompress(name, data)
+        data = unpack_gzip(name, data)
     elif data.startswith(ZIP):
         data = unzip_graph(name, data)
     try:
