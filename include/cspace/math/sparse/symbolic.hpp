@@ -234,7 +234,7 @@ inline void find_rows(SymbolicFactor& factor, const BlockGraph& graph) {
 
 }  // namespace symbolic
 
-// The pattern of the Cholesky factor of a matrix of blocks, eliminated in about this order.
+// The pattern of the sparse Cholesky factor of a matrix of blocks, eliminated in about this order.
 inline SymbolicFactor analyze_pattern(const BlockGraph& graph, std::vector<int> order,
                                       const Amalgamation& rule = {}) {
     using namespace symbolic;
