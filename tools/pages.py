@@ -34,6 +34,7 @@ COURSE += (
     "cars",
     "mobile",
     "localization",
+    "pose_graphs",
 )
 COURSE += ("plot", "cli", "cpp")
 """The pages of the rooms, in the order in which they build on each other."""

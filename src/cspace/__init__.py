@@ -37,7 +37,7 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.localization import localize, read_log
+    from cspace.localization import PoseGraph, localize, read_log
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
     from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
@@ -69,6 +69,7 @@ __all__ = [
     "Mechanism",
     "OccupancyGrid",
     "PolygonWorld",
+    "PoseGraph",
     "Robot",
     "Scene",
     "__version__",
@@ -125,6 +126,7 @@ _LATER = {
     "Omni": "cspace.mobile",
     "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
+    "PoseGraph": "cspace.localization",
     "PoseTask": "cspace.ik",
     "PositionTask": "cspace.ik",
     "PostureTask": "cspace.ik",

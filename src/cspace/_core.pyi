@@ -960,6 +960,40 @@ def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: 
     """
     Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, seconds, steps.
     """
+class GraphSolver:
+    """A pose graph and the state of least cost found so far."""
+
+    def __init__(self, is_spatial: bool, poses: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], landmarks: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], edges: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], motions: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], information: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], sightings: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], point_information: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], has_bearing: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], is_held: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], is_landmark_held: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], is_trusted: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)], is_sighting_trusted: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    def optimize(self, method: int, residual: int, start: int, false_loops: int, kernel: int, width: float, most_iterations: int, least_step: float, least_decrease: float) -> int:
+        """0: converged, 1: stopped, 2: singular."""
+
+    def write_state(self, poses: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')], landmarks: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None:
+        """Writes the state of least cost."""
+
+    @property
+    def found_start(self) -> bool: ...
+
+    @property
+    def squares(self) -> list[float]: ...
+
+    @property
+    def used(self) -> list[bool]: ...
+
+    @property
+    def limit_scale(self) -> float: ...
+
+    @property
+    def singular_variable(self) -> int: ...
+
+    @property
+    def stats(self) -> tuple[int, int, int, list[float]]: ...
+
+    def write_covariances(self, pairs: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> bool:
+        """Writes the blocks of pairs of variables; False where singular."""
+
+def find_graph_parts(poses: int, landmarks: int, edges: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], sightings: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> list[int]:
+    """The connected part of each pose, then of each landmark."""
 
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...

@@ -12,7 +12,7 @@ from house import tree
 HEADERS = tree.ROOT / "include/cspace"
 COMPILED = sorted([*(tree.ROOT / "src/bindings").glob("*.?pp"), *(tree.ROOT / "src/kernels").glob("*.?pp")])
 
-CPP_ALONE = {"ik/general", "ik/position"}
+CPP_ALONE = {"ik/general", "ik/position", "math/sparse"}
 """Folders of headers that no Python file stands for: the plan of an arm chooses among them."""
 PYTHON_ALONE = {"ik/explain", "ik/goals", "model/mjcf", "planning/joint_space"}
 """Packages of words: files, names and sentences, with no loop of their own; the checks of the last one are

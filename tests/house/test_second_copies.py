@@ -40,7 +40,7 @@ CONCEPTS = [
     Concept(
         "Cholesky and L D Lᵀ factorisation",
         "include/cspace/math/linear.hpp",
-        r"(?i)cholesky|A = L D Lᵀ|i == j \? (std::)?sqrt\(",
+        r"(?i)(?<!sparse)(?<!sparse[ /])cholesky|A = L D Lᵀ|i == j \? (std::)?sqrt\(",
     ),
     Concept(
         "Householder reflection",

@@ -2,6 +2,7 @@
 
 from cspace.localization.calibrate_sensor import calibrate_sensor
 from cspace.localization.filters import Localization, LocalizationStats, localize
+from cspace.localization.graph import GraphAnswer, PoseGraph, RejectedLoop
 from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
 from cspace.localization.logs import read_log
 from cspace.localization.sensors import Compass, Gps, RangeBearing
@@ -12,14 +13,17 @@ __all__ = [
     "Compass",
     "Fixes",
     "Gps",
+    "GraphAnswer",
     "Headings",
     "Landmarks",
     "Localization",
     "LocalizationStats",
     "Log",
     "Odometry",
+    "PoseGraph",
     "RangeBearing",
     "Readings",
+    "RejectedLoop",
     "Scans",
     "TimedPoses",
     "calibrate_sensor",

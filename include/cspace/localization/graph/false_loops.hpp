@@ -1,0 +1,210 @@
+// Pose graphs with false measurements: dynamic covariance scaling (Agarwal, Tipaldi, Spinello, Stachniss &
+// Burgard 2013) and graduated non-convexity (Yang, Antonante, Tzoumas & Carlone 2020).
+//
+// Both start from dead reckoning along trusted edges. What they reject is tested again at the answer:
+// measurements within the quantile of 99.9 % count, the others do not, and the graph is solved again until
+// nothing changes. The information of many files is far too small, so that false measurements would pass as
+// well; the quantile is scaled by χ² per degree of freedom of the measurements that count. Of several answers
+// that with the least truncated cost is the better one.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "cspace/localization/graph/optimizer.hpp"
+
+namespace cspace::localization {
+
+// Squared error that a true measurement of so many coordinates exceeds once in a thousand times.
+inline double quantile_999(int coordinates) {
+    constexpr double quantiles[] = {0, 10.828, 13.816, 16.266, 18.467, 20.515, 22.458};
+    return quantiles[coordinates];
+}
+
+template <class Space>
+std::vector<double> find_limits(const PoseGraph<Space>& graph) {
+    std::vector<double> limits(graph.edges.size(), quantile_999(Space::freedom));
+    for (const auto& seen : graph.sightings) {
+        int coordinates = 0;
+        for (std::size_t k = 0; k < Space::dimension; ++k)
+            coordinates += seen.W[k * (Space::dimension + 1)] > 0;
+        limits.push_back(quantile_999(coordinates));
+    }
+    return limits;
+}
+
+template <class Space>
+std::vector<char> find_trusted(const PoseGraph<Space>& graph) {
+    std::vector<char> trusted(graph.is_trusted);
+    trusted.insert(trusted.end(), graph.is_sighting_trusted.begin(), graph.is_sighting_trusted.end());
+    return trusted;
+}
+
+template <class Space>
+struct RobustAnswer {
+    GraphState<Space> state;
+    GraphStatus status = GraphStatus::stopped;
+    std::vector<char> is_used;  // by measurement
+    double scale = 1;           // of the limits of the squared errors
+    std::vector<double> squares;
+};
+
+template <class Space, class Fronts>
+class FalseLoopSolver {
+  public:
+    using State = GraphState<Space>;
+
+    FalseLoopSolver(const PoseGraph<Space>& graph, const GraphOptions& options)
+        : graph_(graph),
+          options_(options),
+          optimizer_(graph, options),
+          trusted_(find_trusted(graph)),
+          limits_(find_limits(graph)) {
+        unknowns_ =
+            Space::freedom * std::count(graph.is_held.begin(), graph.is_held.end(), 0) +
+            Space::dimension * std::count(graph.is_landmark_held.begin(), graph.is_landmark_held.end(), 0);
+    }
+
+    GraphOptimizer<Space, Fronts>& optimizer() { return optimizer_; }
+
+    // Dynamic covariance scaling; width: the square root of its φ.
+    RobustAnswer<Space> scale_covariances(const State& start, double width) {
+        constexpr int most_steps = 60;
+        constexpr double least_step = 1e-4;  // [m or rad]
+        State state = start;
+        std::vector<double> weights(graph_.factors(), 1.0);
+        for (int step = 0; step < most_steps; ++step) {
+            measure_squares(graph_, state, options_.residual, squares_);
+            for (std::size_t k = 0; k < weights.size(); ++k)
+                weights[k] =
+                    trusted_[k] ? 1.0 : evaluate_kernel(RobustKernel::dcs, squares_[k], width).weight;
+            if (!(step_with(weights, state) > least_step)) break;
+        }
+        return settle(state, find_kept(weights));
+    }
+
+    // Graduated non-convexity of truncated least squares.
+    RobustAnswer<Space> graduate(const State& start) {
+        constexpr int most_rounds = 60, steps_per_round = 2, least_rounds = 4;
+        constexpr double growth = 1.4;   // of the convexity, as in the paper
+        constexpr double binary = 1e-3;  // weights so near to 0 or 1 are that
+        State state = start;
+        measure_squares(graph_, state, options_.residual, squares_);
+        double convexity = first_convexity();
+        std::vector<double> weights(graph_.factors(), 1.0);
+        for (int round = 0; round < most_rounds; ++round, convexity *= growth) {
+            for (int step = 0; step < steps_per_round; ++step) {
+                if (!std::isfinite(step_with(weights, state))) return settle(start, trusted_);
+            }
+            measure_squares(graph_, state, options_.residual, squares_);
+            double farthest = 0;
+            for (std::size_t k = 0; k < weights.size(); ++k) {
+                weights[k] = trusted_[k] ? 1.0 : graduated_weight(squares_[k], limits_[k], convexity);
+                farthest = std::max(farthest, std::fabs(weights[k] - std::round(weights[k])));
+            }
+            if (farthest < binary && round >= least_rounds) break;
+        }
+        return settle(state, find_kept(weights));
+    }
+
+    // The squared errors of an answer, those of doubted measurements truncated at their limits times a scale.
+    double truncated_cost(const RobustAnswer<Space>& answer, double scale) const {
+        double cost = 0;
+        for (std::size_t k = 0; k < answer.squares.size(); ++k)
+            cost += trusted_[k] ? answer.squares[k] : std::min(answer.squares[k], scale * limits_[k]);
+        return cost;
+    }
+
+  private:
+    static double graduated_weight(double square, double limit, double convexity) {
+        if (square <= convexity / (convexity + 1) * limit) return 1;
+        if (square >= (convexity + 1) / convexity * limit) return 0;
+        return std::clamp(std::sqrt(limit * convexity * (convexity + 1) / square) - convexity, 0.0, 1.0);
+    }
+    double first_convexity() const {
+        constexpr double least = 1e-9, no_doubt = 1e9;
+        double found = no_doubt;
+        for (std::size_t k = 0; k < squares_.size(); ++k) {
+            if (!trusted_[k])
+                found = std::min(found, limits_[k] / std::max(2 * squares_[k] - limits_[k], least));
+        }
+        return std::max(found, least);
+    }
+
+    // Measurements of less weight are left out. Many of hardly any weight still pull together, when they are
+    // true.
+    static constexpr double least_weight = 1e-6;
+
+    // A step of Gauss–Newton with these weights; its largest entry.
+    double step_with(const std::vector<double>& weights, State& state) {
+        constexpr double waste =
+            1.1;  // measurements in use against those needed, before the pattern is found anew
+        std::size_t used = 0, needed = 0;
+        bool is_covered = !is_used_.empty();
+        std::vector<char> wanted(weights.size());
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            wanted[k] = weights[k] >= least_weight;
+            needed += std::size_t(wanted[k]);
+            if (is_covered) used += std::size_t(is_used_[k]), is_covered = is_used_[k] || !wanted[k];
+        }
+        if (!is_covered || double(used) > waste * double(needed)) {
+            is_used_ = wanted;
+            optimizer_.use_factors(is_used_);
+        }
+        optimizer_.weights().fixed = weights;
+        return optimizer_.take_step(state);
+    }
+
+    // χ² per degree of freedom of these measurements, between the bounds of a scale.
+    double find_scale(const std::vector<char>& is_used) const {
+        constexpr double least = 0.1;  // errors have heavier tails than the quantile knows
+        double sum = 0;
+        std::ptrdiff_t numbers = -unknowns_;
+        for (std::size_t k = 0; k < is_used.size(); ++k) {
+            if (!is_used[k]) continue;
+            sum += squares_[k];
+            numbers += k < graph_.edges.size() ? Space::freedom : Space::dimension;
+        }
+        return numbers > 0 ? std::clamp(sum / double(numbers), least, 1.0) : 1.0;
+    }
+
+    // Solves with the measurements within their limits, until these stay the same. is_kept: those that count
+    // at first.
+    RobustAnswer<Space> settle(const State& start, const std::vector<char>& is_kept) {
+        constexpr int most_rounds = 12;
+        RobustAnswer<Space> answer;
+        answer.state = start;
+        optimizer_.weights().fixed.clear();
+        std::vector<char> kept = is_kept;
+        for (int round = 0; round < most_rounds; ++round) {
+            measure_squares(graph_, answer.state, options_.residual, squares_);
+            answer.scale = find_scale(kept);
+            for (std::size_t k = 0; k < kept.size(); ++k)
+                kept[k] = trusted_[k] || squares_[k] <= answer.scale * limits_[k];
+            if (kept == answer.is_used) break;
+            answer.is_used = is_used_ = kept;
+            optimizer_.use_factors(is_used_);
+            answer.status = optimizer_.optimize(answer.state);
+        }
+        measure_squares(graph_, answer.state, options_.residual, answer.squares);
+        return answer;
+    }
+    // The measurements of so much weight.
+    static std::vector<char> find_kept(const std::vector<double>& weights) {
+        constexpr double least = 0.5;
+        std::vector<char> kept(weights.size());
+        for (std::size_t k = 0; k < kept.size(); ++k) kept[k] = weights[k] >= least;
+        return kept;
+    }
+
+    const PoseGraph<Space>& graph_;
+    GraphOptions options_;
+    GraphOptimizer<Space, Fronts> optimizer_;
+    std::vector<char> trusted_, is_used_;
+    std::vector<double> limits_, squares_;
+    std::ptrdiff_t unknowns_ = 0;
+};
+
+}  // namespace cspace::localization

@@ -1,0 +1,6 @@
+"""Pose graphs: poses and landmarks, and the measurements between them."""
+
+from cspace.localization.graph.answer import GraphAnswer, RejectedLoop
+from cspace.localization.graph.pose_graph import PoseGraph
+
+__all__ = ["GraphAnswer", "PoseGraph", "RejectedLoop"]

@@ -1,0 +1,153 @@
+"""GraphAnswer: the optimized poses and landmarks, their covariances, and what was rejected."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from threading import Lock
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, whole_number
+from cspace.errors import InputError, Renamed, suggest
+from cspace.tables import one_line, shown
+
+if TYPE_CHECKING:
+    from cspace._core import GraphSolver
+    from cspace.localization.graph.graph_arrays import GraphArrays
+
+LIMITS: Final = {1: 10.828, 2: 13.816, 3: 16.266, 6: 22.458}
+"""Squared errors that a true measurement of so many numbers exceeds once in a thousand times."""
+
+
+class RejectedLoop(NamedTuple):
+    """An edge that robust= left out."""
+
+    edge: int
+    """Its row."""
+    first: int
+    """The id of the pose it leaves."""
+    second: int
+    """The id of the pose it reaches."""
+    chi2: float
+    """Its squared error at the answer."""
+    limit: float
+    """The squared error up to which it would have counted."""
+
+
+def list_rejected(
+    graph: GraphArrays, squares: Array, is_rejected: npt.NDArray[np.bool_], scale: float
+) -> tuple[RejectedLoop, ...]:
+    """The rejected edges by row; scale: of the limits."""
+    limit = scale * LIMITS[6 if graph.is_spatial else 3]
+    ids = graph.ids[graph.edges]
+    return tuple(
+        RejectedLoop(int(k), int(ids[k, 0]), int(ids[k, 1]), float(squares[k]), limit)
+        for k in np.flatnonzero(is_rejected)
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class GraphAnswer(Renamed):
+    """An optimized pose graph; truthy if it converged.
+
+    poses (n, 3) or (n, 4, 4), landmarks (m, 2) or (m, 3): the state of least cost. chi2: Σ eᵀWe over the
+    measurements that count; dof: measured numbers minus unknown ones, so that chi2 / dof is near 1 for
+    honest information. status: "converged", "stopped", "singular" or "time_limit"; reason: the same in
+    words. edge_chi2 (k,), sighting_chi2 (s,): eᵀWe of each measurement. rejected: the edges that robust=
+    left out, each with its ids and χ²; rejected_sightings: rows of sightings. stats: iterations,
+    factorizations, costs, seconds.
+    """
+
+    poses: Array
+    landmarks: Array
+    chi2: float
+    dof: int
+    status: str
+    reason: str
+    edge_chi2: Array
+    sighting_chi2: Array
+    rejected: tuple[RejectedLoop, ...]
+    rejected_sightings: npt.NDArray[np.intp]
+    stats: Mapping[str, Any]
+    graph: GraphArrays
+    _solver: GraphSolver
+    _lock: Lock = field(default_factory=Lock)
+
+    def __bool__(self) -> bool:
+        return self.status == "converged"
+
+    @cached_property
+    def marginals(self) -> Array:
+        """The covariance of each pose, (n, 3, 3) or (n, 6, 6), of ξ in X exp ξ, [v; ω] in the frame of the
+        pose.
+
+        From the selected inverse of the normal equations (Takahashi et al. 1973); zero for fixed poses.
+        Raises InputError where the equations are singular.
+        """
+        rows = np.arange(len(self.poses), dtype=np.int32)
+        return self._read_covariances(rows, rows, self._size(0), self._size(0))
+
+    @cached_property
+    def landmark_marginals(self) -> Array:
+        """The covariance of each landmark, (m, 2, 2) or (m, 3, 3) [m²]; zero for fixed ones."""
+        rows = np.arange(len(self.landmarks), dtype=np.int32) + np.int32(len(self.poses))
+        return self._read_covariances(rows, rows, self.graph.dimension, self.graph.dimension)
+
+    def covariance(self, pose: int, other: int | None = None, *, frame: str = "base") -> Array:
+        """The covariance of a pose, or of two poses between each other, by their rows: (3, 3) or (6, 6).
+
+        frame: "base" for disturbances [v; ω] in the frames of the poses, "map" for the same in the axes of
+        the map, the ellipse that people draw. Raises InputError for rows outside of the graph.
+        """
+        pair = [pose, pose if other is None else other]
+        rows = [whole_number(row, "pose", 0, len(self.poses) - 1) for row in pair]
+        if frame not in ("base", "map"):
+            raise suggest("frame", frame, ("base", "map"))
+        a, b = (np.array([row], dtype=np.int32) for row in rows)
+        found: Array = self._read_covariances(a, b, self._size(rows[0]), self._size(rows[1]))[0]
+        if frame == "base":
+            return found
+        first, second = (self._turn(row) for row in rows)
+        turned: Array = first @ found @ second.T
+        return turned
+
+    def to_graph(self) -> GraphArrays:
+        """The graph with the answer as its start."""
+        return self.graph.with_poses(self.poses, self.landmarks)
+
+    def _size(self, row: int) -> int:
+        """The numbers of a variable, poses before landmarks."""
+        if row >= len(self.poses):
+            return self.graph.dimension
+        return 6 if self.graph.is_spatial else 3
+
+    def _turn(self, row: int) -> Array:
+        """The matrix that turns disturbances of a pose into the axes of the map; angles of the plane stay."""
+        if self.graph.is_spatial:
+            return np.asarray(np.kron(np.eye(2), self.poses[row, :3, :3]), dtype=np.float64)
+        c, s = np.cos(self.poses[row, 2]), np.sin(self.poses[row, 2])
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    def _read_covariances(
+        self, first: npt.NDArray[np.int32], second: npt.NDArray[np.int32], rows: int, columns: int
+    ) -> Array:
+        found = np.empty((len(first), rows, columns))
+        with self._lock:
+            is_regular = self._solver.write_covariances(np.stack([first, second], axis=1), found)
+        if not is_regular:
+            raise InputError(
+                "the normal equations at the answer are singular, so that there are no covariances;"
+                " measure what"
+                " is undetermined, or fix it"
+            )
+        return found
+
+    def __repr__(self) -> str:
+        text = f"{self.status}: chi2 {shown(self.chi2)}, dof {self.dof}"
+        if self.rejected:
+            text += f", {len(self.rejected)} edges rejected"
+        return one_line("GraphAnswer", text if self else f"{text}; {self.reason}")
