@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "cspace/dynamics/make_links.hpp"
 #include "kinematics_rows.hpp"
 #include "library/dynamics_roll_out.hpp"
 

@@ -932,6 +932,7 @@ class Simulator:
         """
         The steps of the adaptive method (k, width), and where those of each row begin.
         """
+
 PHASES_OF_AXIS: int = ...
 
 def solve_states(states: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], durations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cycle: float, mode: int, threads: int, verdict: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None, None), order='C', device='cpu')]) -> None:
@@ -960,6 +961,7 @@ def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: 
     """
     Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, seconds, steps.
     """
+
 class GraphSolver:
     """A pose graph and the state of least cost found so far."""
 
