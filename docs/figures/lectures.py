@@ -319,7 +319,7 @@ def from_a_to_b():
     joints = robot.move_to(goal, start=start, jerk=40.0, **limits)
     line = robot.move_linear(robot.fk(goal), start=start, **limits)
     around = cs.move(robot, start, goal, cs.Scene([post]), deviation=0.3, **limits)
-    figure, axes = plt.subplots(2, 3, figsize=(11.0, 6.0), layout="constrained", height_ratios=(2, 1))
+    _, axes = plt.subplots(2, 3, figsize=(11.0, 6.0), layout="constrained", height_ratios=(2, 1))
     titles = ("straight in joint coordinates", "straight in the world", "around an obstacle")
     for column, (motion, title) in enumerate(zip((joints, line, around), titles, strict=True)):
         draw_motion(axes[0, column], axes[1, column], robot, motion, title, BLUE)

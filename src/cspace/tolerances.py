@@ -703,19 +703,19 @@ COVARIANCE_SYMMETRY: Final = 1e-9
 products."""
 
 SYMMETRIC_INFORMATION: Final = 1e-9
-"""Difference of the halves of an information matrix, relative to its largest entry, that is rounding: files print
-nine digits and more."""
+"""Difference of the halves of an information matrix, relative to its largest entry, that is rounding: files
+print nine digits and more."""
 
 SINGULAR_INFORMATION: Final = 1e-12
-"""Least eigenvalue of an information matrix, relative to the largest, up to which it determines nothing in one
-direction: centimetres beside tenths of degrees leave 1e-4, rounding 1e-16."""
+"""Least eigenvalue of an information matrix, relative to the largest, up to which it determines nothing in
+one direction: centimetres beside tenths of degrees leave 1e-4, rounding 1e-16."""
 
 GRAPH_STEP: Final = 1e-5
-"""Largest entry of the last step of a pose graph [m or rad]: a hundredth of a millimetre, and the next step of
-Gauss-Newton is smaller by far."""
+"""Largest entry of the last step of a pose graph [m or rad]: a hundredth of a millimetre, and the next step
+of Gauss-Newton is smaller by far."""
 
 GRAPH_DECREASE: Final = 1e-9
-"""Decrease of χ² that the last step of a pose graph predicts, relative to χ²: thousandths of what is asked of its
-digits."""
+"""Decrease of χ² that the last step of a pose graph predicts, relative to χ²: thousandths of what is asked of
+its digits."""
 
 __all__ = [name for name in globals() if name.isupper()]

@@ -44,6 +44,20 @@ def test_a_motion_is_free_within_limits_and_ends_at_its_goal(deviation, seed):
         assert (gaps <= motion.deviations + 1e-3).all()
 
 
+@pytest.mark.parametrize("seed", range(2))
+def test_jerks_are_kept_too(seed):
+    robot, scene = cs.load_robot("panda"), shelf()
+    rng = np.random.default_rng(seed)
+    goals = robot.random_configuration(40, rng=rng, reach=0.8)
+    goal = goals[~cs.collision.collides(robot, goals, scene)][0]
+    motion = cs.move(robot, START, goal, scene, jerk=True)
+    assert motion, motion.reason
+    assert motion.check(robot.limits)
+    np.testing.assert_allclose(motion(motion.duration), goal, atol=1e-9)
+    np.testing.assert_allclose(motion([0.0, motion.duration], 2), 0.0, atol=1e-6)
+    assert motion.duration > cs.move(robot, START, goal, scene).duration
+
+
 def test_rounded_corners_are_faster():
     robot, scene = cs.load_robot("panda"), shelf()
     goal = robot.fk(np.array([1.2, 0.3, 0.2, -1.8, 0.1, 2.0, 0.5]))

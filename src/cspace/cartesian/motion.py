@@ -23,7 +23,8 @@ from cspace.tolerances import PATH_START
 from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path
 from cspace.trajectory.cartesian_path import CartesianPath
 from cspace.trajectory.path import Path
-from cspace.trajectory.time_parametrize import EMPTY_GRID, time_parametrize
+from cspace.trajectory.time_parametrize import time_parametrize
+from cspace.trajectory.timed_motion import TimedMotion, stand_still
 from cspace.trajectory.timed_path import TimedPath
 
 if TYPE_CHECKING:
@@ -33,37 +34,27 @@ RANKING_GRID: Final = 100
 """Intervals with which branches are compared: their durations are off by a few percent, alike for all."""
 
 
-class CartesianMotion(TimedPath):
+class CartesianMotion(TimedMotion):
     """A motion of the joints that moves the tip along a Cartesian path; falsy where there is none.
 
-    A TimedPath, whose path has the parameter s of the Cartesian path. cartesian: that path. branches: all
+    A TimedMotion, whose path has the parameter s of the Cartesian path. cartesian: that path. branches: all
     that were followed, with where and why the others end. chosen: the number of the one that is taken, or −1.
-    durations (b,): of each branch on a coarse grid [s], inf where there is none, nan where none was needed.
+    durations (k,): of each branch on a coarse grid [s], inf where there is none, nan where none was needed.
     s_end: how far the tip goes.
     """
 
-    cartesian: CartesianPath
-    branches: tuple[JointBranch, ...]
-    chosen: int
-    durations: Array
-    s_end: float
-
-    @classmethod
-    def of(
-        cls,
+    def __init__(
+        self,
         timed: TimedPath,
         cartesian: CartesianPath,
         branches: Sequence[JointBranch],
         chosen: int,
         durations: Array,
-    ) -> CartesianMotion:
-        """A TimedPath with what it follows; durations (k,) of the branches."""
-        made = cls.__new__(cls)
-        made.__dict__.update(timed.__dict__)
-        made.cartesian, made.branches, made.chosen = cartesian, tuple(branches), chosen
-        made.durations = durations
-        made.s_end = max((branch.s_end for branch in branches), default=0.0)
-        return made
+    ) -> None:
+        super().__init__(timed)
+        self.cartesian, self.branches, self.chosen = cartesian, tuple(branches), chosen
+        self.durations = durations
+        self.s_end = max((branch.s_end for branch in branches), default=0.0)
 
     def __repr__(self) -> str:
         arrived = sum(map(bool, self.branches))
@@ -81,6 +72,7 @@ def move_cartesian(
     turn_rate: float | None = None,
     velocity: ArrayLike | None = None,
     acceleration: ArrayLike | None = None,
+    jerk: ArrayLike | bool | None = None,
     torque: ArrayLike | bool | None = None,
     free_axis: str | ArrayLike | None = None,
     scene: Scene | None = None,
@@ -95,9 +87,9 @@ def move_cartesian(
     taken. A redundant arm is planned along the whole path at once (follow_redundant).
 
     path: such as of line_path. start (dof,) [rad or m]: the configuration at its begin, whose branch alone is
-    followed. speed [m/s], turn_rate [rad/s]: of the tip, at most. velocity, acceleration, torque, grid: as of
-    time_parametrize. free_axis: an axis of the tip about which it may turn freely ("z", or a direction (3,)
-    in its frame). scene: obstacles; branches that touch them or the arm itself are left out, proved with
+    followed. speed [m/s], turn_rate [rad/s]: of the tip, at most. velocity, acceleration, jerk, torque, grid:
+    as of time_parametrize. free_axis: an axis of the tip about which it may turn freely ("z", or a direction
+    (3,) in its frame). scene: obstacles; branches that touch them or the arm itself are left out, proved with
     `margin` [m] to spare. limits: True for those of the robot, False for none, or Limits. tolerance [m and
     rad]: the largest distance of the tip from the path, checked at the middle of each piece of the joint
     path.
@@ -116,6 +108,7 @@ def move_cartesian(
     options: dict[str, Any] = {
         "velocity": velocity,
         "acceleration": acceleration,
+        "jerk": jerk,
         "torque": torque,
         "speed": speed,
         "turn_rate": turn_rate,
@@ -239,7 +232,7 @@ def _take_fastest(
             continue
         timed = time_parametrize(joints, robot, grid=grid, **options)
         if timed:
-            return CartesianMotion.of(timed, path, branches, k, durations)
+            return CartesianMotion(timed, path, branches, k, durations)
         refused.append(timed.reason)
     q = _joints(branches[arrived[0]]).start
     return _refuse(robot, path, branches, q, "; ".join(dict.fromkeys(refused)), np.nan, durations)
@@ -260,17 +253,6 @@ def _refuse(
     durations: Array | None = None,
 ) -> CartesianMotion:
     """No motion: it stays at q."""
-    still = Path([0.0, path.length], np.nan_to_num(np.stack([q, q]))[None])
-    names = robot.joint_names
-    timed = TimedPath(
-        still,
-        EMPTY_GRID,
-        np.zeros(0),
-        proved=False,
-        converged=False,
-        reason=reason,
-        place=place,
-        joint_names=names,
-    )
+    timed = stand_still(q, path.length, reason, place, robot.joint_names)
     none = np.full(len(branches), np.inf) if durations is None else durations
-    return CartesianMotion.of(timed, path, branches, -1, none)
+    return CartesianMotion(timed, path, branches, -1, none)

@@ -19,31 +19,23 @@ from cspace.robot import Robot
 from cspace.tables import one_line, shown
 from cspace.tolerances import LEAST_DEVIATION, MOTION_CHECK_STEP, PATH_CURVED
 from cspace.trajectory import Path, TimedPath, blend, time_parametrize
-from cspace.trajectory.time_parametrize import EMPTY_GRID
+from cspace.trajectory.timed_motion import TimedMotion, stand_still
 
 MOST_CHECKED: Final = 20_000
 """Of them; a longer motion is checked in larger steps."""
 
 
-class Motion(TimedPath):
+class Motion(TimedMotion):
     """A motion to a goal; falsy where there is none.
 
-    A TimedPath. plan: the Plan whose corners were rounded. deviations (k,): how far from each corner the path
-    may pass [rad or m]; 0 where it stops. checked: the number of configurations that were looked at once
-    more, with the limits of velocity, acceleration and torque, and none touched anything.
+    A TimedMotion. plan: the Plan whose corners were rounded. deviations (k,): how far from each corner the
+    path may pass [rad or m]; 0 where it stops. checked: the number of configurations that were looked at once
+    more, and none touched anything.
     """
 
-    plan: Plan
-    deviations: Array
-    checked: int
-
-    @classmethod
-    def of(cls, timed: TimedPath, found: Plan, deviations: Array, checked: int) -> Motion:
-        """A TimedPath with where it comes from."""
-        made = cls.__new__(cls)
-        made.__dict__.update(timed.__dict__)
-        made.plan, made.deviations, made.checked = found, deviations, checked
-        return made
+    def __init__(self, timed: TimedPath, found: Plan, deviations: Array, checked: int) -> None:
+        super().__init__(timed)
+        self.plan, self.deviations, self.checked = found, deviations, checked
 
     def __repr__(self) -> str:
         text = (
@@ -61,6 +53,7 @@ def move(
     deviation: float = 0.2,
     velocity: ArrayLike | None = None,
     acceleration: ArrayLike | None = None,
+    jerk: ArrayLike | bool | None = None,
     torque: ArrayLike | bool | None = None,
     speed: float | None = None,
     turn_rate: float | None = None,
@@ -74,11 +67,11 @@ def move(
     A free way is planned, its corners are rounded, the path is timed, and the result is checked once more at
     configurations along it.
 
-    start (dof,) [rad or m], or a named pose. goal, scene, planner, margin, rng, options: as of plan. deviation [rad or m, L2 norm]: how far the
-    motion may pass from the corners of the plan; less where something is near, and it stops at corners that
-    cannot be rounded. Straight legs are proved by the plan, and rounded corners with 0.3 mm and more to
-    spare. velocity, acceleration, torque, speed, turn_rate: as of time_parametrize; torque=True takes the
-    efforts of the robot.
+    start (dof,) [rad or m], or a named pose. goal, scene, planner, margin, rng, options: as of plan.
+    deviation [rad or m, L2 norm]: how far the motion may pass from the corners of the plan; less where
+    something is near, and it stops at corners that cannot be rounded. Straight legs are proved by the plan,
+    and rounded corners with 0.3 mm and more to spare. velocity, acceleration, jerk, torque, speed, turn_rate:
+    as of time_parametrize; torque=True takes the efforts of the robot.
 
     Returns a Motion; falsy, with reason, where no way was found or the limits cannot be kept. Raises as plan
     and time_parametrize do.
@@ -88,6 +81,7 @@ def move(
     limits: dict[str, Any] = {
         "velocity": velocity,
         "acceleration": acceleration,
+        "jerk": jerk,
         "torque": torque,
         "speed": speed,
         "turn_rate": turn_rate,
@@ -99,11 +93,11 @@ def move(
     path, deviations = round_corners(robot, found.path, scene, margin, allowed)
     timed = time_parametrize(path, robot, **limits)
     if not timed:
-        return Motion.of(timed, found, deviations, 0)
+        return Motion(timed, found, deviations, 0)
     checked, fault = check_once_more(robot, timed, scene)
     if fault:
         return _refuse(robot, found, fault)
-    return Motion.of(timed, found, deviations, checked)
+    return Motion(timed, found, deviations, checked)
 
 
 def round_corners(
@@ -154,14 +148,5 @@ def check_once_more(robot: Robot, timed: TimedPath, scene: Scene | None) -> tupl
 
 def _refuse(robot: Robot, found: Plan, reason: str) -> Motion:
     q = found.path[0] if len(found.path) else np.zeros(robot.dof)
-    still = Path([0.0, 1.0], np.stack([q, q])[None])
-    timed = TimedPath(
-        still,
-        EMPTY_GRID,
-        np.zeros(0),
-        proved=False,
-        converged=False,
-        reason=reason,
-        joint_names=robot.joint_names,
-    )
-    return Motion.of(timed, found, np.zeros(len(found.path)), 0)
+    timed = stand_still(q, 1.0, reason, np.nan, robot.joint_names)
+    return Motion(timed, found, np.zeros(len(found.path)), 0)
