@@ -28,13 +28,14 @@ COURSE += (
     "planning",
     "two-joint-space",
     "joint-space",
+    "motion",
     "maps",
     "navigation",
     "planners",
     "cars",
     "mobile",
     "localization",
-    "pose_graphs",
+    "pose-graphs",
 )
 COURSE += ("plot", "cli", "cpp")
 """The pages of the rooms, in the order in which they build on each other."""

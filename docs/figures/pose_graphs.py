@@ -23,7 +23,7 @@ SPREAD = 3.0
 def run_page() -> dict[str, Any]:
     """The names of the page, after its first blocks."""
     names: dict[str, Any] = {}
-    text = (HERE.parent / "pose_graphs.md").read_text(encoding="utf-8")
+    text = (HERE.parent / "pose-graphs.md").read_text(encoding="utf-8")
     for block in re.findall(r"```python\n(.*?)```", text, re.S)[:4]:
         exec(block, names)
     return names
