@@ -11,7 +11,6 @@
 #include "cspace/collision/cells.hpp"
 #include "cspace/collision/edge.hpp"
 #include "cspace/collision/one.hpp"
-#include "cspace/dynamics/applied_wrenches.hpp"
 #include "cspace/dynamics/coriolis.hpp"
 #include "cspace/dynamics/derivatives.hpp"
 #include "cspace/dynamics/make_links.hpp"

@@ -221,7 +221,7 @@ class RobotBase(KinematicsBase):
         friction: with damping and dry friction of the joints; their armature always counts. T_world_base (..., 4, 4):
         where the base is. out (..., dof): array of that dtype to write into. threads: as in fk. dtype: float32 computes
         in single precision, twice as many rows at a time: arrays of float32 are taken as they are, the answer is one,
-        and errors are about 1e-6 of the largest torque; values of joints are then below 10,000.
+        and errors are about a millionth of the largest torque; values of joints are then below 10,000.
 
         Returns tau (..., dof) [N·m or N]; of a floating base the wrench [f; n] at its origin, in world axes, comes
         first. Raises InputError for a wrong shape or NaN and where no link has a mass, UnknownNameError for an

@@ -4,6 +4,7 @@
 
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/tracking/along.hpp"
+#include "cspace/ik/tracking/cheapest_chain.hpp"
 #include "cspace/ik/tracking/follow.hpp"
 #include "cspace/math/interrupts.hpp"
 #include "kernels/ik.hpp"

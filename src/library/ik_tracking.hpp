@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "cspace/ik/tracking/cheapest_chain.hpp"
+#include "cspace/ik/tracking/layers.hpp"
 #include "cspace/model/chain.hpp"
 
 namespace cspace::ik {

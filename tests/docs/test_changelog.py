@@ -21,6 +21,7 @@ MODULES = [
     importlib.import_module(f"cspace{room}")
     for room in (
         "",
+        ".cartesian",
         ".collision",
         ".dynamics",
         ".errors",
@@ -35,6 +36,7 @@ MODULES = [
         ".planning",
         ".plot",
         ".robots",
+        ".trajectory",
     )
 ]
 # The object that a short name stands for in a sentence.

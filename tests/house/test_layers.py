@@ -18,6 +18,7 @@ COMPILED_ROOMS = {"ik", "maps", "navigation", "planning", "search", "shapes"}
 PLAIN_HEADERS = {
     "cspace/ik/chain.hpp",
     "cspace/ik/solution.hpp",
+    "cspace/ik/tracking/layers.hpp",
     "cspace/maps/boundary.hpp",
     "cspace/navigation/curves/curve.hpp",
     "cspace/navigation/route.hpp",

@@ -196,7 +196,7 @@ BAD = {
     "no start": (lambda r, s: cs.plan(r, None, [2, 0], s), InputError, "start has shape"),
     "ragged": (lambda r, s: cs.plan(r, [2, 0], [[1], [1, 2]], s), InputTypeError, "goal must be numbers"),
     "position": (lambda r, s: cs.plan(r, [2, 0], [1, 0, 0], s), InputError, '{"position": goal}'),
-    "poses": (lambda r, s: cs.plan(r, [2, 0], np.tile(np.eye(4), (2, 1, 1)), s), InputTypeError, "one pose"),
+    "poses": (lambda r, s: cs.plan(r, [2, 0], np.tile(np.eye(4), (2, 1, 1, 1)), s), InputTypeError, "poses"),
     "step": (lambda r, s: cs.plan(r, [2, 0], [2, 1], s).sample(0), InputError, "step is 0; it must be"),
     "part": (lambda r, s: cs.plan(r, [2, 0], {"positon": [1, 0, 0]}, s), UnknownNameError, "'position'"),
     "planner": (
