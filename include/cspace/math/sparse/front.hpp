@@ -28,8 +28,8 @@ CSPACE_INLINE void store_pack(double* to, FrontPack pack) { std::memcpy(to, &pac
 
 // C(r, c) −= Σ_k A(r, k) B(c, k) for `packs` packs of rows and so many columns.
 template <int packs, int columns>
-CSPACE_INLINE void subtract_block(double* C, std::size_t stride_c, const double* A, const double* B,
-                                  std::size_t stride, int count) {
+CSPACE_INLINE void subtract_block(double* C, std::ptrdiff_t stride_c, const double* A, const double* B,
+                                  std::ptrdiff_t stride, int count) {
     FrontPack sum[columns][packs];
     for (int c = 0; c < columns; ++c) {
         for (int i = 0; i < packs; ++i) sum[c][i] = load_pack(C + c * stride_c + front_lanes * i);
@@ -49,8 +49,8 @@ CSPACE_INLINE void subtract_block(double* C, std::size_t stride_c, const double*
 
 // The same for a number of rows that is a multiple of four.
 template <int columns>
-CSPACE_INLINE void subtract_rows(double* C, std::size_t stride_c, const double* A, const double* B,
-                                 std::size_t stride, int rows, int count) {
+CSPACE_INLINE void subtract_rows(double* C, std::ptrdiff_t stride_c, const double* A, const double* B,
+                                 std::ptrdiff_t stride, int rows, int count) {
     constexpr int strip = front_lanes * front_strip_packs;
     int r = 0;
     for (; r + strip <= rows; r += strip)
@@ -65,7 +65,7 @@ CSPACE_INLINE void subtract_rows(double* C, std::size_t stride_c, const double* 
 // Factors the square at the head of so many updated columns; false where a pivot is not positive. The rows of
 // `head` below its diagonal, and the inverses of the pivots.
 template <int columns>
-CSPACE_INLINE bool factor_head(double* block, std::size_t stride, double (&head)[columns][columns],
+CSPACE_INLINE bool factor_head(double* block, std::ptrdiff_t stride, double (&head)[columns][columns],
                                double (&inverse)[columns]) {
     for (int c = 0; c < columns; ++c) {
         for (int r = c; r < columns; ++r) {
@@ -99,7 +99,7 @@ CSPACE_INLINE void solve_head(const double (&head)[columns][columns], const doub
 
 template <int columns>
 CSPACE_INLINE bool factor_columns_of(double* panel, int stride, int first) {
-    const std::size_t step = std::size_t(stride);
+    const std::ptrdiff_t step = std::ptrdiff_t(stride);
     double* const block = panel + first * step;
     if (first > 0) {
         // Rows above the diagonal complete the last pack; they are undefined anyway.
@@ -142,25 +142,25 @@ CSPACE_INLINE bool factor_columns(double* panel, int stride, int pivots, int fir
 // complement, a square of `size` rows, a multiple of four; row: the first of the strip, a multiple of twelve.
 CSPACE_INLINE void update_strip(double* schur, int size, const double* panel, int stride, int pivots,
                                 int row) {
-    const std::size_t step = std::size_t(size);
+    const std::ptrdiff_t step = std::ptrdiff_t(size);
     const double* const below = panel + pivots;
     const int left = size - row;
     const int packs = left < front_lanes * front_strip_packs ? left / front_lanes : front_strip_packs;
     for (int c = 0; c < row + packs * front_lanes; c += front_lanes) {
         double* const C = schur + c * step + row;
         if (packs == front_strip_packs)
-            subtract_block<3, 4>(C, step, below + row, below + c, std::size_t(stride), pivots);
+            subtract_block<3, 4>(C, step, below + row, below + c, std::ptrdiff_t(stride), pivots);
         else if (packs == 2)
-            subtract_block<2, 4>(C, step, below + row, below + c, std::size_t(stride), pivots);
+            subtract_block<2, 4>(C, step, below + row, below + c, std::ptrdiff_t(stride), pivots);
         else
-            subtract_block<1, 4>(C, step, below + row, below + c, std::size_t(stride), pivots);
+            subtract_block<1, 4>(C, step, below + row, below + c, std::ptrdiff_t(stride), pivots);
     }
 }
 
 // L x = b of one front: x has the pivots, then the rows below, which lose their part.
 CSPACE_INLINE void solve_lower(const double* panel, int stride, int pivots, double* x) {
     for (int k = 0; k < pivots; ++k) {
-        const double* const column = panel + std::size_t(k) * std::size_t(stride);
+        const double* const column = panel + std::ptrdiff_t(k) * std::ptrdiff_t(stride);
         const double pivot = x[k] / column[k];
         x[k] = pivot;
         int r = k + 1;
@@ -174,7 +174,7 @@ CSPACE_INLINE void solve_lower(const double* panel, int stride, int pivots, doub
 // Lᵀ x = b of one front: the rows below the pivots are known.
 CSPACE_INLINE void solve_upper(const double* panel, int stride, int pivots, double* x) {
     for (int k = pivots - 1; k >= 0; --k) {
-        const double* const column = panel + std::size_t(k) * std::size_t(stride);
+        const double* const column = panel + std::ptrdiff_t(k) * std::ptrdiff_t(stride);
         double sum = x[k];
         int r = k + 1;
         for (; (stride - r) % front_lanes; ++r) sum -= column[r] * x[r];
