@@ -27,6 +27,7 @@ LINES = {
     "planners": "planners rrt",
     "space": f"space planar_2r --scene {ROOT}/examples/two_links.txt --from -0.3 0.5 --to -1.2 1.25",
     "simulate": "simulate puma560 0.1 -1.2 1 0.2 0.4 0.3 --duration 0.1",
+    "traj": "traj panda --from ready --to 0.5 0.2 0 -1.5 0 1.8 0.8",
     "doctor": "doctor",
 }
 Q = [0.1, -1.2, 1.0, 0.2, 0.4, 0.3]
@@ -134,6 +135,60 @@ def test_simulate_says_what_the_library_says(tmp_path):
     assert "ended   ended" in told.out
     assert told.code == 0
     assert cspace("simulate puma560 --duration -1", *typed(Q)).code == 2
+
+
+START, GOAL = "0 -0.8 0 -2.4 0 1.6 0.8", "0.5 0.2 0 -1.5 0 1.8 0.8"
+
+
+def test_traj_says_what_the_library_says(tmp_path):
+    robot = cs.load_robot("panda")
+    start, goal = (np.array(text.split(), dtype=float) for text in (START, GOAL))
+    picture, table, ros = (tmp_path / name for name in ("move.png", "move.csv", "move.yaml"))
+    line = f"traj panda --from {START} --to {GOAL} --jerk 100 --rate 50"
+    found = cspace(f"{line} --plot {picture} -o {table} --json").json
+    motion = robot.move_to(goal, start=start, jerk=100.0)
+    assert found["duration"] == motion.duration
+    np.testing.assert_array_equal(found["q"], motion.sample(50).q)
+    assert found["written"] == [str(table), str(picture)]
+    assert picture.stat().st_size > 10_000
+    read = cs.trajectory.from_csv(table)
+    np.testing.assert_allclose(read(read.duration), goal, atol=1e-12)
+    assert f"wrote {ros}" in cspace(f"{line} -o {ros}").out
+    assert ros.read_text().startswith("joint_names: [")
+
+
+def test_traj_goes_through_waypoints_and_along_lines(tmp_path):
+    robot = cs.load_robot("panda")
+    way = tmp_path / "way.csv"
+    rows = np.array([START.split(), GOAL.split(), [0.6, 0.3, 0.2, -1.2, 0, 1.9, 0.5]], dtype=float)
+    way.write_text("a,b,c,d,e,f,g\n" + "\n".join(",".join(map(str, row)) for row in rows))
+    for option, path in (("", cs.spline(rows)), ("--blend 0.1", cs.blend(rows, 0.1))):
+        found = cspace(f"traj panda --waypoints {way} {option} --json").json
+        assert found["duration"] == cs.time_parametrize(path, robot).duration
+    line = cspace("traj ur5e --from up --line 0.3 0.2 0.7 --acceleration 8 --speed 0.2 --json")
+    if line.code == 0:
+        assert line.json["duration"] > 0
+    far = cspace("traj ur5e --from up --line 3 0 0 --acceleration 8")
+    assert far.code == 1
+    assert "no motion" in far.out
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("--from ready", "one of --to, --waypoints and --line"),
+        (f"--to {GOAL} --line 1 0 0", "given: --to and --line"),
+        (f"--from ready --to {GOAL} --blend 0.1", "--blend does not go with --to"),
+        ("--from ready --line 1 0", "--line has 2 numbers"),
+        ("--from ready --line 0.4 0 0.5 --profile cubic", "--profile does not go with --line"),
+        (f"--from ready --to {GOAL} -o move.txt", "it must be .yaml or .csv"),
+        ("--waypoints nowhere.csv", "nowhere.csv"),
+    ],
+)
+def test_traj_names_what_it_cannot_take(words, message):
+    result = cspace(f"traj panda {words}")
+    assert result.code in (2, 3)
+    assert message in result.err
 
 
 def test_simulate_holds_pulls_and_pushes_joints():

@@ -1,0 +1,252 @@
+"""`cspace traj`: a motion in time, between configurations, through waypoints, or along a line of the tip."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.cli.arguments import (
+    add_chain,
+    add_degrees,
+    add_option,
+    add_robot,
+    read_angle,
+    read_length,
+    read_number,
+    read_radians,
+)
+from cspace.cli.exits import Exit, UsageError
+from cspace.cli.output import Output, Table, check_format, check_writable
+from cspace.cli.robot import (
+    degrees_note,
+    joint_headings,
+    joint_texts,
+    load_chosen,
+    need_chain,
+)
+from cspace.cli.verbs.plan import start_of, typed_configuration
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
+    from cspace.trajectory import Trajectory
+
+EXAMPLES: Final = """
+cspace traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --plot move.png
+cspace traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --profile trapezoidal --rate 500 -o move.yaml
+cspace traj ur5e --waypoints way.csv --blend 0.1 --acceleration 8 --torque --json
+cspace traj ur5e --from up --line 0.3 0.2 0.7 180 0 90 --deg --acceleration 8 --speed 0.25
+"""
+
+PROFILES: Final = ("double_s", "trapezoidal", "cubic", "quintic", "septic", "minimum_jerk")
+"""Of motions from one configuration to another."""
+
+ENDINGS: Final = (".yaml", ".yml", ".csv")
+"""Of files of samples."""
+
+ROWS: Final = 10
+"""How many states a table shows."""
+
+GOALS: Final = ("to", "waypoints", "line")
+"""The options that say where the motion goes."""
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    add_robot(parser)
+    text = "start: a value per joint, or a named pose (default: the pose home)"
+    add_option(parser, "--from Q…", text, str, dest="start")
+    group = parser.add_argument_group("goal")
+    add_option(group, "--to Q…", "a value per joint, or a named pose", str)
+    text = "a file of configurations, a row of numbers per waypoint (.csv); the first is the start"
+    add_option(group, "--waypoints FILE", text, Path)
+    text = "the tip on a straight line to X Y Z in the base, or X Y Z R P Y with roll, pitch, yaw"
+    add_option(group, "--line X…", text, read_angle)
+    group = parser.add_argument_group("motion")
+    text = "from a configuration to another (default: double_s)"
+    add_option(group, "--profile", text, choices=PROFILES)
+    add_option(group, "--duration S", "how long [s] (default: as short as the limits allow)", read_number)
+    text = "round the corners of --waypoints within this distance [rad, m] (default: a spline through them)"
+    add_option(group, "--blend D", text, read_number)
+    for name, unit in (("velocity", "rad/s"), ("acceleration", "rad/s²"), ("jerk", "rad/s³")):
+        text = f"largest {name} of all joints [{unit}, or m] (default: that of the robot)"
+        add_option(group, f"--{name} V", text, read_number)
+    add_option(group, "--torque", "keep the efforts of the robot too, by its dynamics")
+    add_option(group, "--speed V", "largest speed of the tip [m/s]: 0.25, or 25cm", read_length)
+    add_option(group, "--turn-rate W", "largest angular velocity of the tip [rad/s]", read_number)
+    text = "write samples: .yaml for ROS (JointTrajectory), or .csv"
+    add_option(parser, "-o --output FILE", text, Path)
+    add_option(
+        parser, "--rate HZ", "samples per second of -o and --json (default: 100)", read_number, default=100.0
+    )
+    add_option(parser, "--plot FILE", "draw position to jerk with the limits (.png, .svg, .pdf)", Path)
+    add_degrees(parser)
+    add_chain(parser)
+
+
+def run(args: argparse.Namespace, out: Output) -> int:
+    """Print the motion, or why there is none."""
+    check_files(args)
+    robot = load_chosen(args)
+    need_chain(robot)
+    motion = find_motion(args, robot)
+    written = write_files(args, robot, motion) if motion else []
+    if out.as_json:
+        out.document(describe_motion(args, robot, motion, written))
+    else:
+        print_motion(args, out, robot, motion)
+        for path in written:
+            out.line(f"wrote {path}")
+        out.hint(degrees_note(args, robot))
+    return Exit.DONE if motion else Exit.NEGATIVE
+
+
+def check_files(args: argparse.Namespace) -> None:
+    """Refuse files that cannot be written, before any computation."""
+    if args.plot is not None:
+        check_format(args.plot)
+        check_writable(args.plot)
+    if args.output is not None:
+        if args.output.suffix not in ENDINGS:
+            raise UsageError(f"-o {args.output} ends with {args.output.suffix!r}; it must be .yaml or .csv")
+        check_writable(args.output)
+
+
+def find_motion(args: argparse.Namespace, robot: Robot) -> Trajectory:
+    """The motion of the library for the goal that is given."""
+    given = [name for name in GOALS if getattr(args, name) is not None]
+    if len(given) != 1:
+        said = " and ".join(f"--{name}" for name in given) or "none"
+        raise UsageError(f"one of --to, --waypoints and --line says where the motion goes; given: {said}")
+    limits = {name: getattr(args, name) for name in ("velocity", "acceleration", "jerk")}
+    path_limits = {"speed": args.speed, "turn_rate": args.turn_rate, "torque": args.torque or None}
+    if given == ["to"]:
+        refuse(args, "--to", ("blend", "torque", "speed", "turn_rate"))
+        profile = args.profile or "double_s"
+        start, goal = start_of(args, robot), typed_configuration(args, args.to, robot, "--to")
+        return robot.move_to(goal, start=start, profile=profile, duration=args.duration, **limits)
+    refuse(args, f"--{given[0]}", ("profile", "duration"))
+    if given == ["line"]:
+        refuse(args, "--line", ("blend",))
+        start = start_of(args, robot)
+        T = line_goal(args, robot, start)
+        return robot.move_linear(T, start=start, **limits, **path_limits)
+    if args.start is not None:
+        raise UsageError("--from and --waypoints both give the start: leave --from out")
+    return time_waypoints(args, robot, limits | path_limits)
+
+
+def refuse(args: argparse.Namespace, goal: str, names: tuple[str, ...]) -> None:
+    """Raises UsageError for options that do not go with a goal."""
+    for name in names:
+        if getattr(args, name):
+            raise UsageError(f"--{name.replace('_', '-')} does not go with {goal}; leave it out")
+
+
+def line_goal(args: argparse.Namespace, robot: Robot, start: Array) -> Array:
+    """The pose (4, 4) at the end of --line; with three numbers the rotation stays."""
+    from cspace.spatial import pose
+
+    if len(args.line) not in (3, 6):
+        raise UsageError(f"--line has {len(args.line)} numbers; it takes X Y Z, or X Y Z R P Y")
+    if len(args.line) == 3:
+        T = np.array(robot.fk(start))
+        T[:3, 3] = args.line
+        return T
+    angles = [read_radians(angle, degrees=args.deg) for angle in args.line[3:]]
+    return pose(args.line[:3], rpy=angles)
+
+
+def time_waypoints(args: argparse.Namespace, robot: Robot, limits: dict[str, Any]) -> Trajectory:
+    """The fastest motion through the waypoints of a file."""
+    from cspace.trajectory import blend, spline, time_parametrize
+
+    waypoints = read_waypoint_file(args.waypoints, robot.dof, degrees=args.deg)
+    path = spline(waypoints) if args.blend is None else blend(waypoints, args.blend)
+    return time_parametrize(path, robot, **limits)
+
+
+def read_waypoint_file(path: Path, dof: int, *, degrees: bool) -> Array:
+    """The rows (k, dof) of a table of numbers; a first line of words is skipped."""
+    from cspace.errors import DescriptionError
+    from cspace.files import read_text
+
+    rows: list[list[float]] = []
+    lines = read_text(path, "CSV file", LARGEST_FILE, DescriptionError).splitlines()
+    for number, line in enumerate(lines, start=1):
+        cells = [cell for cell in line.replace(",", " ").replace(";", " ").split() if cell]
+        if not cells or line.lstrip().startswith("#"):
+            continue
+        try:
+            row = [read_radians(read_angle(cell), degrees=degrees) for cell in cells]
+        except (ValueError, argparse.ArgumentTypeError):
+            if not rows and number == 1:
+                continue
+            raise DescriptionError("the row is not numbers", path=str(path), line=number) from None
+        if len(row) != dof:
+            raise DescriptionError(
+                f"the row has {len(row)} numbers, the robot {dof} joints", path=str(path), line=number
+            )
+        rows.append(row)
+    if len(rows) < 2:
+        raise DescriptionError("the file has fewer than two waypoints", path=str(path), line=len(lines) or 1)
+    return np.array(rows)
+
+
+LARGEST_FILE: Final = 1 << 28
+"""Bytes of a file of waypoints."""
+
+
+def write_files(args: argparse.Namespace, robot: Robot, motion: Trajectory) -> list[Path]:
+    """Write the samples and the picture that were requested; the files."""
+    written = []
+    if args.output is not None:
+        from cspace.trajectory import to_csv, to_ros
+
+        write = to_csv if args.output.suffix == ".csv" else to_ros
+        write(motion, args.output, rate=args.rate)
+        written.append(args.output)
+    if args.plot is not None:
+        from cspace import plot
+
+        plot.save(plot.trajectory(motion, limits=robot), args.plot)
+        written.append(args.plot)
+    return written
+
+
+def describe_motion(
+    args: argparse.Namespace, robot: Robot, motion: Trajectory, written: list[Path]
+) -> dict[str, Any]:
+    """The motion as JSON data [s, rad, m]."""
+    samples = motion.sample(args.rate) if motion else None
+    check = motion.check(robot.limits) if motion else None
+    return {
+        "schema": "cspace.traj/1",
+        "robot": robot.name,
+        "joints": list(robot.joint_names),
+        "kind": type(motion).__name__,
+        "duration": motion.duration,
+        "reason": motion.reason,
+        "exceeded": [] if check is None else [f"{each.joint}: {each.limit}" for each in check.violations],
+        "times": [] if samples is None else samples.times.tolist(),
+        "q": [] if samples is None else samples.q.tolist(),
+        "qd": [] if samples is None else samples.qd.tolist(),
+        "qdd": [] if samples is None else samples.qdd.tolist(),
+        "written": [str(path) for path in written],
+    }
+
+
+def print_motion(args: argparse.Namespace, out: Output, robot: Robot, motion: Trajectory) -> None:
+    """Some states as a table, then what the motion keeps."""
+    if not motion:
+        out.sentence(f"{robot.name}: no motion: {motion.reason}", style="yellow")
+        return
+    table = Table(["time [s]", *joint_headings(robot)])
+    for t in np.linspace(0.0, motion.duration, ROWS + 1):
+        table.add(f"{t:.4g}", *joint_texts(motion(t), robot, degrees=args.deg))
+    out.table(table)
+    out.line()
+    check = motion.check(robot.limits)
+    out.facts({"duration": f"{motion.duration:.6g} s", "limits": "kept" if check else repr(check)[1:-1]})
