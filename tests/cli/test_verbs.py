@@ -81,6 +81,7 @@ def test_help_has_examples_that_parse(verb):
 def test_examples_of_the_help_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "examples/cell.toml", tmp_path)
+    (tmp_path / "way.csv").write_text("0 -1.2 1 0 0.3 0\n0.4 -1 0.8 0.2 0.3 0\n0.8 -1.1 1 0.2 0 0.5\n")
     for verb in VERBS:
         for line in import_verb(verb).EXAMPLES.strip().splitlines():
             if not any(word in line for word in ("arm.urdf", "--plot", "yard.geojson", "spheres.json")):

@@ -38,7 +38,7 @@ EXAMPLES: Final = """
 cspace traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --plot move.png
 cspace traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --profile trapezoidal --rate 500 -o move.yaml
 cspace traj ur5e --waypoints way.csv --blend 0.1 --acceleration 8 --torque --json
-cspace traj ur5e --from up --line 0.3 0.2 0.7 180 0 90 --deg --acceleration 8 --speed 0.25
+cspace traj panda --from ready --line 0.4 0.2 0.4 --speed 25cm --turn-rate 1
 """
 
 PROFILES: Final = ("double_s", "trapezoidal", "cubic", "quintic", "septic", "minimum_jerk")
