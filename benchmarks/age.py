@@ -40,6 +40,18 @@ SOURCES = {
         *("src/kernels/dynamics_simulation.cpp", "src/library/dynamics_roll_out.cpp"),
         *("src/bindings/dynamics_simulation.cpp", "src/cspace/dynamics/rollout.py"),
     ],
+    "trajectory": [
+        *("include/cspace/math", "include/cspace/trajectory", "src/cspace/trajectory"),
+        *("src/library/trajectory_states.cpp", "src/bindings/trajectory.cpp"),
+    ],
+    "path_timing": [
+        *("include/cspace/math", "include/cspace/trajectory", "src/cspace/trajectory"),
+        "src/bindings/trajectory_timing.cpp",
+    ],
+    "cartesian": [
+        *("include/cspace/ik/tracking", "include/cspace/trajectory", "src/cspace/trajectory"),
+        *("src/cspace/cartesian", "src/cspace/plan_motion", "src/bindings/ik_tracking.cpp"),
+    ],
     "": [
         *("include/cspace/math", "include/cspace/kinematics", "include/cspace/ik", "src/kernels"),
         *("src/library", "src/bindings", "src/cspace/ik", "src/cspace/kinematics"),

@@ -11,6 +11,7 @@ import further_tables
 import navigation_numbers
 import planning_tables
 import simulation_tables
+import trajectory_tables
 from arms import CLASSIC as ARMS
 from rows import Row, row
 
@@ -307,6 +308,7 @@ def table(results: Results) -> list[Row]:
             *navigation_numbers.ROWS,
             *planning_tables.ROWS,
             *dynamics_tables.ROWS,
+            *trajectory_tables.ROWS,
             *simulation_tables.ROWS,
         ]
     ]

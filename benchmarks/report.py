@@ -25,6 +25,7 @@ import navigation_tables  # noqa: E402
 import numbers_table  # noqa: E402
 import planning_tables  # noqa: E402
 import simulation_tables  # noqa: E402
+import trajectory_tables  # noqa: E402
 from rows import Row  # noqa: E402
 
 NAMES = {
@@ -52,6 +53,9 @@ def measured_names() -> list[str]:
         *PLANNING,
         "dynamics",
         "simulation",
+        "trajectory",
+        "path_timing",
+        "cartesian",
     ]
 
 
@@ -324,6 +328,13 @@ The Panda of example-robot-data without friction, steps of a millisecond, from P
 and row [ns], median (95th percentile), in turns in one process.
 
 {simulation_tables.section(results)}
+
+## Trajectories and Cartesian motion
+
+Processor time, from Python. Motions from state to state and splines are random, of seven joints; peers in turns on the same
+problems.
+
+{trajectory_tables.section(results)}
 
 ## Import
 
