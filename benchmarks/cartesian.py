@@ -1,9 +1,9 @@
 """Cartesian motion and the whole way from a pose to a motion: benchmarks/results/cartesian.json.
 
-Usage: python benchmarks/cartesian.py [--write] [--repeat 5]. `move` needs the shared data folder ($CSPACE_DATA,
-default ../shared/data): the MotionBenchMaker problems of the Panda. Times are those of the thread's processor
-clock, from Python, the median of the rounds per problem; then the median, the 95th percentile and the largest
-of the problems.
+Usage: python benchmarks/cartesian.py [--write] [--repeat 5]. `move` needs the shared data folder
+($CSPACE_DATA, default ../shared/data): the MotionBenchMaker problems of the Panda. Times are those of the
+thread's processor clock, from Python, the median of the rounds per problem; then the median, the 95th
+percentile and the largest of the problems.
 """
 
 from __future__ import annotations

@@ -331,8 +331,8 @@ and row [ns], median (95th percentile), in turns in one process.
 
 ## Trajectories and Cartesian motion
 
-Processor time, from Python. Motions from state to state and splines are random, of seven joints; peers in turns on the same
-problems.
+Processor time, from Python. Motions from state to state and splines are random, of seven joints; peers in
+turns on the same problems.
 
 {trajectory_tables.section(results)}
 

@@ -41,18 +41,20 @@ def states_table(measured: Results) -> str:
     return table(heading, body)
 
 
+def time_and_excess(entry: dict[str, float] | None) -> str:
+    if entry is None:
+        return "—"
+    excess = max(entry["over_velocity"], entry["over_acceleration"], 0.0)
+    return f"{entry['us']:.0f} ({100 * excess:.2g} %)"
+
+
 def timing_table(measured: Results) -> str:
     if not measured:
         return "Timing of paths: not measured."
     body = []
     for kind, label in (("uniform", "duration within 0.1 %"), ("automatic", "automatic grid")):
         for count, peers in measured[kind].items():
-            cells = [
-                f"{peers[peer]['us']:.0f} ({100 * max(peers[peer]['over_velocity'], peers[peer]['over_acceleration'], 0):.2g} %)"
-                if peer in peers
-                else "—"
-                for peer in ("cspace", "copp-py", "toppra")
-            ]
+            cells = [time_and_excess(peers.get(peer)) for peer in ("cspace", "copp-py", "toppra")]
             body.append([f"{count} waypoints, {label}", *cells])
     heading = ["timing of splines, µs (limits exceeded by)", "**cspace**", "copp-py", "toppra"]
     return table(heading, body)
