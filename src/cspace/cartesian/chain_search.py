@@ -18,7 +18,7 @@ from cspace.trajectory.cartesian_path import CartesianPath
 STATION_SPACING: Final = 0.04
 """[m or rad] Of the poses at which the redundant joint is chosen."""
 
-STATIONS: Final = (16, 96)
+STATIONS: Final = (16, 384)
 """Fewest and most of them."""
 
 FINER: Final = 8
