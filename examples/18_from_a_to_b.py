@@ -12,8 +12,8 @@ a = np.radians([0, -45, 0, -135, 0, 90, 45])
 b = np.radians([60, 10, -20, -90, 15, 110, 0])
 
 for profile in ("double_s", "trapezoidal", "cubic", "quintic", "septic"):
-    jerk = {} if profile == "trapezoidal" else {"jerk": 400}
-    motion = robot.move_to(b, start=a, profile=profile, **jerk)
+    jerk = None if profile == "trapezoidal" else 400.0
+    motion = robot.move_to(b, start=a, profile=profile, jerk=jerk)
     v, a_most, j = (np.abs(np.stack(motion.extremes(order)[::2])).max() for order in (1, 2, 3))
     print(f"{profile:12} {motion.duration:.3f} s, at most {v:.2f} rad/s, {a_most:.1f} rad/s², {j:.0f} rad/s³")
     assert motion.check(robot)

@@ -20,9 +20,9 @@ for method in ("rk4", "variational"):
 adrift = cs.load_robot("panda", floating=True)
 qd = np.concatenate([np.zeros(6), np.linspace(-1, 1, 7)])
 run = adrift.simulate(q, qd, duration=5.0, dt=0.005, method="variational", gravity=(0, 0, 0))
-placed = {"T_world_base": run.T_world_base}
-linear, about_center = np.split(adrift.centroidal_momentum(run.q, run.qd, **placed), 2, axis=1)
-angular = about_center + np.cross(adrift.center_of_mass(run.q, **placed), linear)  # about the origin
+T = run.T_world_base
+linear, about_center = np.split(adrift.centroidal_momentum(run.q, run.qd, T_world_base=T), 2, axis=1)
+angular = about_center + np.cross(adrift.center_of_mass(run.q, T_world_base=T), linear)  # about the origin
 errors = [np.abs(each - each[0]).max() for each in (linear, angular)]
 print(f"{run}: momentum off by at most {errors[0]:.1e} N·s and {errors[1]:.1e} N·m·s")
 assert max(errors) < 1e-11

@@ -9,9 +9,9 @@ import cspace as cs
 from cspace import model
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
-point = model.Inertial(1.0, (1, 0, 0), np.zeros((3, 3)))  # 1 kg at the end of a rod of 1 m
+point = model.Inertial(1.0, np.array([1.0, 0.0, 0.0]), np.zeros((3, 3)))  # 1 kg at the end of a rod of 1 m
 links = (model.Link("ceiling"), model.Link("rod", point))
-pivot = model.Joint("pivot", "continuous", "ceiling", "rod", axis=(0, 1, 0))
+pivot = model.Joint("pivot", "continuous", "ceiling", "rod", axis=np.array([0.0, 1.0, 0.0]))
 pendulum = cs.Robot(model.Description("pendulum", links, (pivot,)))
 DOWN = np.pi / 2
 

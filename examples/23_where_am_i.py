@@ -17,7 +17,7 @@ def main(folder: Path) -> None:
     run = cs.navigation.follow([(0, 0), (9, 0), (9, 6), (0, 6), (0, 1)], vehicle=cs.Unicycle())
 
     # What the robot measured of it: noisy steps, and ranges and bearings of four landmarks.
-    landmarks = Landmarks(range(4), [(1.5, -1.0), (10.5, 1.0), (8.0, 7.5), (-1.5, 6.0)])
+    landmarks = Landmarks(np.arange(4), np.array([[1.5, -1.0], [10.5, 1.0], [8.0, 7.5], [-1.5, 6.0]]))
     sensor = RangeBearing(range_sigma=0.1, bearing_sigma=0.02, most_range=3.0)
     log = simulate(run, landmarks, sensor=sensor, rng=3)
 
@@ -26,14 +26,17 @@ def main(folder: Path) -> None:
     assert found.status == "localised"
     print(found)
 
-    def rmse(poses: np.ndarray) -> float:
-        return float(np.sqrt(np.mean(np.sum((poses - log.truth.poses)[:, :2] ** 2, axis=1))))
+    truth = log.truth
+    assert truth is not None
 
-    start = log.truth.poses[0]
+    def rmse(poses: np.ndarray) -> float:
+        return float(np.sqrt(np.mean(np.sum((poses - truth.poses)[:, :2] ** 2, axis=1))))
+
+    start = truth.poses[0]
     print(f"odometry : {rmse(log.odometry.dead_reckoning(start).poses):.3f} m")
-    print(f"filter   : {rmse(found.at(log.truth.times)):.3f} m")
-    print(f"smoother : {rmse(past.at(log.truth.times)):.3f} m")
-    assert rmse(past.at(log.truth.times)) < rmse(log.odometry.dead_reckoning(start).poses)
+    print(f"filter   : {rmse(found.at(truth.times)):.3f} m")
+    print(f"smoother : {rmse(past.at(truth.times)):.3f} m")
+    assert rmse(past.at(truth.times)) < rmse(log.odometry.dead_reckoning(start).poses)
 
     rows = np.column_stack([found.times, past.poses])
     np.savetxt(folder / "where.csv", rows, fmt="%.4f", delimiter=",", header="time,x,y,theta")
