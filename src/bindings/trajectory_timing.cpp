@@ -1,5 +1,4 @@
 // The fastest motion along a path, for cspace.trajectory.time_parametrize.
-#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
@@ -11,6 +10,7 @@
 #include "arrays_in_place.hpp"
 #include "bindings.hpp"
 #include "library/trajectory_jerk.hpp"
+#include "maps_points.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -37,6 +37,43 @@ def test_no_limit_is_exceeded_on_many_paths(name):
         assert excess(timed, v, a) <= ROUNDING
 
 
+@pytest.mark.parametrize("copies", range(1, 8))
+@pytest.mark.parametrize("degree", range(2, 6))
+def test_repeated_control_points_do_not_make_a_path_stand(degree, copies):
+    rng = np.random.default_rng([degree, copies])
+    points = rng.uniform(-1, 1, (6, 3))
+    for at in (0, 2, 5):
+        path = cs.trajectory.b_spline(np.insert(points, [at] * copies, points[at], axis=0), degree)
+        timed = cs.time_parametrize(path, velocity=2.0, acceleration=8.0)
+        assert timed, timed.reason
+        assert excess(timed, np.full(3, 2.0), np.full(3, 8.0)) <= ROUNDING
+
+
+@pytest.mark.parametrize("jerk", [None, 50.0])
+def test_a_piece_without_motion_is_named(jerk):
+    stand = [[[0.0, 1.0], [0.0, 1.0], [0.0, 1.0], [0.0, 1.0]]]
+    move = [[[0.0, 1.0], [0.1, 1.0], [0.2, 1.1], [0.3, 1.2]]]
+    for controls, s in (([*stand, [[0.0, 1.0], *move[0][1:]]], 0.0), ([*move, [move[0][-1]] * 4], 1.0)):
+        timed = cs.time_parametrize(Path([0, 1, 2], controls), velocity=1.0, acceleration=2.0, jerk=jerk)
+        assert not timed
+        assert timed.reason.startswith(f"nothing moves from s = {s:g} on")
+        assert timed.place == s
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_place_where_all_joints_stand_and_bend_otherwise_is_named(seed):
+    """A quadratic that comes to rest in its parameter, and leaves in another direction."""
+    a, b, c = np.random.default_rng(seed).uniform(-1, 1, (3, 2))
+    timed = cs.time_parametrize(Path([0, 1, 3], [[a, b, b], [b, b, c]]), velocity=1.0, acceleration=2.0)
+    assert not timed
+    assert timed.place == 1.0
+    assert "make the path in parts" in timed.reason
+    for controls in ([[a, b, b]], [[b, b, c]]):  # at the ends it is no fault
+        part = cs.time_parametrize(Path([0, 1], controls), velocity=1.0, acceleration=2.0)
+        assert part
+        assert excess(part, np.ones(2), np.full(2, 2.0)) <= ROUNDING
+
+
 @pytest.mark.parametrize("name", MAKERS)
 def test_the_motion_is_the_path_and_its_derivatives(name):
     rng = np.random.default_rng(13)

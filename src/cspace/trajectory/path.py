@@ -146,6 +146,13 @@ class Path:
         slopes = np.abs(self._derivatives[1]).max(axis=1)
         return np.asarray(slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True))
 
+    def turning_places(self) -> Array:
+        """Breaks (m,) inside at which the slope of all joints vanishes and the second derivative jumps."""
+        slopes = np.linalg.norm(self._derivatives[1], axis=2)
+        small = SAME_WAYPOINT * np.maximum(slopes[:-1].max(axis=1), slopes[1:].max(axis=1))
+        vanish = (slopes[:-1, -1] <= small) & (slopes[1:, 0] <= small)
+        return np.asarray(self.breaks[1:-1][vanish & self._jumps(2)])
+
     @cached_property
     def continuity(self) -> int:
         """The highest order up to which no derivative jumps: 0 if slopes do, 1 if second derivatives do."""

@@ -134,7 +134,8 @@ def b_spline(control_points: ArrayLike, degree: int = 3, *, length: float | None
     """The B-spline with equal knots that begins at the first and ends at the last control point.
 
     control_points (k, dof) [rad or m], k > degree; the path stays within their hull and passes near them.
-    degree: 1 to 5. length: of the parameter, by default that of the polyline through the control points.
+    degree: 1 to 5. length: of the parameter, by default that of the polyline through the control points. Of
+    a point that is repeated, degree − 1 copies count: with more, the path would stand there.
 
     Returns a Path. Raises InputError for a wrong shape, NaN, too few points and another degree.
     Source: de Boor 1978, chapter X.
@@ -146,6 +147,11 @@ def b_spline(control_points: ArrayLike, degree: int = 3, *, length: float | None
             f"control_points has shape {q.shape}; a B-spline of degree {degree} needs"
             f" {count_things(degree + 1, 'point')} or more"
         )
+    q = _limit_copies(q, max(1, degree - 1))
+    if len(q) <= degree:  # copies that do not count, or points that are all the same
+        degree = len(q) - 1
+    if not degree:
+        raise InputError("the control points are all the same; a path needs two that differ")
     polyline = float(np.linalg.norm(np.diff(q, axis=0), axis=1).sum())
     whole = polyline if length is None else float(as_floats(length, "length"))
     if not whole > 0.0:
@@ -164,6 +170,13 @@ def b_spline(control_points: ArrayLike, degree: int = 3, *, length: float | None
         axis=1,
     )
     return Path(inner * (whole / pieces), controls)
+
+
+def _limit_copies(q: Array, most: int) -> Array:
+    """Points (k, dof) without those that are the same as so many before."""
+    same = np.append(False, (np.diff(q, axis=0) == 0.0).all(axis=1))
+    since = np.arange(len(q)) - np.maximum.accumulate(np.where(same, 0, np.arange(len(q))))
+    return np.asarray(q[since < most])
 
 
 def _blossom(q: Array, knots: Array, piece: int, arguments: list[float], degree: int) -> Array:

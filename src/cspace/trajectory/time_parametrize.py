@@ -153,6 +153,18 @@ class _Timer:
                 piece, j = map(int, locked[0])
                 s = float(self.path.breaks[piece])
                 return self._refuse(f"{self.labels[j]} moves from s = {s:.6g} on; its {name} limit is 0", s)
+        standing = np.flatnonzero(~moves.any(axis=1))
+        if standing.size:
+            s = float(self.path.breaks[standing[0]])
+            return self._refuse(f"nothing moves from s = {s:.6g} on; leave such pieces out of the path", s)
+        turning = self.path.turning_places()
+        if turning.size:
+            s = float(turning[0])
+            return self._refuse(
+                f"the slope vanishes at s = {s:.6g}, where the second derivative jumps; make the path in"
+                " parts that end there",
+                s,
+            )
         limited = np.isfinite(self.velocity) | np.isfinite(self.acceleration)
         free = ~(moves & limited).any(axis=1)
         if self.sampled is None and free.any():
