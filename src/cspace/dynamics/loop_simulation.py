@@ -11,19 +11,19 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats, guard_memory, positive_number, whole_number
+from cspace.arrays import Array, as_floats, guard_memory, leading_axes, positive_number, whole_number
 from cspace.dynamics.constrained_motion import find_allowed_motions
 from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.loop_dynamics import check_state, project_state, solve_accelerations
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.mechanics import Flags, State, advance_state, find_resistances
 from cspace.dynamics.momentum import kinetic_energy, potential_energy
-from cspace.dynamics.rows import EARTH, Wrenches, check_gravity
+from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, check_mapping, check_wrench
 from cspace.dynamics.simulation import Simulation
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import LoopConstraints
 from cspace.kinematics.assembly import Numbers
-from cspace.kinematics.batch import check_choice
+from cspace.kinematics.batch import check_choice, check_flag
 from cspace.kinematics.loop_constraints import Placement
 from cspace.spatial import left_jacobian_inv_so3
 from cspace.spatial.checks import PoseLike
@@ -91,9 +91,16 @@ class LoopTask:
         wrenches = self.wrenches
         if callable(wrenches):
             wrenches = wrenches(t, self.shape(state.q).copy(), self.shape(state.qd).copy())
+        check_mapping(wrenches)
         if not wrenches:
             return None
-        full = {frame: as_floats(w, f"wrench at {frame!r}", last=(6,)) for frame, w in wrenches.items()}
+        full = {frame: check_wrench(w, frame) for frame, w in wrenches.items()}
+        for frame, w in full.items():
+            if leading_axes(wrenches=w.shape[:-1], q=self.lead) != self.lead:
+                raise InputError(
+                    f"wrench at {frame!r} has shape {w.shape}, expected {(*self.lead, 6)} as there are rows"
+                    " of q"
+                )
         return {
             frame: w if w.ndim == 1 else np.broadcast_to(w, (*self.lead, 6)).reshape(-1, 6)
             for frame, w in full.items()
@@ -205,7 +212,7 @@ def simulate_loops(
         "expressed_in": check_choice(expressed_in, "expressed_in", ("base", "tip")),
         "friction": False,
     }
-    damping, dry = find_resistances(robot) if friction else np.zeros((2, robot.dof))
+    damping, dry = find_resistances(robot) if check_flag(friction, "friction") else np.zeros((2, robot.dof))
     speed = positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]")
     rank = np.zeros(len(batch.q), dtype=np.intp)
     task = LoopTask(constraints, acts, control, wrenches, damping, dry, speed, threads, batch.shape, rank)

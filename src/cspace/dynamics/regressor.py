@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, guard_memory
-from cspace.dynamics.rows import EARTH, check_gravity, run_rows
+from cspace.dynamics.rows import EARTH, check_gravity, refuse_missing, refuse_rows, run_rows
 from cspace.kinematics import Assembly
-from cspace.kinematics.batch import Batch, check_output, check_robot, refuse_infinite, rows_of
+from cspace.kinematics.batch import Batch, check_output, check_robot, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Description, tree
 from cspace.spatial.checks import PoseLike
@@ -74,8 +74,9 @@ def regressor(
 
     Atkeson, An and Hollerbach 1986.
     """
+    refuse_missing(qd=qd, qdd=qdd)
     batch = rows_of(robot, q, qd=qd, qdd=qdd, T_world_base=T_world_base, threads=threads)
-    refuse_infinite(batch)
+    refuse_rows(batch)
     shape = (robot.dof, count_parameters(robot._assembly, friction))
     entries = len(batch.q) * shape[0] * shape[1]
     with guard_memory("q", f"an array of {len(batch.q)} rows", entries, "pass fewer"):

@@ -24,10 +24,10 @@ from cspace.dynamics.rollout import (
     check_torques,
     run_steps,
 )
-from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows
+from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, refuse_rows
 from cspace.dynamics.simulation import Simulation
 from cspace.errors import InputError, InputTypeError
-from cspace.kinematics.batch import check_choice, check_robot, refuse_infinite, thread_count
+from cspace.kinematics.batch import check_choice, check_flag, check_robot, thread_count
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 from cspace.tolerances import WHOLE_STEP
@@ -97,6 +97,7 @@ def simulate(
     Marsden and West 2001 (variational); Dormand and Prince 1980 (adaptive).
     """
     name = check_choice(method, "method", METHODS)
+    check_flag(stop_at_limits, "stop_at_limits")
     mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
     start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
     law = _check_control(control, start)
@@ -120,7 +121,7 @@ def _make_mechanics(
 ) -> Mechanics:
     """What acts on a robot at every time, checked."""
     check_robot(robot)
-    damping, dry = find_resistances(robot) if friction else np.zeros((2, robot.dof))
+    damping, dry = find_resistances(robot) if check_flag(friction, "friction") else np.zeros((2, robot.dof))
     return Mechanics(
         robot,
         check_gravity(gravity),
@@ -191,7 +192,7 @@ def _check_start(
 ) -> State:
     """The state at time zero; leading axes are broadcast."""
     batch = dynamic_rows(robot, q, qd=qd, T_world_base=T_world_base, threads=threads)
-    refuse_infinite(batch)
+    refuse_rows(batch)
     assert batch.qd is not None
     n, T = len(robot.joint_names), batch.T_world_base
     if robot.floating and T is None:
