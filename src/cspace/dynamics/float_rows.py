@@ -108,5 +108,9 @@ def refuse_unfit(batch: Batch) -> None:
 
 def refuse_overflow(result: Array) -> None:
     """Raise InputError where numbers that fit floats have results that do not."""
-    if result.dtype == np.float32 and not np.isfinite(result.sum()) and not np.isfinite(result).all():
+    if result.dtype != np.float32:
+        return
+    with np.errstate(over="ignore", invalid="ignore"):
+        total = result.sum()
+    if not np.isfinite(total) and not np.isfinite(result).all():
         raise InputError("the numbers given are too large for float32; use dtype=np.float64")

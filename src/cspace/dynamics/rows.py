@@ -81,8 +81,8 @@ def refuse_rows(batch: Batch) -> None:
     for name in ("q", *STATES):
         array = getattr(batch, name)
         if array is not None:
-            largest = FARTHEST / max(1, array.shape[1])
-            as_floats(array.reshape((*batch.shape, array.shape[1])), name, largest=largest)
+            rows = as_floats(array.reshape((*batch.shape, array.shape[1])), name, largest=FARTHEST)
+            as_floats(rows, name, largest=FARTHEST / max(1, array.shape[1]))
 
 
 def check_gravity(gravity: ArrayLike) -> Array:
