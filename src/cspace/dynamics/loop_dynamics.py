@@ -168,7 +168,7 @@ def loop_wrenches(
     return forces.reshape((*batch.shape, *forces.shape[-2:]))
 
 
-def loop_velocities(constraints: LoopConstraints, q: ArrayLike, driven: dict[str, ArrayLike]) -> Array:
+def loop_velocities(constraints: LoopConstraints, q: ArrayLike, driven: Mapping[str, ArrayLike]) -> Array:
     """The velocities of all joints when the driven ones move at given rates.
 
     q (..., n) [rad or m]: with closed loops. driven: joint → velocity (...) [rad/s or m/s].
@@ -179,7 +179,7 @@ def loop_velocities(constraints: LoopConstraints, q: ArrayLike, driven: dict[str
 
 
 def loop_accelerations(
-    constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike, driven: dict[str, ArrayLike]
+    constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike, driven: Mapping[str, ArrayLike]
 ) -> Array:
     """The accelerations of all joints when the driven ones accelerate at given rates.
 
