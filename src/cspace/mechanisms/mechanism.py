@@ -170,8 +170,8 @@ class Mechanism:
         q = self.configuration(driven)
         if q.ndim > 1:
             raise InputError(
-                f"driven values have shape {q.shape[:-1]}, expected one number each; assembly modes are of one"
-                " position"
+                f"driven values have shape {q.shape[:-1]}, expected one number each; assembly modes are of"
+                " one position"
             )
         return q
 
