@@ -337,3 +337,26 @@ def test_wrenches_on_loops(wrenches, kind):
     for given in (wrenches, lambda t, q, qd: wrenches):
         with pytest.raises(kind, match=r"wrench|frame"):
             simulate_loops(LINKAGE.constraints, CLOSED, STILL, duration=0.01, dt=0.005, wrenches=given)
+
+
+@pytest.mark.parametrize(
+    "tau", [0.0, np.zeros(2), np.zeros((2, 3)), np.full(3, np.nan), np.full(3, 1e300), "x", None]
+)
+def test_torques_of_loops(tau):
+    state = {"duration": 0.01, "dt": 0.005}
+    with pytest.raises((InputError, InputTypeError), match=r"^the torque of control at "):
+        LINKAGE.simulate(CLOSED, STILL, control=lambda t, q, qd: tau, **state)
+    if isinstance(tau, np.ndarray | str):
+        with pytest.raises((InputError, InputTypeError), match=r"^control "):
+            LINKAGE.simulate(CLOSED, STILL, control=tau, **state)
+
+
+def test_constant_torques_of_loops():
+    tau, state = np.array([0.7, 0.0, -0.2]), {"duration": 0.02, "dt": 0.005}
+    held = LINKAGE.simulate(CLOSED, STILL, control=tau, **state)
+    asked = LINKAGE.simulate(CLOSED, STILL, control=lambda t, q, qd: tau, **state)
+    rows = LINKAGE.simulate(np.stack([CLOSED] * 2), STILL, control=np.stack([tau, 0 * tau]), **state)
+    assert np.array_equal(held.q, asked.q)
+    assert np.array_equal(held.tau, asked.tau)
+    assert np.allclose(rows.q[0], held.q)
+    assert not np.allclose(rows.q[1], held.q)

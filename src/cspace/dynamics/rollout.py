@@ -274,6 +274,18 @@ def find_torques(task: Task, record: Record, k: int) -> Array:
     return check_torques(tau, qd.shape, f"the torque of control at step {k} (t = {t:g} s)")
 
 
+def check_control(control: Control | None, shape: tuple[int, ...]) -> Any:
+    """A control as a function, constant torques (dof,) or rows of them, or None. shape: (..., dof)."""
+    if control is None or callable(control):
+        return control
+    if isinstance(control, np.ndarray | list | tuple):
+        return check_torques(control, shape, "control")
+    raise InputTypeError(
+        f"control is a {type(control).__name__}, expected torques, or a function of t, q and qd that returns"
+        " them, or dynamics.PD or dynamics.ComputedTorque"
+    )
+
+
 def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
     """Torques as (dof,) or as rows; InputError for another shape than (..., dof) or NaN."""
     if tau is None:

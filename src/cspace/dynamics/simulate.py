@@ -21,12 +21,12 @@ from cspace.dynamics.rollout import (
     Control,
     Record,
     Task,
-    check_torques,
+    check_control,
     run_steps,
 )
 from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, refuse_rows
 from cspace.dynamics.simulation import Simulation
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError
 from cspace.kinematics.batch import check_choice, check_flag, check_robot, thread_count
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
@@ -100,7 +100,7 @@ def simulate(
     check_flag(stop_at_limits, "stop_at_limits")
     mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
     start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
-    law = _check_control(control, start)
+    law = check_control(control, start.qd.shape)
     task = _make_task(
         mechanics, name, start, law, wrenches, duration, dt, every, stop_at_limits, tolerance, time_limit
     )
@@ -130,18 +130,6 @@ def _make_mechanics(
         dry,
         positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]"),
         0 if threads is None else thread_count(threads, ()),
-    )
-
-
-def _check_control(control: Control | None, start: State) -> Any:
-    """A control as a function, constant torques (..., dof), or None."""
-    if control is None or callable(control):
-        return control
-    if isinstance(control, np.ndarray | list | tuple):
-        return check_torques(control, start.qd.shape, "control")
-    raise InputTypeError(
-        f"control is a {type(control).__name__}, expected torques, or a function of t, q and qd that returns"
-        " them, or dynamics.PD or dynamics.ComputedTorque"
     )
 
 

@@ -151,13 +151,14 @@ class Mechanism:
         q: ArrayLike,
         qd: ArrayLike,
         *,
-        control: Callable[..., ArrayLike] | None = None,
+        control: Callable[..., ArrayLike] | ArrayLike | None = None,
         duration: float,
         dt: float,
         **options: Any,
     ) -> Simulation:
         """The motion from a state q (..., n), qd (..., dof) on, with loops that stay closed to rounding.
 
+        control: torques (..., dof), or a function of t, q and qd that returns them, such as dynamics.PD.
         options: gravity, wrenches, expressed_in, friction, friction_speed, T_world_base, every, time_limit,
         threads. See dynamics.simulate_loops, which also names the errors.
         """
