@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
+from cspace.errors import InputError
 from dynamics.test_motion_and_force import ARMS, ROBOTS, STEP, TREES, ids, moved, scale
 from kinematics.robots import random_q
 from model.random_robots import random_pose
@@ -190,3 +191,18 @@ def test_matrices_are_written_into_an_array(robot, rng):
             else:
                 assert found is out
                 np.testing.assert_array_equal(again, out)
+
+
+@pytest.mark.parametrize("lead", [(), (4,), (2, 3), (0,)])
+def test_energies_are_written_to_out(lead):
+    robot, rng = cs.load_robot("panda"), np.random.default_rng(5)
+    q, qd = rng.normal(size=(2, *lead, robot.dof))
+    for ours, wanted in (
+        (lambda out: robot.kinetic_energy(q, qd, out=out), robot.kinetic_energy(q, qd)),
+        (lambda out: robot.potential_energy(q, out=out), robot.potential_energy(q)),
+    ):
+        out = np.full(lead, np.nan)
+        assert ours(out) is out
+        assert np.array_equal(out, wanted)
+        with pytest.raises(InputError, match="out has shape"):
+            ours(np.zeros((*lead, 2)))

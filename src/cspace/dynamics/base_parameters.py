@@ -156,7 +156,7 @@ def split_columns(A: Array) -> tuple[npt.NDArray[np.intp], Array]:
     while rest.size:
         lengths = np.linalg.norm(rest, axis=0)
         largest = lengths.max()
-        if largest <= DEPENDENT_COLUMN:
+        if not largest > DEPENDENT_COLUMN:
             break
         k = int(np.argmax(lengths >= NEARLY_LARGEST * largest))
         direction = rest[:, k] / lengths[k]

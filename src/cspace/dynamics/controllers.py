@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,8 +14,10 @@ from cspace.dynamics.inverse import gravity_torques, inverse_dynamics
 from cspace.dynamics.mechanics import find_resistances
 from cspace.dynamics.rows import EARTH
 from cspace.errors import InputError, InputTypeError
+from cspace.kinematics.batch import check_flag
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
+from cspace.tolerances import FARTHEST
 
 Motion = Callable[[float], tuple[ArrayLike, ArrayLike, ArrayLike]]
 """t → q, qd and qdd."""
@@ -37,9 +40,10 @@ class PD:
     gravity_compensation: bool = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "q_goal", as_floats(self.q_goal, "q_goal", last=(None,)))
+        object.__setattr__(self, "q_goal", as_floats(self.q_goal, "q_goal", last=(None,), largest=FARTHEST))
         for name in ("kp", "kd"):
             object.__setattr__(self, name, _check_gain(getattr(self, name), name))
+        check_flag(self.gravity_compensation, "gravity_compensation")
 
     def __call__(
         self,
@@ -131,16 +135,23 @@ class ComputedTorque:
 
 def find_motion(motion: Motion, t: float, robot: KinematicModel) -> tuple[Array, Array, Array]:
     """q, qd and qdd (..., n) of a motion at a time; InputError for NaN or another number of joints."""
-    names = ("q", "qd", "qdd")
+    names, place = ("q", "qd", "qdd"), f"the motion at t = {t:g} s"
+    answer: Any = motion(t)
+    try:
+        values = tuple(answer)
+    except TypeError:
+        raise InputTypeError(f"{place} is a {type(answer).__name__}, expected q, qd and qdd") from None
+    if len(values) != len(names):
+        raise InputError(f"{place} has {len(values)} parts, expected q, qd and qdd")
     q, qd, qdd = (
-        _check_count(as_floats(value, f"{name} of the motion at t = {t:g} s"), name, robot)
-        for name, value in zip(names, motion(t), strict=True)
+        _check_count(as_floats(value, f"{name} of {place}", largest=FARTHEST), f"{name} of {place}", robot)
+        for name, value in zip(names, values, strict=True)
     )
     return q, qd, qdd
 
 
 def _check_gain(value: ArrayLike, name: str) -> Array:
-    gain = as_floats(value, name)
+    gain = as_floats(value, name, largest=FARTHEST)
     if (gain < 0.0).any():
         raise InputError(f"{name} holds {gain.min():g}; a negative gain drives the joints away from the goal")
     return gain

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.dynamics.forward import forward_dynamics, singular_error
-from cspace.dynamics.rows import EARTH, check_gravity, dynamic_rows, fill_rows, run_rows
+from cspace.dynamics.rows import EARTH, check_gravity, dynamic_rows, fill_rows, refuse_rows, run_rows
 from cspace.kinematics.batch import check_output
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
@@ -72,5 +72,6 @@ def forward_dynamics_derivatives(
     last, down = (3, robot.dof, robot.dof), check_gravity(gravity)
     slopes = check_output(out, (*batch.shape, *last))
     if not run_rows(robot, "responses", batch, batch.qdd, slopes, down, friction):
+        refuse_rows(batch)
         raise singular_error(robot, batch)
     return slopes[..., 0, :, :], slopes[..., 1, :, :], slopes[..., 2, :, :]

@@ -80,7 +80,8 @@ class ExcitingTrajectory:
         """
         t = as_floats(times, "times")
         series = series_at(t.ravel(), self.duration, len(self.a))
-        q, qd, qdd = ((S @ np.concatenate([self.a, self.b])).reshape((*t.shape, -1)) for S in series)
+        shape = (*t.shape, len(self.offset))
+        q, qd, qdd = ((S @ np.concatenate([self.a, self.b])).reshape(shape) for S in series)
         return q + self.offset, qd, qdd
 
     def __repr__(self) -> str:

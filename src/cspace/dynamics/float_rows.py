@@ -9,11 +9,11 @@ from typing import Any, Final, cast
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array
 from cspace.buffer_pool import pooled_array
-from cspace.dynamics.rows import Push, dynamic_rows
+from cspace.dynamics.rows import Push, dynamic_rows, refuse_missing, refuse_rows
 from cspace.errors import InputError, InputTypeError
-from cspace.kinematics.batch import Batch, broadcast_rows, check_output, thread_count
+from cspace.kinematics.batch import Batch, broadcast_rows, check_output, check_robot, thread_count
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial import as_pose
 
@@ -38,7 +38,9 @@ def rows_in(
     """dynamic_rows, in floats if `single`; arrays of floats are then taken as they are."""
     if not single:
         return dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads, **rest)
-    arrays = {"q": q, **{name: value for name, value in rest.items() if value is not None}}
+    check_robot(robot)
+    refuse_missing(**rest)
+    arrays = {"q": q, **rest}
     sizes = {name: len(robot.joint_names) if name == "q" else robot.dof for name in arrays}
     is_ready = robot.mass > 0.0
     for name, value in arrays.items():
@@ -69,7 +71,8 @@ def pushes_in(single: bool, pushes: Sequence[Push]) -> Sequence[Push]:
 
 def to_floats(array: Array | None) -> Any:
     """The array in single precision."""
-    return None if array is None else array.astype(np.float32)
+    with np.errstate(over="ignore"):  # what becomes infinite is refused after the loops
+        return None if array is None else array.astype(np.float32)
 
 
 def output_in(single: bool, out: Any, shape: tuple[int, ...]) -> Array:
@@ -93,9 +96,21 @@ def output_in(single: bool, out: Any, shape: tuple[int, ...]) -> Array:
 
 
 def refuse_unfit(batch: Batch) -> None:
-    """Raise the InputError for the first value in floats that is not finite, or of a joint too large."""
-    for name in ("q", "qd", "qdd", "tau"):
-        array = getattr(batch, name)
-        if array is not None and array.dtype == np.float32:
-            largest = LARGEST_ANGLE if name == "q" else None
-            as_floats(array.reshape((*batch.shape, array.shape[1])), name, largest=largest)
+    """Raise the InputError for the first value that is not finite or too large, of a joint in floats too."""
+    refuse_rows(batch)
+    if batch.q.dtype == np.float32 and (np.abs(batch.q) >= LARGEST_ANGLE).any():
+        beyond = float(batch.q[np.abs(batch.q) >= LARGEST_ANGLE][0])
+        raise InputError(
+            f"q holds {beyond:g}; in float32 the values of joints must be below {LARGEST_ANGLE:g} [rad or m],"
+            " so use dtype=np.float64, or turns less than that"
+        )
+
+
+def refuse_overflow(result: Array) -> None:
+    """Raise InputError where numbers that fit floats have results that do not."""
+    if result.dtype != np.float32:
+        return
+    with np.errstate(over="ignore", invalid="ignore"):
+        total = result.sum()
+    if not np.isfinite(total) and not np.isfinite(result).all():
+        raise InputError("the numbers given are too large for float32; use dtype=np.float64")

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from cspace.arrays import Array
-from cspace.dynamics.float_rows import is_single, output_in, pushes_in, refuse_unfit, rows_in
+from cspace.dynamics.float_rows import is_single, output_in, pushes_in, refuse_overflow, refuse_unfit, rows_in
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, push_rows, run_rows
 from cspace.errors import InputError
-from cspace.kinematics.batch import Batch, refuse_infinite
+from cspace.kinematics.batch import Batch
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
@@ -48,8 +48,8 @@ def forward_dynamics(
     down, applied = check_gravity(gravity), pushes_in(single, pushes)
     if not run_rows(robot, "forward_dynamics", batch, batch.tau, qdd, down, friction, applied):
         refuse_unfit(batch)
-        refuse_infinite(batch)
         raise singular_error(robot, batch)
+    refuse_overflow(qdd)
     return qdd
 
 

@@ -21,8 +21,8 @@ from cspace.dynamics.regressor import (
     moving_bodies,
     moving_joints,
 )
-from cspace.dynamics.rows import EARTH, check_gravity
-from cspace.kinematics.batch import Batch, refuse_infinite, rows_of
+from cspace.dynamics.rows import EARTH, check_gravity, refuse_missing, refuse_rows
+from cspace.kinematics.batch import Batch, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 from cspace.tables import align_cells, html_table, join_words, one_line, shown
@@ -120,8 +120,9 @@ def identify(
 
     Gautier 1991; Swevers et al. 1997; for physical=True Rucker and Wensing 2022.
     """
+    refuse_missing(qd=qd, qdd=qdd, tau=tau)
     batch = rows_of(robot, q, qd=qd, qdd=qdd, tau=tau, T_world_base=T_world_base)
-    refuse_infinite(batch)
+    refuse_rows(batch)
     down = check_gravity(gravity)
     base = base_parameters(robot, gravity=down, friction=friction)
     factors = reduce_samples(robot, base, batch, down, friction)

@@ -11,6 +11,7 @@ import numpy as np
 from cspace.dynamics.inertia_checks import InertiaFault, check_body, check_size
 from cspace.dynamics.massless_motions import massless_motions
 from cspace.kinematics import Assembly
+from cspace.kinematics.batch import check_robot
 from cspace.model import Description
 from cspace.tables import align_cells, html_table, join_words, one_line
 
@@ -88,6 +89,7 @@ def inertia_report(robot: DescribedModel) -> InertiaReport:
     Nothing is refused here; functions that need an inverse of the mass matrix raise InputError where it is
     singular.
     """
+    check_robot(robot)
     faults = [*check_links(robot), *check_bodies(robot)] if robot.mass > 0.0 else list(check_links(robot))
     return InertiaReport(robot.name, robot.mass, tuple(faults), massless_motions(robot._assembly))
 

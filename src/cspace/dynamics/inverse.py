@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from cspace.arrays import Array
-from cspace.dynamics.float_rows import is_single, output_in, pushes_in, refuse_unfit, rows_in
+from cspace.dynamics.float_rows import is_single, output_in, pushes_in, refuse_overflow, refuse_unfit, rows_in
 from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, fill_rows, push_rows, run_rows
-from cspace.kinematics.batch import refuse_infinite
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
@@ -44,7 +43,7 @@ def inverse_dynamics(
     down, applied = check_gravity(gravity), pushes_in(single, pushes)
     if not run_rows(robot, "inverse_dynamics", batch, batch.qdd, tau, down, friction, applied):
         refuse_unfit(batch)
-        refuse_infinite(batch)
+    refuse_overflow(tau)
     return tau
 
 

@@ -3,26 +3,26 @@ projection."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.dynamics.constrained_motion import AllowedMotions, find_allowed_motions, solve_least_energy
 from cspace.dynamics.inverse import inverse_dynamics
 from cspace.dynamics.mass_matrix import mass_matrix
-from cspace.dynamics.rows import EARTH, Wrenches, dynamic_rows
+from cspace.dynamics.rows import EARTH, Wrenches, dynamic_rows, refuse_missing, refuse_rows
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import LoopConstraints
 from cspace.kinematics.assembly import Numbers
-from cspace.kinematics.batch import Batch, refuse_infinite
+from cspace.kinematics.batch import Batch
 from cspace.kinematics.loop_closure import number_coordinates
 from cspace.kinematics.loop_constraints import Placement
 from cspace.spatial.checks import PoseLike
 from cspace.tables import join_words
-from cspace.tolerances import LOOP_MOTION, LOOP_OPEN, LOOP_PROJECTED, LOOP_RANK, LOOP_SINGULAR
+from cspace.tolerances import FARTHEST, LOOP_MOTION, LOOP_OPEN, LOOP_PROJECTED, LOOP_RANK, LOOP_SINGULAR
 
 MOST_PROJECTIONS: Final = 8
 """Newton steps of a projection: each squares the residual."""
@@ -168,7 +168,7 @@ def loop_wrenches(
     return forces.reshape((*batch.shape, *forces.shape[-2:]))
 
 
-def loop_velocities(constraints: LoopConstraints, q: ArrayLike, driven: dict[str, ArrayLike]) -> Array:
+def loop_velocities(constraints: LoopConstraints, q: ArrayLike, driven: Mapping[str, ArrayLike]) -> Array:
     """The velocities of all joints when the driven ones move at given rates.
 
     q (..., n) [rad or m]: with closed loops. driven: joint → velocity (...) [rad/s or m/s].
@@ -179,25 +179,27 @@ def loop_velocities(constraints: LoopConstraints, q: ArrayLike, driven: dict[str
 
 
 def loop_accelerations(
-    constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike, driven: dict[str, ArrayLike]
+    constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike, driven: Mapping[str, ArrayLike]
 ) -> Array:
     """The accelerations of all joints when the driven ones accelerate at given rates.
 
     q (..., n) [rad or m], qd (..., dof): as from loop_velocities. driven: joint → acceleration (...).
     Returns qdd (..., dof). Raises as loop_velocities.
     """
+    refuse_missing(qd=qd)
     return find_rates(constraints, q, qd, driven)
 
 
 def find_rates(constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike | None, driven: Any) -> Array:
     """The rates x (..., dof) with K x + k = 0 and given values of driven joints; k = 0 without velocities."""
-    if not isinstance(driven, dict):
+    if not isinstance(driven, Mapping):
         raise InputTypeError(f"driven is a {type(driven).__name__}, expected a dict of joint → rate")
     robot = constraints.robot
     if robot.floating:
         raise InputError(f"{robot.name} has a floating base, which the driven joints do not move")
     numbers = number_driven(constraints, list(driven))
-    rates = [np.asarray(value, dtype=np.float64) for value in driven.values()]
+    rates = [as_floats(value, f"driven {name!r}", largest=FARTHEST) for name, value in driven.items()]
+    leading_axes(**{f"driven {name!r}": rate.shape for name, rate in zip(driven, rates, strict=True)})
     values = np.stack(np.broadcast_arrays(*rates), axis=-1)
     given = np.zeros((*values.shape[:-1], robot.dof))
     given[..., numbers] = values
@@ -275,7 +277,7 @@ def check_state(constraints: LoopConstraints, q: ArrayLike, **arguments: Any) ->
     if not isinstance(constraints, LoopConstraints):
         raise InputTypeError(f"the first argument must be LoopConstraints, got {type(constraints).__name__}")
     batch = dynamic_rows(constraints.robot, q, **arguments)
-    refuse_infinite(batch)
+    refuse_rows(batch)
     miss = constraints.find_miss(constraints.place(batch.q))
     open_rows = np.flatnonzero(~(miss <= LOOP_OPEN * constraints.length))
     if open_rows.size:

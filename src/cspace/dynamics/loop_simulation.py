@@ -11,25 +11,24 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats, guard_memory, positive_number, whole_number
+from cspace.arrays import Array, guard_memory, leading_axes, positive_number, whole_number
 from cspace.dynamics.constrained_motion import find_allowed_motions
 from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.loop_dynamics import check_state, project_state, solve_accelerations
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.mechanics import Flags, State, advance_state, find_resistances
 from cspace.dynamics.momentum import kinetic_energy, potential_energy
-from cspace.dynamics.rows import EARTH, Wrenches, check_gravity
+from cspace.dynamics.rollout import Control, check_control, check_torques
+from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, check_mapping, check_wrench
 from cspace.dynamics.simulation import Simulation
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError
 from cspace.kinematics import LoopConstraints
 from cspace.kinematics.assembly import Numbers
-from cspace.kinematics.batch import check_choice
+from cspace.kinematics.batch import check_choice, check_flag
 from cspace.kinematics.loop_constraints import Placement
 from cspace.spatial import left_jacobian_inv_so3
 from cspace.spatial.checks import PoseLike
-from cspace.tolerances import FARTHEST, LOOP_CLOSED, WHOLE_STEP
-
-Control = Callable[[float, Array, Array], ArrayLike] | PD | ComputedTorque
+from cspace.tolerances import LOOP_CLOSED, WHOLE_STEP
 
 FRICTION_SPEED: Final = 1e-2
 """Where dry friction has 76 % of its value [rad/s or m/s]: a hundredth of the speeds at which arms work."""
@@ -48,7 +47,7 @@ class LoopTask:
 
     loops: LoopConstraints
     acts: dict[str, Any]
-    control: Control | None
+    control: Any
     wrenches: Wrenches | Callable[..., Wrenches] | None
     damping: Array
     dry: Array
@@ -66,21 +65,15 @@ class LoopTask:
         if self.control is None:
             return np.zeros_like(state.qd)
         q, qd = self.shape(state.q).copy(), self.shape(state.qd).copy()
+        if isinstance(self.control, np.ndarray):
+            return np.asarray(np.broadcast_to(self.control, state.qd.shape))
         if isinstance(self.control, PD | ComputedTorque):
             T = self._find_poses(state)
             tau: Any = self.control(self.loops.robot, t, q, qd, gravity=self.acts["gravity"], T_world_base=T)
         else:
             tau = self.control(t, q, qd)
         subject = f"the torque of control at t = {t:g} s"
-        if tau is None:
-            raise InputTypeError(f"{subject} is None; a control returns the torques")
-        array = as_floats(tau, subject, largest=FARTHEST)
-        try:
-            return np.broadcast_to(array, qd.shape).reshape(state.qd.shape)
-        except ValueError:
-            raise InputError(
-                f"{subject} has shape {array.shape}, expected {qd.shape}: one torque or force per joint"
-            ) from None
+        return np.asarray(np.broadcast_to(check_torques(tau, qd.shape, subject), state.qd.shape))
 
     def _find_poses(self, state: State) -> Array | None:
         T = state.T_world_base
@@ -91,9 +84,16 @@ class LoopTask:
         wrenches = self.wrenches
         if callable(wrenches):
             wrenches = wrenches(t, self.shape(state.q).copy(), self.shape(state.qd).copy())
+        check_mapping(wrenches)
         if not wrenches:
             return None
-        full = {frame: as_floats(w, f"wrench at {frame!r}", last=(6,)) for frame, w in wrenches.items()}
+        full = {frame: check_wrench(w, frame) for frame, w in wrenches.items()}
+        for frame, w in full.items():
+            if leading_axes(wrenches=w.shape[:-1], q=self.lead) != self.lead:
+                raise InputError(
+                    f"wrench at {frame!r} has shape {w.shape}, expected {(*self.lead, 6)} as there are rows"
+                    " of q"
+                )
         return {
             frame: w if w.ndim == 1 else np.broadcast_to(w, (*self.lead, 6)).reshape(-1, 6)
             for frame, w in full.items()
@@ -181,10 +181,6 @@ def simulate_loops(
     Raises InputError as simulate, for open loops, and where a motion that the loops allow moves no inertia.
     """
     check_choice(method, "method", ("rk4",))
-    if control is not None and not callable(control):
-        raise InputTypeError(
-            f"control is a {type(control).__name__}, expected a function of t, q and qd that returns torques"
-        )
     length, step = (
         positive_number(value, name, "it must be one positive number [s]")
         for name, value in (("duration", duration), ("dt", dt))
@@ -197,6 +193,7 @@ def simulate_loops(
     late = math.inf if time_limit is None else perf_counter() + positive_number(time_limit, "time_limit")
     batch = check_state(constraints, q, qd=qd, T_world_base=T_world_base, threads=threads)
     assert batch.qd is not None
+    control = check_control(control, (*batch.shape, constraints.robot.dof))
     robot, pose = constraints.robot, batch.T_world_base
     if robot.floating:
         pose = np.broadcast_to(np.eye(4) if pose is None else pose, (len(batch.q), 4, 4)).copy()
@@ -205,7 +202,7 @@ def simulate_loops(
         "expressed_in": check_choice(expressed_in, "expressed_in", ("base", "tip")),
         "friction": False,
     }
-    damping, dry = find_resistances(robot) if friction else np.zeros((2, robot.dof))
+    damping, dry = find_resistances(robot) if check_flag(friction, "friction") else np.zeros((2, robot.dof))
     speed = positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]")
     rank = np.zeros(len(batch.q), dtype=np.intp)
     task = LoopTask(constraints, acts, control, wrenches, damping, dry, speed, threads, batch.shape, rank)

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from cspace.arrays import Array
-from cspace.dynamics.float_rows import is_single, output_in, refuse_unfit, rows_in
+from cspace.dynamics.float_rows import is_single, output_in, refuse_overflow, refuse_unfit, rows_in
 from cspace.dynamics.rows import NO_GRAVITY, run_rows
-from cspace.kinematics.batch import refuse_infinite
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
@@ -34,5 +33,5 @@ def mass_matrix(
     M = output_in(single, out, (*batch.shape, robot.dof, robot.dof))
     if not run_rows(robot, "mass_matrix", batch, None, M, NO_GRAVITY, False):
         refuse_unfit(batch)
-        refuse_infinite(batch)
+    refuse_overflow(M)
     return M

@@ -58,15 +58,17 @@ def kinetic_energy(
     qd: ArrayLike,
     *,
     T_world_base: PoseLike | None = None,
+    out: Array | None = None,
     threads: int | None = None,
 ) -> Array:
     """The kinetic energy ½ q̇ᵀ M(q) q̇, that of rotors (armature) included.
 
-    q (..., n) [rad or m], qd (..., dof) [rad/s or m/s], T_world_base (..., 4, 4). Returns (...) [J].
+    q (..., n) [rad or m], qd (..., dof) [rad/s or m/s], T_world_base (..., 4, 4), out (...). Returns
+    (...) [J].
     Raises InputError for a wrong shape or NaN and where no link has a mass.
     """
     batch = dynamic_rows(robot, q, qd=qd, T_world_base=T_world_base, threads=threads)
-    return fill_rows(robot, "kinetic_energy", batch, None, (), NO_GRAVITY, False, None)
+    return fill_rows(robot, "kinetic_energy", batch, None, (), NO_GRAVITY, False, out)
 
 
 def potential_energy(
@@ -75,12 +77,14 @@ def potential_energy(
     *,
     gravity: ArrayLike = EARTH,
     T_world_base: PoseLike | None = None,
+    out: Array | None = None,
     threads: int | None = None,
 ) -> Array:
     """The energy −m g · c of the weight, zero with the centre of mass at the origin.
 
-    q (..., n) [rad or m], gravity (3,) [m/s²], T_world_base (..., 4, 4). Returns (...) [J].
+    q (..., n) [rad or m], gravity (3,) [m/s²], T_world_base (..., 4, 4), out (...). Returns
+    (...) [J].
     Raises InputError for a wrong shape or NaN and where no link has a mass.
     """
     batch = dynamic_rows(robot, q, T_world_base=T_world_base, threads=threads)
-    return fill_rows(robot, "potential_energy", batch, None, (), check_gravity(gravity), False, None)
+    return fill_rows(robot, "potential_energy", batch, None, (), check_gravity(gravity), False, out)

@@ -11,10 +11,10 @@ from cspace.arrays import Array, one_array
 from cspace.dynamics.forward import forward_dynamics
 from cspace.errors import InputError
 from cspace.kinematics import jacobian
-from cspace.kinematics.batch import frame_number
+from cspace.kinematics.batch import check_robot, frame_number
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
-from cspace.tables import one_line
+from cspace.tables import count_things, one_line
 from cspace.tolerances import LOST_MOTION
 
 
@@ -39,15 +39,15 @@ class OperationalSpace:
         Raises InputError for a direction of length zero or NaN.
         """
         d = one_array(direction, "direction", (3,))
-        length = float(np.linalg.norm(d))
-        if length == 0.0:
+        if not d.any():
             raise InputError("direction has length 0; it must point somewhere")
-        d = d / length
+        d = d / np.abs(d).max()  # its square could overflow, or vanish
+        d = d / np.linalg.norm(d)
         yields = float(d @ self.mobility[:3, :3] @ d)
         return 1.0 / yields if yields > LOST_MOTION * np.abs(self.mobility[:3, :3]).max() else np.inf
 
     def __repr__(self) -> str:
-        lost = f", {len(self.lost)} directions lost" if len(self.lost) else ""
+        lost = f", {count_things(len(self.lost), 'direction')} lost" if len(self.lost) else ""
         return one_line("OperationalSpace", f"of {self.frame}, rank {6 - len(self.lost)}{lost}")
 
 
@@ -67,6 +67,7 @@ def operational_space(
     Raises InputError for a wrong shape or NaN and where a joint moves no inertia, UnknownNameError for an
     unknown frame.
     """
+    check_robot(robot)
     q = one_array(q, "q", (len(robot.joint_names),))
     name = robot.frames[frame_number(robot, frame)]
     J = jacobian(robot, q, frame, T_world_base=T_world_base)

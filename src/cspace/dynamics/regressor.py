@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, guard_memory
-from cspace.dynamics.rows import EARTH, check_gravity, run_rows
+from cspace.dynamics.rows import EARTH, check_gravity, refuse_missing, refuse_rows, run_rows
 from cspace.kinematics import Assembly
-from cspace.kinematics.batch import Batch, check_output, check_robot, refuse_infinite, rows_of
+from cspace.kinematics.batch import Batch, check_flag, check_output, check_robot, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Description, tree
 from cspace.spatial.checks import PoseLike
@@ -74,8 +74,9 @@ def regressor(
 
     Atkeson, An and Hollerbach 1986.
     """
+    refuse_missing(qd=qd, qdd=qdd)
     batch = rows_of(robot, q, qd=qd, qdd=qdd, T_world_base=T_world_base, threads=threads)
-    refuse_infinite(batch)
+    refuse_rows(batch)
     shape = (robot.dof, count_parameters(robot._assembly, friction))
     entries = len(batch.q) * shape[0] * shape[1]
     with guard_memory("q", f"an array of {len(batch.q)} rows", entries, "pass fewer"):
@@ -103,8 +104,7 @@ def parameters(robot: KinematicModel, *, friction: bool = True) -> Array:
         m, c = assembly.mass[k], body.R.T @ (assembly.center[k] - body.p)
         inertia = body.R.T @ assembly.inertia[k] @ body.R + m * (c @ c * np.eye(3) - np.outer(c, c))
         rows.append(np.concatenate([[m], m * c, inertia[np.triu_indices(3)]]))
-    kinds = RESISTANCES if friction else RESISTANCES[:1]
-    return np.concatenate([*rows, *(getattr(assembly, kind) for kind in kinds)])
+    return np.concatenate([*rows, *(getattr(assembly, kind) for kind in list_resistances(friction))])
 
 
 def parameter_names(robot: KinematicModel, *, friction: bool = True) -> tuple[str, ...]:
@@ -113,8 +113,7 @@ def parameter_names(robot: KinematicModel, *, friction: bool = True) -> tuple[st
     joints = moving_joints(robot)
     bodies = [body.name or joints[body.joint] for body in moving_bodies(robot._assembly)]
     names = [f"{symbol}_{body}" for body in bodies for symbol in BODY]
-    kinds = RESISTANCES if friction else RESISTANCES[:1]
-    return (*names, *(f"{kind}_{joint}" for kind in kinds for joint in joints))
+    return (*names, *(f"{kind}_{joint}" for kind in list_resistances(friction) for joint in joints))
 
 
 def moving_joints(robot: KinematicModel) -> tuple[str, ...]:
@@ -128,7 +127,12 @@ def moving_joints(robot: KinematicModel) -> tuple[str, ...]:
 def count_parameters(assembly: Assembly, friction: bool) -> int:
     """How many columns a regressor has."""
     n = assembly.n_joints
-    return len(BODY) * (n + assembly.floating) + (3 if friction else 1) * n
+    return len(BODY) * (n + assembly.floating) + len(list_resistances(friction)) * n
+
+
+def list_resistances(friction: bool) -> tuple[str, ...]:
+    """The parameters of a joint; InputTypeError for a flag that is neither True nor False."""
+    return RESISTANCES if check_flag(friction, "friction") else RESISTANCES[:1]
 
 
 def moving_bodies(assembly: Assembly) -> list[MovingBody]:

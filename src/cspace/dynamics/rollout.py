@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Final
@@ -16,7 +16,7 @@ from cspace.arrays import Array, as_floats, leading_axes
 from cspace.dynamics.controllers import PD, ComputedTorque, find_motion
 from cspace.dynamics.mechanics import Mechanics, State, WrenchLaw, find_resistances
 from cspace.dynamics.momentum import kinetic_energy, potential_energy
-from cspace.dynamics.rows import Wrenches
+from cspace.dynamics.rows import Wrenches, check_mapping, check_wrench
 from cspace.dynamics.simulation import DenseSteps
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.batch import frame_number
@@ -226,6 +226,12 @@ def follow_motion(task: Task, control: ComputedTorque, record: Record, simulator
         first = sample_motion(control, task.find_time(k), robot)
         count = min(max(1, MOTION_SAMPLES // max(first.size, 1)), task.steps + 1 - k)
         later = [sample_motion(control, task.find_time(i), robot) for i in range(k + 1, k + count)]
+        for i, sample in enumerate(later, k + 1):
+            if sample.shape != first.shape:
+                raise InputError(
+                    f"the motion at t = {task.find_time(i):g} s has leading axes {sample.shape[:-2]}, at"
+                    f" t = {task.find_time(k):g} s {first.shape[:-2]}; they must be the same at all times"
+                )
         samples = np.stack([first, *later], axis=-3)
         rows = samples.reshape(*samples.shape[:-3], math.prod(samples.shape[-3:]))
         simulator.set_motion(share_rows(rows, task.shape, "the motion"), k, count)
@@ -268,6 +274,18 @@ def find_torques(task: Task, record: Record, k: int) -> Array:
     return check_torques(tau, qd.shape, f"the torque of control at step {k} (t = {t:g} s)")
 
 
+def check_control(control: Control | None, shape: tuple[int, ...]) -> Any:
+    """A control as a function, constant torques (dof,) or rows of them, or None. shape: (..., dof)."""
+    if control is None or callable(control):
+        return control
+    if isinstance(control, np.ndarray | list | tuple):
+        return check_torques(control, shape, "control")
+    raise InputTypeError(
+        f"control is a {type(control).__name__}, expected torques, or a function of t, q and qd that returns"
+        " them, or dynamics.PD or dynamics.ComputedTorque"
+    )
+
+
 def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
     """Torques as (dof,) or as rows; InputError for another shape than (..., dof) or NaN."""
     if tau is None:
@@ -285,15 +303,11 @@ def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:
 
 def set_wrenches(task: Task, simulator: _core.Simulator, wrenches: Wrenches | None) -> None:
     """What the world does at frames from now on; see torques_of_wrenches for what is refused."""
-    if wrenches is not None and not isinstance(wrenches, Mapping):
-        raise InputTypeError(
-            f"wrenches is a {type(wrenches).__name__}, expected a dict of frame → (..., 6), such as"
-            ' {"tool0": [0, 0, -10, 0, 0, 0]}'
-        )
+    check_mapping(wrenches)
     given = []
     for frame, wrench in (wrenches or {}).items():
         number = frame_number(task.mechanics.robot, frame)
-        array = as_floats(wrench, f"wrench at {frame!r}", last=(6,))
+        array = check_wrench(wrench, frame)
         shape = array.shape
         if leading_axes(wrenches=shape[:-1], q=task.shape) != task.shape:
             raise InputError(

@@ -16,13 +16,14 @@ from cspace.kinematics import jacobian
 from cspace.kinematics.batch import (
     Batch,
     check_choice,
+    check_flag,
     check_output,
     check_robot,
     frame_number,
-    refuse_infinite,
     rows_of,
 )
 from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.tolerances import FARTHEST
 
 EARTH: Final = (0.0, 0.0, -9.81)
 """Gravity on Earth [m/s²], down along z."""
@@ -31,6 +32,13 @@ NO_GRAVITY: Final = np.zeros(3)
 
 Wrenches = Mapping[str, ArrayLike]
 """Frame → (..., 6): force and torque [N, N·m] of the world on the robot at the origin of that frame."""
+
+STATES: Final = {
+    "qd": "the velocities (..., dof)",
+    "qdd": "the accelerations (..., dof)",
+    "tau": "the torques and forces (..., dof)",
+}
+"""What functions are given besides q, each one number per joint and six for a floating base."""
 
 AXES: Final = ("base", "tip")
 """In which axes wrenches may be."""
@@ -49,17 +57,42 @@ class Push:
 def dynamic_rows(robot: KinematicModel, q: ArrayLike, **arguments: Any) -> Batch:
     """The arguments of a call as rows; see kinematics.batch.rows_of.
 
-    Raises InputError also for a robot without mass.
+    Raises InputError also for a robot without mass, InputTypeError for None in place of a state.
     """
     check_robot(robot)
+    refuse_missing(**arguments)
     if robot.mass == 0.0:
         raise InputError(f"no link of {robot.name} has a mass; add inertial data to its description")
     return rows_of(robot, q, **arguments)
 
 
+def refuse_missing(**arguments: Any) -> None:
+    """Raise InputTypeError for velocities, accelerations or torques that are None."""
+    for name, what in STATES.items():
+        if name in arguments and arguments[name] is None:
+            raise InputTypeError(f"{name} is None; it must be {what}")
+
+
+def refuse_rows(batch: Batch) -> None:
+    """Raise the InputError that names the value which is not finite or too large for the compiled loops.
+
+    They test the sum of a row, so each value may be as large as FARTHEST divided by the length of the row.
+    """
+    for name in ("q", *STATES):
+        array = getattr(batch, name)
+        if array is not None:
+            rows = as_floats(array.reshape((*batch.shape, array.shape[1])), name, largest=FARTHEST)
+            as_floats(rows, name, largest=FARTHEST / max(1, array.shape[1]))
+
+
 def check_gravity(gravity: ArrayLike) -> Array:
-    """Gravity as (3,) [m/s²]. Raises InputError for another shape or NaN."""
-    return np.ascontiguousarray(one_array(gravity, "gravity", (3,)))
+    """Gravity as (3,) [m/s²]. Raises InputError for another shape, NaN, or numbers whose squares overflow."""
+    return np.ascontiguousarray(one_array(gravity, "gravity", (3,), largest=FARTHEST))
+
+
+def check_wrench(wrench: ArrayLike, frame: str) -> Array:
+    """A wrench (..., 6). Raises InputError for another shape, NaN, or numbers whose squares overflow."""
+    return as_floats(wrench, f"wrench at {frame!r}", last=(6,), largest=FARTHEST)
 
 
 def run_rows(
@@ -76,6 +109,7 @@ def run_rows(
 
     The numbers are floats where those of the result are.
     """
+    friction = check_flag(friction, "friction")
     given = (batch.q, batch.qd, force, batch.T_world_base)
     arrays = [array for array in given if array is not None] + [push.wrench for push in pushes]
     is_shared = any(np.may_share_memory(array, result) for array in arrays)
@@ -101,7 +135,7 @@ def fill_rows(
     """The results (..., *last) of a call whose only fault can be a configuration that is not finite."""
     result = check_output(out, (*batch.shape, *last))
     if not run_rows(robot, what, batch, force, result, gravity, friction):
-        refuse_infinite(batch)
+        refuse_rows(batch)
     return result
 
 
@@ -113,13 +147,12 @@ def push_rows(
     Raises InputTypeError for what is not a mapping, InputError for a wrong shape or NaN, UnknownNameError for
     an unknown frame or axes.
     """
+    in_tip = check_choice(expressed_in, "expressed_in", AXES) == "tip"
     check_mapping(wrenches)
     if not wrenches:
         return batch, []
-    in_tip = check_choice(expressed_in, "expressed_in", AXES) == "tip"
     given = {
-        frame: (frame_number(robot, frame), as_floats(wrench, f"wrench at {frame!r}", last=(6,)))
-        for frame, wrench in wrenches.items()
+        frame: (frame_number(robot, frame), check_wrench(wrench, frame)) for frame, wrench in wrenches.items()
     }
     leads = {f"wrench at {frame!r}": w.shape[:-1] for frame, (_, w) in given.items()}
     shape = leading_axes(q=batch.shape, **leads)
@@ -167,7 +200,7 @@ def torques_of_wrenches(
     check_mapping(wrenches)
     total: Array | None = None
     for frame, wrench in wrenches.items():
-        w = as_floats(wrench, f"wrench at {frame!r}", last=(6,))
+        w = check_wrench(wrench, frame)
         J = jacobian(robot, q, frame, expressed_in=expressed_in, T_world_base=T_world_base)
         torques: Array = np.einsum("...ij,...i->...j", J, w)
         total = torques if total is None else total + torques

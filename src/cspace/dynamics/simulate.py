@@ -21,13 +21,13 @@ from cspace.dynamics.rollout import (
     Control,
     Record,
     Task,
-    check_torques,
+    check_control,
     run_steps,
 )
-from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows
+from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, refuse_rows
 from cspace.dynamics.simulation import Simulation
-from cspace.errors import InputError, InputTypeError
-from cspace.kinematics.batch import check_choice, check_robot, refuse_infinite, thread_count
+from cspace.errors import InputError
+from cspace.kinematics.batch import check_choice, check_flag, check_robot, thread_count
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 from cspace.tolerances import WHOLE_STEP
@@ -97,9 +97,10 @@ def simulate(
     Marsden and West 2001 (variational); Dormand and Prince 1980 (adaptive).
     """
     name = check_choice(method, "method", METHODS)
+    check_flag(stop_at_limits, "stop_at_limits")
     mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
     start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
-    law = _check_control(control, start)
+    law = check_control(control, start.qd.shape)
     task = _make_task(
         mechanics, name, start, law, wrenches, duration, dt, every, stop_at_limits, tolerance, time_limit
     )
@@ -120,7 +121,7 @@ def _make_mechanics(
 ) -> Mechanics:
     """What acts on a robot at every time, checked."""
     check_robot(robot)
-    damping, dry = find_resistances(robot) if friction else np.zeros((2, robot.dof))
+    damping, dry = find_resistances(robot) if check_flag(friction, "friction") else np.zeros((2, robot.dof))
     return Mechanics(
         robot,
         check_gravity(gravity),
@@ -129,18 +130,6 @@ def _make_mechanics(
         dry,
         positive_number(friction_speed, "friction_speed", "it must be one positive number [rad/s or m/s]"),
         0 if threads is None else thread_count(threads, ()),
-    )
-
-
-def _check_control(control: Control | None, start: State) -> Any:
-    """A control as a function, constant torques (..., dof), or None."""
-    if control is None or callable(control):
-        return control
-    if isinstance(control, np.ndarray | list | tuple):
-        return check_torques(control, start.qd.shape, "control")
-    raise InputTypeError(
-        f"control is a {type(control).__name__}, expected torques, or a function of t, q and qd that returns"
-        " them, or dynamics.PD or dynamics.ComputedTorque"
     )
 
 
@@ -191,7 +180,7 @@ def _check_start(
 ) -> State:
     """The state at time zero; leading axes are broadcast."""
     batch = dynamic_rows(robot, q, qd=qd, T_world_base=T_world_base, threads=threads)
-    refuse_infinite(batch)
+    refuse_rows(batch)
     assert batch.qd is not None
     n, T = len(robot.joint_names), batch.T_world_base
     if robot.floating and T is None:

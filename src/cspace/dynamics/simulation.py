@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, one_number
 from cspace.dynamics.mechanics import Flags, State, advance_state
 from cspace.errors import InputError
 from cspace.spatial import left_jacobian_inv_so3, left_jacobian_so3, log_so3
@@ -97,7 +97,7 @@ class Simulation:
         t [s]. Returns q (..., n) and qd (..., dof), and T_world_base (..., 4, 4) of a floating base.
         Raises InputError for a time outside of the simulation.
         """
-        time = float(as_floats(t, "t"))
+        time = one_number(t, "t")
         if not self.times[0] <= time <= self.times[-1]:
             raise InputError(f"t is {time:g} s; the simulation is from 0 to {self.times[-1]:g} s")
         if self._dense is not None:

@@ -46,10 +46,12 @@ def with_parameters(robot: Model, pi: ArrayLike) -> Model:
     source = cast(Any, robot)
     bodies = count_parameters(robot._assembly, False) - robot._assembly.n_joints
     description: Description = source.description
+    joints = robot._assembly.n_joints
+    kinds = row[bodies:].reshape((len(row) - bodies) // max(1, joints), joints)
     description = replace(
         description,
-        links=replace_masses(robot, description, row[:bodies].reshape(-1, len(BODY))),
-        joints=replace_resistances(robot, description, row[bodies:].reshape(-1, robot._assembly.n_joints)),
+        links=replace_masses(robot, description, row[:bodies].reshape(bodies // len(BODY), len(BODY))),
+        joints=replace_resistances(robot, description, kinds),
     )
     return cast(Model, source._constructor(description=description)())
 

@@ -173,6 +173,13 @@ def check_choice(value: Any, subject: str, known: tuple[str, ...]) -> str:
     raise suggest(f"{subject} choice", value, known)
 
 
+def check_flag(value: Any, subject: str) -> bool:
+    """The value of the argument `subject`; InputTypeError for what is neither True nor False."""
+    if not isinstance(value, bool | np.bool_):
+        raise InputTypeError(f"{subject} must be True or False, got {value!r}")
+    return bool(value)
+
+
 def _row_vectors(
     value: Any, subject: str, n: int, what: str, robot: KinematicModel, *, finite: bool = True
 ) -> Array:

@@ -19,7 +19,7 @@ from cspace.kinematics.loop_newton import close_rows, polish_rows, select_column
 from cspace.kinematics.workspace import random_configurations
 from cspace.math.wrapping import wrap_near
 from cspace.tables import count_things, join_words, one_line, shown
-from cspace.tolerances import LOOP_CLOSED, LOOP_SINGULAR, SAME_MODE, SHORTEST_PART
+from cspace.tolerances import FARTHEST, LOOP_CLOSED, LOOP_SINGULAR, SAME_MODE, SHORTEST_PART
 
 Flags = NDArray[np.bool_]
 Driven = Mapping[str, ArrayLike]
@@ -324,10 +324,11 @@ def check_driven(
             f' {{"{robot.joint_names[0]}": 0.5}}'
         )
     numbers = number_coordinates(constraints, list(driven))
-    given = {name: as_floats(value, f"driven {name!r}") for name, value in driven.items()}
+    largest = FARTHEST / len(robot.joint_names)  # of a sum that fits a double
+    given = {name: as_floats(value, f"driven {name!r}", largest=largest) for name, value in driven.items()}
     shapes = {name: value.shape for name, value in given.items()}
     if near is not None:
-        shapes["near"] = as_floats(near, "near", last=(len(robot.joint_names),)).shape[:-1]
+        shapes["near"] = as_floats(near, "near", last=(len(robot.joint_names),), largest=largest).shape[:-1]
     lead = leading_axes(**shapes)
     rows = [np.broadcast_to(value, lead).ravel() for value in given.values()]
     count = int(np.prod(lead))

@@ -111,7 +111,7 @@ class Delta(Mechanism):
         orientations of the platform would need, are left out. starts, rng: for other sets of driven
         coordinates, as of Mechanism.assembly_modes.
         """
-        q = self.configuration(driven)
+        q = self._one_position(driven)
         if set(driven) == set(PLATFORM[:3]):
             return self._find_arms(q)
         if set(driven) == set(ARMS):

@@ -72,9 +72,9 @@ class FourBar(Mechanism):
         driven: "crank", "coupler" or "rocker" → angle [rad]. Returns AssemblyModes with q (2, 3), one at a
         dead point. starts, rng: for other sets of driven coordinates, as of Mechanism.assembly_modes.
         """
-        if len(driven) != 1 or next(iter(driven)) not in self.joint_names:
+        q = self._one_position(driven)
+        if len(driven) != 1:
             return super().assembly_modes(driven, starts=starts, rng=rng)
-        q = self.configuration(driven)
         name = next(iter(driven))
         ground, crank, coupler, rocker = self.lengths.values()
         A0, B0 = np.zeros(2), np.array([ground, 0.0])

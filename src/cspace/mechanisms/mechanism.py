@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from cspace import dynamics, kinematics, model
 from cspace.arrays import Array, as_floats
 from cspace.dynamics import Simulation
-from cspace.errors import InputTypeError
+from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import AssemblyModes, LoopClosure, LoopConstraints, LoopFreedom, LoopMotion
 from cspace.model import Loop
 from cspace.robot import Robot
@@ -107,12 +107,12 @@ class Mechanism:
     def velocities(self, q: ArrayLike, driven: Driven) -> Array:
         """The velocities (..., dof) of all joints at q (..., n) when the driven ones move at given rates
         (...); see dynamics.loop_velocities."""
-        return dynamics.loop_velocities(self.constraints, q, dict(driven))
+        return dynamics.loop_velocities(self.constraints, q, driven)
 
     def accelerations(self, q: ArrayLike, qd: ArrayLike, driven: Driven) -> Array:
         """The accelerations (..., dof) of all joints at q (..., n) and qd (..., dof) when the driven ones
         accelerate at given rates (...); see dynamics.loop_accelerations."""
-        return dynamics.loop_accelerations(self.constraints, q, qd, dict(driven))
+        return dynamics.loop_accelerations(self.constraints, q, qd, driven)
 
     def forward_dynamics(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, **acts: Any) -> Array:
         """The accelerations (..., dof) under torques tau (..., dof), at q (..., n) and qd (..., dof).
@@ -151,19 +151,30 @@ class Mechanism:
         q: ArrayLike,
         qd: ArrayLike,
         *,
-        control: Callable[..., ArrayLike] | None = None,
+        control: Callable[..., ArrayLike] | ArrayLike | None = None,
         duration: float,
         dt: float,
         **options: Any,
     ) -> Simulation:
         """The motion from a state q (..., n), qd (..., dof) on, with loops that stay closed to rounding.
 
+        control: torques (..., dof), or a function of t, q and qd that returns them, such as dynamics.PD.
         options: gravity, wrenches, expressed_in, friction, friction_speed, T_world_base, every, time_limit,
         threads. See dynamics.simulate_loops, which also names the errors.
         """
         return dynamics.simulate_loops(
             self.constraints, q, qd, control=control, duration=duration, dt=dt, **options
         )
+
+    def _one_position(self, driven: Driven) -> Array:
+        """The configuration (n,) of driven coordinates with one number each; raises as assembly_modes."""
+        q = self.configuration(driven)
+        if q.ndim > 1:
+            raise InputError(
+                f"driven values have shape {q.shape[:-1]}, expected one number each; assembly modes are of"
+                " one position"
+            )
+        return q
 
     def configuration(self, values: Mapping[str, ArrayLike]) -> Array:
         """A configuration (..., n) from values of coordinates by name, zero where none is given.

@@ -56,9 +56,9 @@ class SliderCrank(Mechanism):
         3), one at a dead point. starts, rng: for other sets of driven coordinates, as of
         Mechanism.assembly_modes.
         """
-        if len(driven) != 1 or next(iter(driven)) not in self.joint_names:
+        q = self._one_position(driven)
+        if len(driven) != 1:
             return super().assembly_modes(driven, starts=starts, rng=rng)
-        q = self.configuration(driven)
         name, (crank, rod, offset) = next(iter(driven)), self.lengths.values()
         origin, gap = np.zeros(2), 0.0
         if name == "slider":

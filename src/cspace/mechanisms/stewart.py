@@ -117,8 +117,9 @@ class Stewart(Mechanism):
         up to 40: those that are found from so many starts, never called complete. Returns AssemblyModes with
         q (k, 24). Other sets of driven coordinates: as of Mechanism.assembly_modes.
         """
+        q = self._one_position(driven)
         if set(driven) == set(PLATFORM):
-            q = self._complete(self.configuration(driven)[-6:])
+            q = self._complete(q[-6:])
             return AssemblyModes(q[None], True, 0.0, "found")
         if set(driven) == set(LENGTHS):
             return self._find_platforms(driven, starts, rng)
