@@ -11,14 +11,12 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, one_array, positive_number
 from cspace.cartesian.chain_search import ChainSearch, Stations
 from cspace.cartesian.guided import smooth_rows
-from cspace.cartesian.joint_branches import JointBranch, make_branch
+from cspace.cartesian.joint_branches import JointBranch, end_at_limits, make_branch
 from cspace.cartesian.redundant_path import (
     SMOOTHINGS,
     choose_limits,
     end_of_chain,
     follow_redundant,
-    is_within,
-    leave_limits,
 )
 from cspace.cartesian.refine import LeastMotion, first_nodes, refine_branches
 from cspace.errors import InputError
@@ -73,10 +71,11 @@ def follow_free_turn(
     for weight in SMOOTHINGS:
         turned = TurnedPath(path, freedom.axis, smooth_rows(stations.s, angles, weight))
         found = follow_turned(robot, solver, turned, stations.s, chain.q, first, bounds, tolerance)
-        if found.path is not None and is_within(found.path, bounds):
+        found = end_at_limits(found, bounds, robot)
+        if found:
             return found
     assert found is not None
-    return found if found.path is None else leave_limits(found, bounds, robot)
+    return found
 
 
 def follow_turned(

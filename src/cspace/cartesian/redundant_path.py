@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, one_array, positive_number
 from cspace.cartesian.chain_search import ROOMY, ChainSearch, Stations
 from cspace.cartesian.guided import Guided, null_directions, smooth_rows
-from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, make_branch
+from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, end_at_limits, make_branch
 from cspace.cartesian.refine import first_nodes, refine_branches
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
@@ -20,7 +20,6 @@ from cspace.kinematics import KinematicModel
 from cspace.math.wrapping import wrap_near
 from cspace.model import Limits
 from cspace.trajectory.cartesian_path import CartesianPath
-from cspace.trajectory.path import Path
 
 VALUES: Final = 48
 """Of the redundant joint that are tried at each: 7.5° apart in a full turn."""
@@ -69,10 +68,11 @@ def follow_redundant(
         guided = Guided(robot, path, smooth_rows(stations.s, rows, weight))
         guess = guided.guide(piece, u, 0)[0]
         found = make_branch(chain.q[0], refine_branches(robot, path, guided, guess[None], tolerance)[0])
-        if found.path is not None and is_within(found.path, bounds):
+        found = end_at_limits(found, bounds, robot)
+        if found:
             return found
     assert found is not None
-    return found if found.path is None else leave_limits(found, bounds, robot)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,20 +118,3 @@ def end_of_chain(q: Array, s: float, cause: str, reason: str, dof: int) -> Joint
     """The branch of a chain q (k, dof) that ends at s."""
     first = q[0] if len(q) else np.full(dof, np.nan)
     return JointBranch(None, first, s, cause, None, reason, NO_DEVIATION)
-
-
-def is_within(path: Path, bounds: Limits) -> bool:
-    """Whether the control points of a joint path are within limits: then all of it is."""
-    points = path.control_points
-    return bool(((points >= bounds.lower) & (points <= bounds.upper)).all())
-
-
-def leave_limits(found: JointBranch, bounds: Limits, robot: KinematicModel) -> JointBranch:
-    """The branch of a joint path that leaves the limits somewhere."""
-    assert found.path is not None
-    points = found.path.control_points
-    over = np.maximum(points - bounds.upper, bounds.lower - points)
-    piece, _, joint = np.unravel_index(int(np.argmax(over)), over.shape)
-    name, s = robot.joint_names[joint], float(found.path.breaks[piece])
-    text = f"at s = {s:.6g}: {name} would leave its limits"
-    return JointBranch(None, found.q_start, s, "limit", name, text, NO_DEVIATION)

@@ -23,6 +23,9 @@ FIRST_SPACING: Final = 0.1
 FEWEST_PIECES: Final = 4
 """Of each piece of the Cartesian path, so that a short one is compared with its joint path at all."""
 
+FINER: Final = 32
+"""Parts of an interval between nodes in which a joint moves too far."""
+
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
@@ -75,11 +78,27 @@ def first_nodes(path: CartesianPath) -> tuple[Indices, Array]:
     return piece, share * path.lengths[piece]
 
 
+def divide_intervals(piece: Indices, u: Array, ends: Indices) -> tuple[Indices, Array]:
+    """Nodes with further ones between the nodes `ends` (k,) and those before them, of the same pieces."""
+    share = np.arange(1.0, FINER) / FINER
+    between = u[ends - 1, None] + (u[ends] - u[ends - 1])[:, None] * share
+    at = np.repeat(ends, FINER - 1)
+    return np.insert(piece, at, piece[at]), np.insert(u, at, between.ravel())
+
+
 def refine_branches(
-    robot: KinematicModel, path: CartesianPath, correct: Corrector, q: Array, tolerance: float
+    robot: KinematicModel,
+    path: CartesianPath,
+    correct: Corrector,
+    q: Array,
+    tolerance: float,
+    nodes: tuple[Indices, Array] | None = None,
 ) -> list[Refined]:
-    """The joint paths of branches that are near q (b, n, dof) at the first nodes of a path."""
-    return _Refiner(robot, path, correct, tolerance, q).run()
+    """The joint paths of branches that are near q (b, n, dof) at nodes, by default the first ones of a path.
+
+    nodes: pieces (n,) and parameters (n,).
+    """
+    return _Refiner(robot, path, correct, tolerance, q, first_nodes(path) if nodes is None else nodes).run()
 
 
 class _Refiner:
@@ -90,10 +109,16 @@ class _Refiner:
     """
 
     def __init__(
-        self, robot: KinematicModel, path: CartesianPath, correct: Corrector, tolerance: float, q: Array
+        self,
+        robot: KinematicModel,
+        path: CartesianPath,
+        correct: Corrector,
+        tolerance: float,
+        q: Array,
+        first: tuple[Indices, Array],
     ) -> None:
         self.robot, self.path, self.correct, self.tolerance = robot, path, correct, tolerance
-        piece, u = first_nodes(path)
+        piece, u = first
         T = path.poses_on(piece, u)
         self.count, n = q.shape[:2]
         rows = self.count * n
