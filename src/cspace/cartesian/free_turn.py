@@ -145,6 +145,13 @@ class FreeTurn:
         turn = log_so3(T[:3, :3].T @ self.robot.fk(q)[:3, :3])
         return float(turn @ self.axis)
 
+    def carry(self, T: Array) -> Array:
+        """The angles at which the tip does not turn about its axis: those of the path are taken back, else
+        the chain would have to follow them in steps of its grid."""
+        R = T[:, :3, :3]
+        turns = log_so3(np.swapaxes(R[:-1], 1, 2) @ R[1:]) @ self.axis
+        return np.concatenate([[0.0], -np.cumsum(turns)])
+
 
 def pack_rows(q: Array) -> tuple[Array, Any]:
     """Configurations (n, room, dof) with those of NaN behind the others, and how many are not (n,)."""

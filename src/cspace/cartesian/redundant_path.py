@@ -106,6 +106,10 @@ class RedundantJoint:
         value = float(q[self.solver.redundant_joints[0]])
         return float(wrap_near(value, 0.0)) if self.is_ring else value
 
+    def carry(self, T: Array) -> Array:
+        """The joint at rest."""
+        return np.zeros(len(T))
+
 
 def choose_limits(robot: KinematicModel, limits: bool | Limits) -> Limits:
     """The limits that count: the robot's, those given, or none."""
