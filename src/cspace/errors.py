@@ -189,6 +189,12 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     return UnknownNameError(text)
 
 
+def check_known(subject: str, name: object, known: Iterable[str]) -> None:
+    """The error of suggest, raised for a value that is none of the known names."""
+    if not (isinstance(name, str) and name in known):
+        raise suggest(subject, name, known)
+
+
 def keyword_error(text: str) -> TypeError:
     """The error for "f() got an unexpected keyword argument 'name'", with the new name of an old keyword."""
     name = text.rpartition(" keyword argument ")[2].partition("'")[2].partition("'")[0]

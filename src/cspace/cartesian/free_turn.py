@@ -14,7 +14,6 @@ from cspace.cartesian.guided import smooth_rows
 from cspace.cartesian.joint_branches import JointBranch, end_at_limits, make_branch
 from cspace.cartesian.redundant_path import (
     SMOOTHINGS,
-    choose_limits,
     end_of_chain,
     follow_redundant,
 )
@@ -23,11 +22,12 @@ from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
+from cspace.kinematics.batch import limits_of
 from cspace.math.wrapping import TURN
 from cspace.model import Limits
 from cspace.spatial import exp_so3, log_so3
 from cspace.spatial.vectors import AXES, cross, length_and_direction
-from cspace.trajectory.cartesian_path import CartesianPath, Indices
+from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
 
 ANGLES: Final = 48
@@ -53,13 +53,14 @@ def follow_free_turn(
     well chooses the turn first. start (dof,): any configuration that reaches the first pose up to such a
     turn. Other arguments as of follow_cartesian.
     """
+    check_cartesian_path(path)
     solver = as_solver(robot)
     if len(solver.redundant_joints) > 1:
         raise InputError(
             f"the robot has {len(solver.redundant_joints)} redundant joints; a free turn goes with 1 at most"
         )
     tolerance = positive_number(tolerance, "tolerance")
-    bounds = choose_limits(robot, limits)
+    bounds = limits_of(robot.limits, limits, robot.name)
     stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")
     freedom = FreeTurn(robot, solver, tool_axis(axis), bounds)

@@ -24,7 +24,7 @@ from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import limits_of
 from cspace.model import Limits
 from cspace.tolerances import SHORTEST_PATH_PIECE
-from cspace.trajectory.cartesian_path import CartesianPath, Indices
+from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
 
 BESIDE_SINGULAR: Final = "the joints would have to jump beside a singular configuration"
@@ -93,6 +93,7 @@ def follow_cartesian(
     At the ends of its pieces a joint path attains position, slope and bend exactly: J q' = t and
     J q'' = t' − J' q' with the twist t of the path and its rate t'.
     """
+    check_cartesian_path(path)
     tolerance = positive_number(tolerance, "tolerance")
     bounds = limits_of(robot.limits, limits, robot.name)
     found, piece, u = _track_densely(robot, path, start, bounds)

@@ -17,11 +17,12 @@ from cspace.errors import InputError
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel
 from cspace.model import Limits
+from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
 from cspace.tables import count_things, one_line, shown
 from cspace.tolerances import PATH_START
 from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path
-from cspace.trajectory.cartesian_path import CartesianPath
+from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path
 from cspace.trajectory.path import Path
 from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_motion import TimedMotion, stand_still
@@ -99,6 +100,7 @@ def move_cartesian(
     joints slow the tip down, and `binding` says which. Raises InputError for wrong shapes, NaN, and a start
     that is not at the begin of the path.
     """
+    check_cartesian_path(path)
     first = None if start is None else _check_start(robot, path, start, free_axis is not None)
     found = _follow(robot, path, first, free_axis, limits, tolerance)
     if not found:
@@ -166,7 +168,7 @@ def move_through(
     of move_cartesian.
     """
     first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
-    rows = np.asarray(poses, dtype=np.float64)
+    rows = as_pose(poses, "poses")
     if rows.ndim != 3:
         raise InputError(f"poses has shape {rows.shape}, expected (n, 4, 4)")
     every = np.concatenate([robot.fk(first)[None], rows])

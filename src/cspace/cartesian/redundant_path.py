@@ -17,9 +17,10 @@ from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
+from cspace.kinematics.batch import limits_of
 from cspace.math.wrapping import wrap_near
 from cspace.model import Limits
-from cspace.trajectory.cartesian_path import CartesianPath
+from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path
 
 VALUES: Final = 48
 """Of the redundant joint that are tried at each: 7.5° apart in a full turn."""
@@ -49,13 +50,14 @@ def follow_redundant(
 
     Bellman 1957 (dynamic programming); Whittaker 1922 (smoothing by differences).
     """
+    check_cartesian_path(path)
     solver = as_solver(robot)
     if len(solver.redundant_joints) != 1:
         raise InputError(
             f"the robot has {len(solver.redundant_joints)} redundant joints; a whole path is planned for one"
         )
     tolerance = positive_number(tolerance, "tolerance")
-    bounds = choose_limits(robot, limits)
+    bounds = limits_of(robot.limits, limits, robot.name)
     stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")
     chain = ChainSearch(robot, RedundantJoint.of(solver, bounds), stations, bounds, first).run()
@@ -109,13 +111,6 @@ class RedundantJoint:
     def carry(self, T: Array) -> Array:
         """The joint at rest."""
         return np.zeros(len(T))
-
-
-def choose_limits(robot: KinematicModel, limits: bool | Limits) -> Limits:
-    """The limits that count: the robot's, those given, or none."""
-    if isinstance(limits, Limits):
-        return limits
-    return robot.limits if limits else Limits(np.full(robot.dof, -np.inf), np.full(robot.dof, np.inf))
 
 
 def end_of_chain(q: Array, s: float, cause: str, reason: str, dof: int) -> JointBranch:

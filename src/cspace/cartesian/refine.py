@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.errors import InputError
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import frame_number
 from cspace.tolerances import PATH_POSE_LEFT, SHORTEST_PATH_PIECE
@@ -22,6 +23,9 @@ FIRST_SPACING: Final = 0.1
 
 FEWEST_PIECES: Final = 4
 """Of each piece of the Cartesian path, so that a short one is compared with its joint path at all."""
+
+MOST_PIECES: Final = 1_000_000
+"""A hundred kilometres or the legs of 250,000 poses: some seconds, and half a gigabyte."""
 
 FINER: Final = 32
 """Parts of an interval between nodes in which a joint moves too far."""
@@ -71,7 +75,13 @@ class Refined:
 
 def first_nodes(path: CartesianPath) -> tuple[Indices, Array]:
     """Pieces (n,) and parameters (n,) within them of the first nodes, both ends of each piece among them."""
-    counts = np.maximum(np.ceil(path.lengths / FIRST_SPACING).astype(int), FEWEST_PIECES) + 1
+    spans = np.maximum(np.ceil(path.lengths / FIRST_SPACING), FEWEST_PIECES)
+    if spans.sum() > MOST_PIECES:
+        raise InputError(
+            f"the path is {path.length:.6g} m or rad long, more than can be followed at once; give metres and"
+            " radians, or follow it in parts"
+        )
+    counts = spans.astype(int) + 1
     piece = np.repeat(np.arange(len(counts)), counts)
     first = np.repeat(np.cumsum(counts) - counts, counts)
     share = (np.arange(len(piece)) - first) / (counts[piece] - 1)

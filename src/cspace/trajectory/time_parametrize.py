@@ -84,6 +84,8 @@ def time_parametrize(
         raise InputTypeError(
             f"path is a {type(path).__name__}; make a Path by spline, blend, b_spline or fit_path"
         )
+    if robot is not None and not isinstance(robot, KinematicModel):
+        raise InputTypeError(f"robot is a {type(robot).__name__}; cspace.load_robot(name) returns one")
     own = robot if robot is not None else limits if isinstance(limits, KinematicModel) else None
     given = getattr(limits, "limits", limits)
     labels = _label_joints(path, own)
@@ -286,8 +288,13 @@ def _label_joints(path: Path, robot: KinematicModel | None) -> tuple[str, ...]:
     return tuple(robot.joint_names)
 
 
-def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, required: bool) -> Array:
-    """The limit given, or that of limits (dof,); inf where there is none and it is not required."""
+def _read_limit(
+    name: str, value: Any, limits: Any, labels: tuple[str, ...], *, required: bool, argument: str = ""
+) -> Array:
+    """The limit given, or that of limits (dof,); inf where there is none and it is not required.
+
+    argument: what gives it, if that is not its name.
+    """
     n = len(labels)
     if value is not None:
         row = as_floats(value, name, finite=False)
@@ -307,7 +314,7 @@ def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, 
     absent = [label for label, limit in zip(labels, own, strict=True) if np.isinf(limit)]
     if required and absent:
         which = "" if len(absent) == n else f" of {join_words(absent)}"
-        raise InputError(f"there are no {name} limits{which}; pass {name}=, with inf for none")
+        raise InputError(f"there are no {name} limits{which}; pass {argument or name}=, with inf for none")
     return own
 
 
@@ -329,7 +336,14 @@ def _read_torque(
         raise InputTypeError("torque= needs the dynamics of a robot; pass robot=")
     labels = tuple(robot.joint_names)
     value = None if torque is True else torque
-    limit = _read_limit("effort" if value is None else "torque", value, robot.limits, labels, required=False)
+    limit = _read_limit(
+        "torque" if value is not None else "effort",
+        value,
+        robot.limits,
+        labels,
+        required=True,
+        argument="torque",
+    )
     return TorqueLimits(robot, limit, one_array(gravity, "gravity", (3,)))
 
 
