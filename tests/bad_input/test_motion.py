@@ -83,3 +83,43 @@ def test_limits_of_position_may_be_given(robot):
     assert robot.move_to(START + 0.04, limits=limits, **given)
     assert "upper limit" in robot.move_to(START + 0.1, limits=limits, **given).reason
     assert robot.move_to(START + 0.1, limits=False, **given)
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda", "cobra600", "planar_3r"])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_start_beyond_its_limits_is_named(name, side):
+    robot = cs.load_robot(name)
+    inside = robot.random_configuration(rng=2, reach=0.5)
+    limits = cs.Limits(np.full(robot.dof, -7.0), np.full(robot.dof, 7.0))
+    for j, joint in enumerate(robot.joint_names):
+        start = np.array(inside)
+        start[j] = 7.5 * side
+        goal = cs.pose((0.01, 0, 0)) @ robot.fk(start)
+        motion = robot.move_linear(goal, start=start, limits=limits, **LIMITS)
+        assert not motion
+        assert motion.reason.startswith(
+            f"at s = 0: {joint} of the start is {7.5 * side:g}, beyond its limits"
+        )
+        np.testing.assert_array_equal(motion(0.0), start)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1e-5, 1e-15, 1e-300, np.nan])
+@pytest.mark.parametrize("name", ["ur5e", "panda"])
+@pytest.mark.parametrize("free_axis", [None, "z"])
+def test_a_tolerance_within_rounding_is_refused(name, free_axis, tolerance):
+    robot = cs.load_robot(name)
+    q = robot.random_configuration(rng=2, reach=0.5)
+    goal = robot.fk(q) @ cs.pose((0.01, 0, 0))
+    with pytest.raises(CspaceError, match="tolerance"):
+        robot.move_linear(goal, start=q, tolerance=tolerance, free_axis=free_axis, **LIMITS)
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e"])
+def test_joints_of_a_floating_robot_are_timed(name):
+    robot = cs.load_robot(name, floating=True)
+    q = np.zeros(len(robot.joint_names))
+    path = cs.spline(np.stack([q, q + 0.3, q - 0.1]))
+    assert cs.time_parametrize(path, robot, **LIMITS)
+    for needs in ({"torque": True}, {"torque": 5.0}, {"speed": 0.1}, {"turn_rate": 0.1}):
+        with pytest.raises(CspaceError, match=r"the base of .* is floating"):
+            cs.time_parametrize(path, robot, **needs, **LIMITS)

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, one_array, positive_number
+from cspace.arrays import Array, one_array
 from cspace.cartesian.chain_search import ChainSearch, Stations
 from cspace.cartesian.guided import smooth_rows
 from cspace.cartesian.joint_branches import JointBranch, end_at_limits, make_branch
@@ -17,7 +17,7 @@ from cspace.cartesian.redundant_path import (
     end_of_chain,
     follow_redundant,
 )
-from cspace.cartesian.refine import LeastMotion, first_nodes, refine_branches
+from cspace.cartesian.refine import LeastMotion, first_nodes, read_tolerance, refine_branches
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
@@ -59,7 +59,7 @@ def follow_free_turn(
         raise InputError(
             f"the robot has {len(solver.redundant_joints)} redundant joints; a free turn goes with 1 at most"
         )
-    tolerance = positive_number(tolerance, "tolerance")
+    tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)
     stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")

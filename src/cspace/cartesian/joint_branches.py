@@ -9,13 +9,14 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cspace.arrays import Array, positive_number
+from cspace.arrays import Array
 from cspace.cartesian.limit_ends import find_limit_end
 from cspace.cartesian.refine import (
     LeastMotion,
     Refined,
     divide_intervals,
     first_nodes,
+    read_tolerance,
     refine_branches,
 )
 from cspace.ik.tracking.result import Branch, Track
@@ -94,7 +95,7 @@ def follow_cartesian(
     J q'' = t' − J' q' with the twist t of the path and its rate t'.
     """
     check_cartesian_path(path)
-    tolerance = positive_number(tolerance, "tolerance")
+    tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)
     found, piece, u = _track_densely(robot, path, start, bounds)
     is_new = _are_new(piece)

@@ -8,11 +8,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, one_array, positive_number
+from cspace.arrays import Array, one_array
 from cspace.cartesian.chain_search import ROOMY, ChainSearch, Stations
 from cspace.cartesian.guided import Guided, null_directions, smooth_rows
 from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, end_at_limits, make_branch
-from cspace.cartesian.refine import first_nodes, refine_branches
+from cspace.cartesian.refine import first_nodes, read_tolerance, refine_branches
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
@@ -56,7 +56,7 @@ def follow_redundant(
         raise InputError(
             f"the robot has {len(solver.redundant_joints)} redundant joints; a whole path is planned for one"
         )
-    tolerance = positive_number(tolerance, "tolerance")
+    tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)
     stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")

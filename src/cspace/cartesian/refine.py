@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cspace import _core
-from cspace.arrays import Array
+from cspace.arrays import Array, bounded_number
 from cspace.errors import InputError
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import frame_number
@@ -23,6 +23,9 @@ FIRST_SPACING: Final = 0.1
 
 FEWEST_PIECES: Final = 4
 """Of each piece of the Cartesian path, so that a short one is compared with its joint path at all."""
+
+LEAST_TOLERANCE: Final = 1e-10
+"""[m and rad] Corrected poses of an arm of ten metres are as exact as that."""
 
 MOST_PIECES: Final = 1_000_000
 """A hundred kilometres or the legs of 250,000 poses: some seconds, and half a gigabyte."""
@@ -71,6 +74,11 @@ class Refined:
     path: Path | None
     s_lost: float
     deviation: tuple[float, float]
+
+
+def read_tolerance(value: float) -> float:
+    """The tolerance of a joint path [m and rad]; InputError for one that rounding exceeds."""
+    return bounded_number(value, "tolerance", LEAST_TOLERANCE, f"it must be {LEAST_TOLERANCE:g} or more")
 
 
 def first_nodes(path: CartesianPath) -> tuple[Indices, Array]:

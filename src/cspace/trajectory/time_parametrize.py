@@ -89,6 +89,11 @@ def time_parametrize(
     own = robot if robot is not None else limits if isinstance(limits, KinematicModel) else None
     given = getattr(limits, "limits", limits)
     labels = _label_joints(path, own)
+    plain = (torque is None or torque is False) and speed is turn_rate is None
+    if own is not None and own.floating and not plain:
+        raise InputError(
+            f"the base of {own.name} is floating; torque=, speed= and turn_rate= need one that stands"
+        )
     v = _read_limit("velocity", velocity, given, labels, required=False)
     a = _read_limit("acceleration", acceleration, given, labels, required=True)
     sampled = SampledLimits(
@@ -283,8 +288,8 @@ class _Timer:
 def _label_joints(path: Path, robot: KinematicModel | None) -> tuple[str, ...]:
     if robot is None:
         return tuple(f"joint {j}" for j in range(path.dof))
-    if robot.dof != path.dof:
-        raise InputError(f"the path is of {path.dof} joints, {robot.name} of {robot.dof}")
+    if len(robot.joint_names) != path.dof:
+        raise InputError(f"the path is of {path.dof} joints, {robot.name} of {len(robot.joint_names)}")
     return tuple(robot.joint_names)
 
 
