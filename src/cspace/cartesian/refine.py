@@ -14,7 +14,7 @@ from cspace.arrays import Array, bounded_number
 from cspace.errors import InputError
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import frame_number
-from cspace.tolerances import PATH_POSE_LEFT, SHORTEST_PATH_PIECE
+from cspace.tolerances import LEAST_TOLERANCE, PATH_POSE_LEFT, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices
 from cspace.trajectory.path import Path
 
@@ -23,9 +23,6 @@ FIRST_SPACING: Final = 0.1
 
 FEWEST_PIECES: Final = 4
 """Of each piece of the Cartesian path, so that a short one is compared with its joint path at all."""
-
-LEAST_TOLERANCE: Final = 1e-10
-"""[m and rad] Corrected poses of an arm of ten metres are as exact as that."""
 
 MOST_PIECES: Final = 1_000_000
 """A hundred kilometres or the legs of 250,000 poses: some seconds, and half a gigabyte."""

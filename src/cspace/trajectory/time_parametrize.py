@@ -84,16 +84,10 @@ def time_parametrize(
         raise InputTypeError(
             f"path is a {type(path).__name__}; make a Path by spline, blend, b_spline or fit_path"
         )
-    if robot is not None and not isinstance(robot, KinematicModel):
-        raise InputTypeError(f"robot is a {type(robot).__name__}; cspace.load_robot(name) returns one")
-    own = robot if robot is not None else limits if isinstance(limits, KinematicModel) else None
-    given = getattr(limits, "limits", limits)
+    own, given = _choose_robot(robot, limits), getattr(limits, "limits", limits)
+    if own is not None and own.floating:
+        _refuse_floating(own, torque, speed, turn_rate)
     labels = _label_joints(path, own)
-    plain = (torque is None or torque is False) and speed is turn_rate is None
-    if own is not None and own.floating and not plain:
-        raise InputError(
-            f"the base of {own.name} is floating; torque=, speed= and turn_rate= need one that stands"
-        )
     v = _read_limit("velocity", velocity, given, labels, required=False)
     a = _read_limit("acceleration", acceleration, given, labels, required=True)
     sampled = SampledLimits(
@@ -282,6 +276,23 @@ class _Timer:
             place=place,
             speed_range=speed_range,
             joint_names=self.joint_names,
+        )
+
+
+def _choose_robot(robot: Any, limits: Any) -> KinematicModel | None:
+    """The robot whose dynamics and kinematics count, if there is one."""
+    if robot is not None and not isinstance(robot, KinematicModel):
+        raise InputTypeError(f"robot is a {type(robot).__name__}; cspace.load_robot(name) returns one")
+    if robot is not None:
+        return robot
+    return limits if isinstance(limits, KinematicModel) else None
+
+
+def _refuse_floating(robot: KinematicModel, torque: Any, speed: Any, turn_rate: Any) -> None:
+    """InputError for limits that need the pose of the base."""
+    if not (torque is None or torque is False) or speed is not None or turn_rate is not None:
+        raise InputError(
+            f"the base of {robot.name} is floating; torque=, speed= and turn_rate= need one that stands"
         )
 
 

@@ -123,13 +123,13 @@ def find_motion(args: argparse.Namespace, robot: Robot) -> Trajectory:
     limits = {name: getattr(args, name) for name in ("velocity", "acceleration", "jerk")}
     path_limits = {"speed": args.speed, "turn_rate": args.turn_rate, "torque": args.torque or None}
     if given == ["to"]:
-        refuse(args, "--to", ("blend", "torque", "speed", "turn_rate"))
+        refuse_options(args, "--to", ("blend", "torque", "speed", "turn_rate"))
         profile = args.profile or "double_s"
         start, goal = start_of(args, robot), typed_configuration(args, args.to, robot, "--to")
         return robot.move_to(goal, start=start, profile=profile, duration=args.duration, **limits)
-    refuse(args, f"--{given[0]}", ("profile", "duration"))
+    refuse_options(args, f"--{given[0]}", ("profile", "duration"))
     if given == ["line"]:
-        refuse(args, "--line", ("blend",))
+        refuse_options(args, "--line", ("blend",))
         start = start_of(args, robot)
         T = line_goal(args, robot, start)
         return robot.move_linear(T, start=start, **limits, **path_limits)
@@ -138,7 +138,7 @@ def find_motion(args: argparse.Namespace, robot: Robot) -> Trajectory:
     return time_waypoints(args, robot, limits | path_limits)
 
 
-def refuse(args: argparse.Namespace, goal: str, names: tuple[str, ...]) -> None:
+def refuse_options(args: argparse.Namespace, goal: str, names: tuple[str, ...]) -> None:
     """Raises UsageError for options that do not go with a goal."""
     for name in names:
         value = getattr(args, name)
