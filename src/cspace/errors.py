@@ -22,6 +22,7 @@ __all__ = [
     "TimeLimitError",
     "UnknownNameError",
     "attribute_error",
+    "check_known",
     "keyword_error",
     "name_new_keywords",
     "shorten",
@@ -187,6 +188,12 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     else:
         text += f"; {len(names)} {_plural(subject)} are known"
     return UnknownNameError(text)
+
+
+def check_known(subject: str, name: object, known: Iterable[str]) -> None:
+    """The error of suggest, raised for a value that is none of the known names."""
+    if not (isinstance(name, str) and name in known):
+        raise suggest(subject, name, known)
 
 
 def keyword_error(text: str) -> TypeError:

@@ -641,6 +641,9 @@ POSE_ROUNDING: Final = 1e-13
 PATH_START: Final = 1e-6
 """[m or rad] Of a start from the begin of a path: solutions of inverse kinematics are closer."""
 
+LEAST_TOLERANCE: Final = 1e-10
+"""[m and rad] Of a joint path: corrected poses of an arm of ten metres are as exact as that."""
+
 SHORTEST_PATH_PIECE: Final = 1e-4
 """[m or rad] A piece that is off and this short ends its branch: the joints would have to jump."""
 

@@ -113,3 +113,54 @@ def test_a_path_out_of_reach_says_where_it_ends():
     assert robot.ik(just_before)
     with pytest.raises(InputError, match="tolerance"):
         follow_cartesian(robot, line_path(T, far), tolerance=-1.0)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "xarm6", "yam", "planar_3r"])
+def test_joints_may_turn_far_on_a_short_way(name, seed):
+    """Beside singular configurations: where a fine track arrives, so does the joint path."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng([seed, 7])
+    for q in robot.random_configuration(30, rng=rng):
+        T = robot.fk(q)
+        if robot.dof < 6:
+            goal = cs.pose((*rng.normal(0, 0.5, 2), 0)) @ T @ cs.pose(rpy=(0, 0, rng.normal(0, 0.5)))
+        else:
+            goal = T @ cs.pose(rng.normal(0, 0.3, 3), rpy=rng.normal(0, 0.5, 3))
+        path = line_path(T, goal)
+        found = follow_cartesian(robot, path, q, limits=False, tolerance=TOLERANCE)
+        if found:
+            assert distance(robot, found.branches[0].path, path, 2000) <= 1.5 * TOLERANCE
+        elif found.branches[0].cause == "jump":
+            assert not robot.track(path(np.linspace(0, path.length, 4000)), q, limits=False)
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "panda", "planar_3r", "cobra600"])
+def test_limits_hold_between_nodes(name):
+    """A joint turns back in the middle of a line; a limit just before that ends the branch, there."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(3)
+    refused = 0
+    for q in robot.random_configuration(150, rng=rng):
+        T, move = robot.fk(q), cs.pose((*rng.normal(0, 0.2, 2), 0))
+        path = line_path(T, move @ T)
+        free = follow_cartesian(robot, path, q)
+        if not free:
+            continue
+        s = np.linspace(0, path.length, 2001)
+        rows = free.branches[0].path(s)
+        inner = rows.argmax(axis=0)
+        room = rows.max(axis=0) - np.maximum(rows[0], rows[-1])
+        for j in np.flatnonzero(room > 1e-3):
+            upper = np.array(robot.limits.upper)
+            upper[j] = rows[inner[j], j] - room[j] * 10 ** rng.uniform(-3, -1)
+            branch = follow_cartesian(robot, path, q, limits=cs.Limits(robot.limits.lower, upper)).branches[0]
+            if branch:  # a redundant arm goes another way
+                assert (branch.path(s) <= upper + 1e-8).all()
+                continue
+            refused += 1
+            if robot.dof < 7:
+                assert (branch.cause, branch.joint) == ("limit", robot.joint_names[j])
+                above = s[rows[:, j] > upper[j]]
+                np.testing.assert_allclose(branch.s_end, above[0], atol=2 * path.length / 2000)
+    assert refused

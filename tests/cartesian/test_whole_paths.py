@@ -105,3 +105,20 @@ def test_what_cannot_be_planned_is_named():
     for branch in (follow_free_turn(six, far), follow_redundant(cs.load_robot("panda"), far)):
         assert not branch
         assert branch.cause == "unreachable"
+
+
+@pytest.mark.parametrize("turns", [0.5, 1, 2, 3, 5, 8, 13, 30])
+@pytest.mark.parametrize(("axis", "column"), [("z", 2), ("x", 0)])
+def test_a_valve_turns_as_often_as_it_takes(axis, column, turns):
+    """The hand turns on its handle, so that no joint winds up."""
+    robot = cs.load_robot("ur5e")
+    start = np.array([0.3, -1.2, 1.5, -0.8, -1.3, 0.2])
+    T = robot.fk(start)
+    valve = {"center": T[:3, 3] + 0.08 * T[:3, 1], "axis": T[:3, column], "angle": 2 * np.pi * turns}
+    motion = robot.move_arc(start=start, **valve, free_axis=axis, velocity=2.0, acceleration=8.0)
+    assert motion, motion.reason
+    q = motion(np.linspace(0, motion.duration, 2000))
+    assert ((q >= robot.limits.lower - 1e-8) & (q <= robot.limits.upper + 1e-8)).all()
+    tip = robot.fk(q)
+    np.testing.assert_allclose(tip[:, :3, column], np.tile(valve["axis"], (2000, 1)), atol=3e-5)
+    np.testing.assert_allclose(np.linalg.norm(tip[:, :3, 3] - valve["center"], axis=1), 0.08, atol=2e-5)

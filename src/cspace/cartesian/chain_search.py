@@ -18,8 +18,14 @@ from cspace.trajectory.cartesian_path import CartesianPath
 STATION_SPACING: Final = 0.04
 """[m or rad] Of the poses at which the redundant joint is chosen."""
 
-STATIONS: Final = (16, 384)
-"""Fewest and most of them."""
+STATIONS: Final = (16, 96)
+"""Fewest and most of them on a path of some metres or a turn."""
+
+LONGEST_SPACING: Final = 0.1
+"""[m or rad] Of them on a longer path: joints move less than LONGEST_STEP between neighbours."""
+
+MOST_STATIONS: Final = 1000
+"""On any path: the configurations there take a third of a gigabyte."""
 
 FINER: Final = 8
 """Parts of the distance of two values that are tried around the chain that was found first."""
@@ -60,6 +66,9 @@ class Freedom(Protocol):
     def value_of(self, q: Array, T: Array) -> float:
         """The value of a configuration (dof,) that reaches a pose T (4, 4)."""
 
+    def carry(self, T: Array) -> Array:
+        """Values (n,), from 0 on, that change as little as they can along poses (n, 4, 4)."""
+
 
 @dataclass(frozen=True, eq=False)
 class Stations:
@@ -74,7 +83,8 @@ class Stations:
 
     @classmethod
     def of(cls, path: CartesianPath) -> Stations:
-        count = int(np.clip(np.ceil(path.length / STATION_SPACING), *STATIONS))
+        few = np.clip(np.ceil(path.length / STATION_SPACING), *STATIONS)
+        count = int(min(max(few, np.ceil(path.length / LONGEST_SPACING)), MOST_STATIONS))
         s = np.linspace(0.0, path.length, count + 1)
         return cls(s, path(s))
 
@@ -117,7 +127,7 @@ class ChainSearch:
         if self.start is not None:  # one of the values is that of the start
             own = self.freedom.value_of(self.start, self.stations.T[0])
             values = values + (own - values[int(np.argmin(np.abs(values - own)))])
-        every = np.tile(values, (len(self.stations.s), 1))
+        every = self.freedom.carry(self.stations.T)[:, None] + values
         coarse = self._search(every, self.freedom.is_ring, REACH)
         if coarse.reason:
             return coarse

@@ -8,28 +8,26 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, one_array, positive_number
+from cspace.arrays import Array, one_array
 from cspace.cartesian.chain_search import ChainSearch, Stations
 from cspace.cartesian.guided import smooth_rows
-from cspace.cartesian.joint_branches import JointBranch, make_branch
+from cspace.cartesian.joint_branches import JointBranch, end_at_limits, make_branch
 from cspace.cartesian.redundant_path import (
     SMOOTHINGS,
-    choose_limits,
     end_of_chain,
     follow_redundant,
-    is_within,
-    leave_limits,
 )
-from cspace.cartesian.refine import LeastMotion, first_nodes, refine_branches
+from cspace.cartesian.refine import LeastMotion, first_nodes, read_tolerance, refine_branches
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
+from cspace.kinematics.batch import limits_of
 from cspace.math.wrapping import TURN
 from cspace.model import Limits
 from cspace.spatial import exp_so3, log_so3
 from cspace.spatial.vectors import AXES, cross, length_and_direction
-from cspace.trajectory.cartesian_path import CartesianPath, Indices
+from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
 
 ANGLES: Final = 48
@@ -55,13 +53,14 @@ def follow_free_turn(
     well chooses the turn first. start (dof,): any configuration that reaches the first pose up to such a
     turn. Other arguments as of follow_cartesian.
     """
+    check_cartesian_path(path)
     solver = as_solver(robot)
     if len(solver.redundant_joints) > 1:
         raise InputError(
             f"the robot has {len(solver.redundant_joints)} redundant joints; a free turn goes with 1 at most"
         )
-    tolerance = positive_number(tolerance, "tolerance")
-    bounds = choose_limits(robot, limits)
+    tolerance = read_tolerance(tolerance)
+    bounds = limits_of(robot.limits, limits, robot.name)
     stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")
     freedom = FreeTurn(robot, solver, tool_axis(axis), bounds)
@@ -73,10 +72,11 @@ def follow_free_turn(
     for weight in SMOOTHINGS:
         turned = TurnedPath(path, freedom.axis, smooth_rows(stations.s, angles, weight))
         found = follow_turned(robot, solver, turned, stations.s, chain.q, first, bounds, tolerance)
-        if found.path is not None and is_within(found.path, bounds):
+        found = end_at_limits(found, bounds, robot)
+        if found:
             return found
     assert found is not None
-    return found if found.path is None else leave_limits(found, bounds, robot)
+    return found
 
 
 def follow_turned(
@@ -145,6 +145,13 @@ class FreeTurn:
         """The angle by which the tip is turned from a pose."""
         turn = log_so3(T[:3, :3].T @ self.robot.fk(q)[:3, :3])
         return float(turn @ self.axis)
+
+    def carry(self, T: Array) -> Array:
+        """The angles at which the tip does not turn about its axis: those of the path are taken back, else
+        the chain would have to follow them in steps of its grid."""
+        R = T[:, :3, :3]
+        turns = log_so3(np.swapaxes(R[:-1], 1, 2) @ R[1:]) @ self.axis
+        return np.concatenate([[0.0], -np.cumsum(turns)])
 
 
 def pack_rows(q: Array) -> tuple[Array, Any]:

@@ -7,19 +7,34 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from cspace.arrays import Array, positive_number
-from cspace.cartesian.refine import LeastMotion, Refined, first_nodes, refine_branches
+from cspace.arrays import Array
+from cspace.cartesian.limit_ends import find_limit_end
+from cspace.cartesian.refine import (
+    LeastMotion,
+    Refined,
+    divide_intervals,
+    first_nodes,
+    read_tolerance,
+    refine_branches,
+)
 from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.tracking.track import track
 from cspace.kinematics import KinematicModel
-from cspace.trajectory.cartesian_path import CartesianPath
+from cspace.kinematics.batch import limits_of
+from cspace.model import Limits
+from cspace.tolerances import SHORTEST_PATH_PIECE
+from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
 
 BESIDE_SINGULAR: Final = "the joints would have to jump beside a singular configuration"
 
 NO_DEVIATION: Final = (np.inf, np.inf)
+
+JUMP_ROUNDS: Final = 8
+"""Of putting nodes where a joint moves farther from one to the next than a track allows: a path passes few
+singular configurations, and each takes two or three."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,22 +94,50 @@ def follow_cartesian(
     At the ends of its pieces a joint path attains position, slope and bend exactly: J q' = t and
     J q'' = t' − J' q' with the twist t of the path and its rate t'.
     """
-    tolerance = positive_number(tolerance, "tolerance")
-    piece, u = first_nodes(path)
-    is_new = np.concatenate([[True], np.diff(piece) == 0])
-    found: Track = track(robot, path.poses_on(piece, u)[is_new], start, limits=limits)
+    check_cartesian_path(path)
+    tolerance = read_tolerance(tolerance)
+    bounds = limits_of(robot.limits, limits, robot.name)
+    found, piece, u = _track_densely(robot, path, start, bounds)
+    is_new = _are_new(piece)
     s_of_row = (path.breaks[piece] + u)[is_new]
     whole = [branch for branch in found.branches if branch]
     refined: Iterator[Refined] = iter(())
     if whole:
         q = np.array([branch.q for branch in whole])[:, np.cumsum(is_new) - 1]
-        refined = iter(refine_branches(robot, path, LeastMotion(robot, path), q, tolerance))
+        refined = iter(refine_branches(robot, path, LeastMotion(robot, path), q, tolerance, (piece, u)))
     branches = tuple(
-        make_branch(branch.q[0], next(refined)) if branch else _ended(branch, s_of_row)
+        end_at_limits(make_branch(branch.q[0], next(refined)), bounds, robot)
+        if branch
+        else _ended(branch, s_of_row)
         for branch in found.branches
     )
     reason = "" if any(branches) else _why_none(found, branches)
     return JointBranches(branches, found.complete, reason)
+
+
+def _track_densely(
+    robot: KinematicModel, path: CartesianPath, start: ArrayLike | None, bounds: Limits
+) -> tuple[Track, Indices, Array]:
+    """The branches at nodes of a path, and the pieces (n,) and parameters (n,) of the nodes.
+
+    Beside a singular configuration joints may turn far on a short way. Nodes are added there, until no joint
+    moves farther from one to the next than a track allows.
+    """
+    piece, u = first_nodes(path)
+    for _ in range(JUMP_ROUNDS):
+        is_new = _are_new(piece)
+        found: Track = track(robot, path.poses_on(piece, u)[is_new], start, limits=bounds)
+        rows = {len(each.q) for each in found.branches if each.cause == "jump" and each.joint is not None}
+        ends = np.flatnonzero(is_new)[sorted(row for row in rows if row > 0)]
+        if not len(ends) or (u[ends] - u[ends - 1]).max() <= SHORTEST_PATH_PIECE:
+            break
+        piece, u = divide_intervals(piece, u, ends)
+    return found, piece, u
+
+
+def _are_new(piece: Indices) -> NDArray[np.bool_]:
+    """Which nodes are not the same as the one before, where a piece of the path ends and another begins."""
+    return np.concatenate([[True], np.diff(piece) == 0])
 
 
 def make_branch(q_start: Array, found: Refined) -> JointBranch:
@@ -103,6 +146,16 @@ def make_branch(q_start: Array, found: Refined) -> JointBranch:
         return JointBranch(found.path, q_start, found.path.length, "end", None, "", found.deviation)
     text = f"at s = {found.s_lost:.6g}: {BESIDE_SINGULAR}"
     return JointBranch(None, q_start, found.s_lost, "singularity", None, text, NO_DEVIATION)
+
+
+def end_at_limits(branch: JointBranch, bounds: Limits, robot: KinematicModel) -> JointBranch:
+    """The branch, ended where its joint path leaves the limits of position, also between its nodes."""
+    end = None if branch.path is None else find_limit_end(branch.path, bounds)
+    if end is None:
+        return branch
+    name = robot.joint_names[end.joint]
+    text = f"at s = {end.s:.6g}: {name} would leave its limits"
+    return JointBranch(None, branch.q_start, end.s, "limit", name, text, NO_DEVIATION)
 
 
 def _ended(branch: Branch, s_of_row: Array) -> JointBranch:

@@ -16,12 +16,14 @@ from cspace.cartesian.scene_check import find_touches, space_of_curves
 from cspace.errors import InputError
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel
+from cspace.kinematics.batch import limits_of
 from cspace.model import Limits
+from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
 from cspace.tables import count_things, one_line, shown
-from cspace.tolerances import PATH_START
+from cspace.tolerances import LIMIT_ROUNDING, PATH_START
 from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path
-from cspace.trajectory.cartesian_path import CartesianPath
+from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path
 from cspace.trajectory.path import Path
 from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_motion import TimedMotion, stand_still
@@ -99,7 +101,10 @@ def move_cartesian(
     joints slow the tip down, and `binding` says which. Raises InputError for wrong shapes, NaN, and a start
     that is not at the begin of the path.
     """
+    check_cartesian_path(path)
     first = None if start is None else _check_start(robot, path, start, free_axis is not None)
+    if first is not None and (outside := _explain_outside(robot, first, limits)):
+        return _refuse(robot, path, (), first, outside, 0.0)
     found = _follow(robot, path, first, free_axis, limits, tolerance)
     if not found:
         place = max((branch.s_end for branch in found.branches), default=0.0)
@@ -166,7 +171,7 @@ def move_through(
     of move_cartesian.
     """
     first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
-    rows = np.asarray(poses, dtype=np.float64)
+    rows = as_pose(poses, "poses")
     if rows.ndim != 3:
         raise InputError(f"poses has shape {rows.shape}, expected (n, 4, 4)")
     every = np.concatenate([robot.fk(first)[None], rows])
@@ -185,6 +190,19 @@ def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, t
             " leave start out"
         )
     return q
+
+
+def _explain_outside(robot: KinematicModel, q: Array, limits: bool | Limits) -> str:
+    """Which joint of a start is beyond its limits, in words; empty if none is."""
+    bounds = limits_of(robot.limits, limits, robot.name)
+    over = np.maximum(q - bounds.upper, bounds.lower - q)
+    j = int(np.argmax(over))
+    if over[j] <= LIMIT_ROUNDING * max(1.0, abs(q[j])):
+        return ""
+    return (
+        f"at s = 0: {robot.joint_names[j]} of the start is {q[j]:.6g},"
+        f" beyond its limits {bounds.lower[j]:.6g} … {bounds.upper[j]:.6g}"
+    )
 
 
 def _follow(

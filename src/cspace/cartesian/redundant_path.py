@@ -8,19 +8,19 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, one_array, positive_number
+from cspace.arrays import Array, one_array
 from cspace.cartesian.chain_search import ROOMY, ChainSearch, Stations
 from cspace.cartesian.guided import Guided, null_directions, smooth_rows
-from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, make_branch
-from cspace.cartesian.refine import first_nodes, refine_branches
+from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, end_at_limits, make_branch
+from cspace.cartesian.refine import first_nodes, read_tolerance, refine_branches
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
+from cspace.kinematics.batch import limits_of
 from cspace.math.wrapping import wrap_near
 from cspace.model import Limits
-from cspace.trajectory.cartesian_path import CartesianPath
-from cspace.trajectory.path import Path
+from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path
 
 VALUES: Final = 48
 """Of the redundant joint that are tried at each: 7.5° apart in a full turn."""
@@ -50,13 +50,14 @@ def follow_redundant(
 
     Bellman 1957 (dynamic programming); Whittaker 1922 (smoothing by differences).
     """
+    check_cartesian_path(path)
     solver = as_solver(robot)
     if len(solver.redundant_joints) != 1:
         raise InputError(
             f"the robot has {len(solver.redundant_joints)} redundant joints; a whole path is planned for one"
         )
-    tolerance = positive_number(tolerance, "tolerance")
-    bounds = choose_limits(robot, limits)
+    tolerance = read_tolerance(tolerance)
+    bounds = limits_of(robot.limits, limits, robot.name)
     stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")
     chain = ChainSearch(robot, RedundantJoint.of(solver, bounds), stations, bounds, first).run()
@@ -69,10 +70,11 @@ def follow_redundant(
         guided = Guided(robot, path, smooth_rows(stations.s, rows, weight))
         guess = guided.guide(piece, u, 0)[0]
         found = make_branch(chain.q[0], refine_branches(robot, path, guided, guess[None], tolerance)[0])
-        if found.path is not None and is_within(found.path, bounds):
+        found = end_at_limits(found, bounds, robot)
+        if found:
             return found
     assert found is not None
-    return found if found.path is None else leave_limits(found, bounds, robot)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,32 +108,12 @@ class RedundantJoint:
         value = float(q[self.solver.redundant_joints[0]])
         return float(wrap_near(value, 0.0)) if self.is_ring else value
 
-
-def choose_limits(robot: KinematicModel, limits: bool | Limits) -> Limits:
-    """The limits that count: the robot's, those given, or none."""
-    if isinstance(limits, Limits):
-        return limits
-    return robot.limits if limits else Limits(np.full(robot.dof, -np.inf), np.full(robot.dof, np.inf))
+    def carry(self, T: Array) -> Array:
+        """The joint at rest."""
+        return np.zeros(len(T))
 
 
 def end_of_chain(q: Array, s: float, cause: str, reason: str, dof: int) -> JointBranch:
     """The branch of a chain q (k, dof) that ends at s."""
     first = q[0] if len(q) else np.full(dof, np.nan)
     return JointBranch(None, first, s, cause, None, reason, NO_DEVIATION)
-
-
-def is_within(path: Path, bounds: Limits) -> bool:
-    """Whether the control points of a joint path are within limits: then all of it is."""
-    points = path.control_points
-    return bool(((points >= bounds.lower) & (points <= bounds.upper)).all())
-
-
-def leave_limits(found: JointBranch, bounds: Limits, robot: KinematicModel) -> JointBranch:
-    """The branch of a joint path that leaves the limits somewhere."""
-    assert found.path is not None
-    points = found.path.control_points
-    over = np.maximum(points - bounds.upper, bounds.lower - points)
-    piece, _, joint = np.unravel_index(int(np.argmax(over)), over.shape)
-    name, s = robot.joint_names[joint], float(found.path.breaks[piece])
-    text = f"at s = {s:.6g}: {name} would leave its limits"
-    return JointBranch(None, found.q_start, s, "limit", name, text, NO_DEVIATION)

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cspace import _core
-from cspace.arrays import Array
+from cspace.arrays import Array, bounded_number
+from cspace.errors import InputError
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import frame_number
-from cspace.tolerances import PATH_POSE_LEFT, SHORTEST_PATH_PIECE
+from cspace.tolerances import LEAST_TOLERANCE, PATH_POSE_LEFT, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices
 from cspace.trajectory.path import Path
 
@@ -22,6 +23,12 @@ FIRST_SPACING: Final = 0.1
 
 FEWEST_PIECES: Final = 4
 """Of each piece of the Cartesian path, so that a short one is compared with its joint path at all."""
+
+MOST_PIECES: Final = 1_000_000
+"""A hundred kilometres or the legs of 250,000 poses: some seconds, and half a gigabyte."""
+
+FINER: Final = 32
+"""Parts of an interval between nodes in which a joint moves too far."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,20 +73,47 @@ class Refined:
     deviation: tuple[float, float]
 
 
+def read_tolerance(value: float) -> float:
+    """The tolerance of a joint path [m and rad]; InputError for one that rounding exceeds."""
+    return bounded_number(value, "tolerance", LEAST_TOLERANCE, f"it must be {LEAST_TOLERANCE:g} or more")
+
+
 def first_nodes(path: CartesianPath) -> tuple[Indices, Array]:
     """Pieces (n,) and parameters (n,) within them of the first nodes, both ends of each piece among them."""
-    counts = np.maximum(np.ceil(path.lengths / FIRST_SPACING).astype(int), FEWEST_PIECES) + 1
+    spans = np.maximum(np.ceil(path.lengths / FIRST_SPACING), FEWEST_PIECES)
+    if spans.sum() > MOST_PIECES:
+        raise InputError(
+            f"the path is {path.length:.6g} m or rad long, more than can be followed at once; give metres and"
+            " radians, or follow it in parts"
+        )
+    counts = spans.astype(int) + 1
     piece = np.repeat(np.arange(len(counts)), counts)
     first = np.repeat(np.cumsum(counts) - counts, counts)
     share = (np.arange(len(piece)) - first) / (counts[piece] - 1)
     return piece, share * path.lengths[piece]
 
 
+def divide_intervals(piece: Indices, u: Array, ends: Indices) -> tuple[Indices, Array]:
+    """Nodes with further ones between the nodes `ends` (k,) and those before them, of the same pieces."""
+    share = np.arange(1.0, FINER) / FINER
+    between = u[ends - 1, None] + (u[ends] - u[ends - 1])[:, None] * share
+    at = np.repeat(ends, FINER - 1)
+    return np.insert(piece, at, piece[at]), np.insert(u, at, between.ravel())
+
+
 def refine_branches(
-    robot: KinematicModel, path: CartesianPath, correct: Corrector, q: Array, tolerance: float
+    robot: KinematicModel,
+    path: CartesianPath,
+    correct: Corrector,
+    q: Array,
+    tolerance: float,
+    nodes: tuple[Indices, Array] | None = None,
 ) -> list[Refined]:
-    """The joint paths of branches that are near q (b, n, dof) at the first nodes of a path."""
-    return _Refiner(robot, path, correct, tolerance, q).run()
+    """The joint paths of branches that are near q (b, n, dof) at nodes, by default the first ones of a path.
+
+    nodes: pieces (n,) and parameters (n,).
+    """
+    return _Refiner(robot, path, correct, tolerance, q, first_nodes(path) if nodes is None else nodes).run()
 
 
 class _Refiner:
@@ -90,10 +124,16 @@ class _Refiner:
     """
 
     def __init__(
-        self, robot: KinematicModel, path: CartesianPath, correct: Corrector, tolerance: float, q: Array
+        self,
+        robot: KinematicModel,
+        path: CartesianPath,
+        correct: Corrector,
+        tolerance: float,
+        q: Array,
+        first: tuple[Indices, Array],
     ) -> None:
         self.robot, self.path, self.correct, self.tolerance = robot, path, correct, tolerance
-        piece, u = first_nodes(path)
+        piece, u = first
         T = path.poses_on(piece, u)
         self.count, n = q.shape[:2]
         rows = self.count * n

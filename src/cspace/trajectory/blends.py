@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError, check_known
 from cspace.tables import count_things
 from cspace.tolerances import REVERSED_TURN, STRAIGHT_TURN
 from cspace.trajectory.path import Path, hermite_quintics, raise_degree
@@ -40,8 +40,7 @@ def blend(waypoints: ArrayLike, deviation: ArrayLike, *, kind: str = "quintic") 
     shape, NaN, a negative deviation and waypoints that are all the same, UnknownNameError for another kind.
     Source: Kunz and Stilman 2012 for circular blends.
     """
-    if kind not in KINDS:
-        raise suggest("kind of blend", kind, KINDS)
+    check_known("kind of blend", kind, KINDS)
     given = read_waypoints(waypoints)
     allowed = _read_deviations(deviation, len(np.asarray(waypoints)), len(given.q))
     legs = np.diff(given.q, axis=0)

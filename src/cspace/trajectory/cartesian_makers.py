@@ -79,16 +79,18 @@ def arc_path(
     by_via = T_goal is not None and via is not None and center is axis is angle is None
     by_axis = T_goal is via is None and center is not None and axis is not None and angle is not None
     if by_via:
-        return _arc_through(start, one_pose(T_goal, "goal pose"), via, rotation or "interpolate")  # type: ignore[arg-type]
+        how = "interpolate" if rotation is None else rotation
+        return _arc_through(start, one_pose(T_goal, "goal pose"), via, how)  # type: ignore[arg-type]
     if by_axis:
-        return _arc_about(start, center, axis, angle, rotation or "follow")  # type: ignore[arg-type]
+        how = "follow" if rotation is None else rotation
+        return _arc_about(start, center, axis, angle, how)  # type: ignore[arg-type]
     raise InputError("an arc needs a goal pose and via=, or else center=, axis= and angle=")
 
 
 def _arc_about(
     start: Array, center: ArrayLike, axis: ArrayLike, angle: float, rotation: str
 ) -> CartesianPath:
-    if rotation not in ("keep", "follow"):
+    if not (isinstance(rotation, str) and rotation in ("keep", "follow")):
         raise InputError(f"rotation is {rotation!r}; about an axis it is 'keep' or 'follow'")
     point = one_array(center, "center", (3,), "a point")
     direction = one_array(axis, "axis", (3,), "a direction")
@@ -101,7 +103,7 @@ def _arc_about(
 
 
 def _arc_through(start: Array, goal: Array, via: ArrayLike, rotation: str) -> CartesianPath:
-    if rotation not in ROTATIONS:
+    if not (isinstance(rotation, str) and rotation in ROTATIONS):
         raise InputError(f"rotation is {rotation!r}; expected one of {', '.join(ROTATIONS)}")
     circle = _circle_through(start[:3, 3], one_array(via, "via", (3,), "a point"), goal[:3, 3])
     if circle is None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.spatial import exp_so3
 from cspace.spatial.vectors import cross
 from cspace.tables import count_things, one_line
@@ -148,3 +148,12 @@ def _evaluate(coefficients: Array, piece: Indices, u: Array) -> Array:
     for row in coefficients[-2::-1]:
         value = value * u[:, None] + row[piece]
     return value
+
+
+def check_cartesian_path(path: object) -> None:
+    """Raises InputTypeError for another object, such as an array of poses."""
+    if not isinstance(path, CartesianPath):
+        raise InputTypeError(
+            f"path is a {type(path).__name__}; make a CartesianPath by line_path, arc_path, screw_path or"
+            " pose_path"
+        )

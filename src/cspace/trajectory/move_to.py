@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, check_known
 from cspace.kinematics import KinematicModel, require_limits
-from cspace.kinematics.batch import check_robot
+from cspace.kinematics.batch import check_robot, limits_of
 from cspace.model import Limits
 from cspace.trajectory.limit_check import Violation
 from cspace.trajectory.polynomials import PolynomialTrajectory
@@ -39,7 +39,7 @@ def move_to(
     goal_velocity: ArrayLike | None = None,
     goal_acceleration: ArrayLike | None = None,
     synchronize: str = "time",
-    limits: bool = True,
+    limits: bool | Limits = True,
 ) -> PolynomialTrajectory:
     """The motion from one configuration to another, in the shortest time that a profile allows.
 
@@ -49,7 +49,8 @@ def move_to(
     of which the duration is to be a multiple. velocity, acceleration, jerk () or (n,): in place of the limits
     of the robot; polynomials need no jerk limit, and with a duration none at all. start_velocity,
     start_acceleration, goal_velocity, goal_acceleration (n,): zero unless given; trapezoidal and cubic
-    motions attain no accelerations. synchronize: as in state_to_state. limits: check those of position.
+    motions attain no accelerations. synchronize: as in state_to_state. limits: of position, True for
+    those of the robot, False for none, or Limits.
 
     Returns a PolynomialTrajectory. It is falsy, with a reason, where the motion leaves the limits of
     position, where a polynomial exceeds a limit in the duration that was asked for, and where double-S or
@@ -59,10 +60,9 @@ def move_to(
     Biagiotti and Melchiorri 2008, chapters 2 and 3.
     """
     check_robot(robot)
-    if profile not in PROFILES:
-        raise suggest("profile", profile, PROFILES)
-    if synchronize not in SYNCHRONIZE:
-        raise suggest("synchronize", synchronize, SYNCHRONIZE)
+    check_known("profile", profile, PROFILES)
+    check_known("synchronize", synchronize, SYNCHRONIZE)
+    kept = limits_of(robot.limits, limits, robot.name)
     n = len(robot.joint_names)
     first = read_states(start, start_velocity, start_acceleration, "start", n)
     last = read_states(q_goal, goal_velocity, goal_acceleration, "goal", n)
@@ -77,8 +77,8 @@ def move_to(
         motion = fit_polynomials(robot, first, last, profile, given, duration, cycle)
     else:
         motion = fit_phases(robot, first, last, profile, given, duration, cycle, synchronize)
-    if limits and motion:
-        motion.reason = find_position_violation(motion, robot.limits)
+    if motion:
+        motion.reason = find_position_violation(motion, kept)
     return motion
 
 

@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats, whole_number
-from cspace.errors import InputError, suggest
+from cspace.arrays import Array, as_floats, positive_number, whole_number
+from cspace.errors import InputError, check_known
 from cspace.tables import count_things
 from cspace.trajectory.path import HIGHEST_DEGREE, Path, hermite_quintics
 from cspace.trajectory.waypoints import read_waypoints
@@ -34,12 +34,10 @@ def spline(waypoints: ArrayLike, degree: int = 3, *, ends: str = "natural", spac
     NaN, waypoints that are all the same and another degree, UnknownNameError for other ends or spacings.
     Source: de Boor 1978, chapters IV and XIII; Lee 1989 for the spacing.
     """
-    if degree not in DEGREES:
+    if not (isinstance(degree, int) and degree in DEGREES):
         raise InputError(f"degree is {degree!r}; splines have degree 3 or 5")
-    if ends not in ENDS:
-        raise suggest("end condition", ends, ENDS)
-    if spacing not in SPACINGS:
-        raise suggest("spacing", spacing, SPACINGS)
+    check_known("end condition", ends, ENDS)
+    check_known("spacing", spacing, SPACINGS)
     given = read_waypoints(waypoints)
     h = given.distances ** SPACINGS[spacing]
     h *= given.distances.sum() / h.sum()
@@ -153,7 +151,7 @@ def b_spline(control_points: ArrayLike, degree: int = 3, *, length: float | None
     if not degree:
         raise InputError("the control points are all the same; a path needs two that differ")
     polyline = float(np.linalg.norm(np.diff(q, axis=0), axis=1).sum())
-    whole = polyline if length is None else float(as_floats(length, "length"))
+    whole = polyline if length is None else positive_number(length, "length")
     if not whole > 0.0:
         raise InputError("the control points are all the same; a path needs two that differ")
     pieces = len(q) - degree

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, guard_memory, leading_axes, whole_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, check_known
 from cspace.tables import one_line
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.states import (
@@ -161,8 +161,7 @@ def state_to_state(
 
     Kröger 2010 states the problem; Berscheid and Kröger 2021 solve it by polynomials of degree six.
     """
-    if synchronize not in SYNCHRONIZE:
-        raise suggest("synchronize", synchronize, SYNCHRONIZE)
+    check_known("synchronize", synchronize, SYNCHRONIZE)
     first = read_states(start, start_velocity, start_acceleration, "start")
     dof = first.shape[-1]
     last = read_states(goal, goal_velocity, goal_acceleration, "goal", dof)

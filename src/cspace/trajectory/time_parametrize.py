@@ -84,8 +84,9 @@ def time_parametrize(
         raise InputTypeError(
             f"path is a {type(path).__name__}; make a Path by spline, blend, b_spline or fit_path"
         )
-    own = robot if robot is not None else limits if isinstance(limits, KinematicModel) else None
-    given = getattr(limits, "limits", limits)
+    own, given = _choose_robot(robot, limits), getattr(limits, "limits", limits)
+    if own is not None and own.floating:
+        _refuse_floating(own, torque, speed, turn_rate)
     labels = _label_joints(path, own)
     v = _read_limit("velocity", velocity, given, labels, required=False)
     a = _read_limit("acceleration", acceleration, given, labels, required=True)
@@ -290,16 +291,38 @@ class _Timer:
         )
 
 
+def _choose_robot(robot: Any, limits: Any) -> KinematicModel | None:
+    """The robot whose dynamics and kinematics count, if there is one."""
+    if robot is not None and not isinstance(robot, KinematicModel):
+        raise InputTypeError(f"robot is a {type(robot).__name__}; cspace.load_robot(name) returns one")
+    if robot is not None:
+        return robot
+    return limits if isinstance(limits, KinematicModel) else None
+
+
+def _refuse_floating(robot: KinematicModel, torque: Any, speed: Any, turn_rate: Any) -> None:
+    """InputError for limits that need the pose of the base."""
+    if not (torque is None or torque is False) or speed is not None or turn_rate is not None:
+        raise InputError(
+            f"the base of {robot.name} is floating; torque=, speed= and turn_rate= need one that stands"
+        )
+
+
 def _label_joints(path: Path, robot: KinematicModel | None) -> tuple[str, ...]:
     if robot is None:
         return tuple(f"joint {j}" for j in range(path.dof))
-    if robot.dof != path.dof:
-        raise InputError(f"the path is of {path.dof} joints, {robot.name} of {robot.dof}")
+    if len(robot.joint_names) != path.dof:
+        raise InputError(f"the path is of {path.dof} joints, {robot.name} of {len(robot.joint_names)}")
     return tuple(robot.joint_names)
 
 
-def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, required: bool) -> Array:
-    """The limit given, or that of limits (dof,); inf where there is none and it is not required."""
+def _read_limit(
+    name: str, value: Any, limits: Any, labels: tuple[str, ...], *, required: bool, argument: str = ""
+) -> Array:
+    """The limit given, or that of limits (dof,); inf where there is none and it is not required.
+
+    argument: what gives it, if that is not its name.
+    """
     n = len(labels)
     if value is not None:
         row = as_floats(value, name, finite=False)
@@ -319,7 +342,7 @@ def _read_limit(name: str, value: Any, limits: Any, labels: tuple[str, ...], *, 
     absent = [label for label, limit in zip(labels, own, strict=True) if np.isinf(limit)]
     if required and absent:
         which = "" if len(absent) == n else f" of {join_words(absent)}"
-        raise InputError(f"there are no {name} limits{which}; pass {name}=, with inf for none")
+        raise InputError(f"there are no {name} limits{which}; pass {argument or name}=, with inf for none")
     return own
 
 
@@ -341,7 +364,14 @@ def _read_torque(
         raise InputTypeError("torque= needs the dynamics of a robot; pass robot=")
     labels = tuple(robot.joint_names)
     value = None if torque is True else torque
-    limit = _read_limit("effort" if value is None else "torque", value, robot.limits, labels, required=False)
+    limit = _read_limit(
+        "torque" if value is not None else "effort",
+        value,
+        robot.limits,
+        labels,
+        required=True,
+        argument="torque",
+    )
     return TorqueLimits(robot, limit, one_array(gravity, "gravity", (3,)))
 
 

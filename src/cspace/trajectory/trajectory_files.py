@@ -12,7 +12,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import DescriptionError, InputError
-from cspace.files import read_text, write_text
+from cspace.files import path_of, read_text, write_text
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.time_scaling import connect_samples
 from cspace.trajectory.trajectory import Trajectory
@@ -44,7 +44,7 @@ def to_csv(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float)
     writer.writerow(heading)
     table = np.column_stack([samples.times, samples.q, samples.qd, samples.qdd])
     writer.writerows([repr(x) for x in row] for row in table.tolist())
-    write_text(path, text.getvalue())
+    write_text(path_of(path), text.getvalue())
 
 
 def from_csv(path: str | os.PathLike[str]) -> PolynomialTrajectory:
@@ -56,7 +56,9 @@ def from_csv(path: str | os.PathLike[str]) -> PolynomialTrajectory:
     Returns a PolynomialTrajectory. Raises DescriptionError, with the file and the line, for other columns,
     cells that are no numbers, and times that do not increase from zero.
     """
-    lines = list(csv.reader(io.StringIO(read_text(path, "CSV file", LARGEST_FILE, DescriptionError))))
+    lines = list(
+        csv.reader(io.StringIO(read_text(path_of(path), "CSV file", LARGEST_FILE, DescriptionError)))
+    )
     heading = lines[0] if lines else []
     names = [title.partition(":")[2] for title in heading if title.startswith("q:")]
     kinds = [kind for kind in QUANTITIES if f"{kind}:{names[0] if names else ''}" in heading]
@@ -106,7 +108,7 @@ def to_json(trajectory: PolynomialTrajectory, path: str | os.PathLike[str]) -> N
         "origins": trajectory.origins.tolist(),
         "coefficients": trajectory.coefficients.tolist(),
     }
-    write_text(path, json.dumps(values, ensure_ascii=False) + "\n")
+    write_text(path_of(path), json.dumps(values, ensure_ascii=False) + "\n")
 
 
 def from_json(path: str | os.PathLike[str]) -> PolynomialTrajectory:
@@ -115,7 +117,7 @@ def from_json(path: str | os.PathLike[str]) -> PolynomialTrajectory:
     Returns a PolynomialTrajectory. Raises DescriptionError, with the file, for other contents.
     """
     try:
-        values: Any = json.loads(read_text(path, "JSON file", LARGEST_FILE, DescriptionError))
+        values: Any = json.loads(read_text(path_of(path), "JSON file", LARGEST_FILE, DescriptionError))
     except (ValueError, RecursionError) as error:
         if isinstance(error, DescriptionError):
             raise
@@ -159,7 +161,7 @@ def to_ros(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float)
             mark = "  - " if key == "positions" else "    "
             lines.append(f"{mark}{key}: [{', '.join(map(_yaml_number, values[i].tolist()))}]")
         lines.append(f"    time_from_start: {{sec: {second}, nanosec: {nanosecond}}}")
-    write_text(path, "\n".join(lines) + "\n")
+    write_text(path_of(path), "\n".join(lines) + "\n")
 
 
 def _yaml_number(value: float) -> str:

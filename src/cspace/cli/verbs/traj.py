@@ -141,7 +141,8 @@ def find_motion(args: argparse.Namespace, robot: Robot) -> Trajectory:
 def refuse_options(args: argparse.Namespace, goal: str, names: tuple[str, ...]) -> None:
     """Raises UsageError for options that do not go with a goal."""
     for name in names:
-        if getattr(args, name):
+        value = getattr(args, name)
+        if value is not None and value is not False:
             raise UsageError(f"--{name.replace('_', '-')} does not go with {goal}; leave it out")
 
 
@@ -161,11 +162,16 @@ def line_goal(args: argparse.Namespace, robot: Robot, start: Array) -> Array:
 
 def time_waypoints(args: argparse.Namespace, robot: Robot, limits: dict[str, Any]) -> Trajectory:
     """The fastest motion through the waypoints of a file."""
+    from cspace.model import Limits
     from cspace.trajectory import blend, spline, time_parametrize
 
     waypoints = read_waypoint_file(args.waypoints, robot.dof, degrees=args.deg)
     path = spline(waypoints) if args.blend is None else blend(waypoints, args.blend)
-    return time_parametrize(path, robot, **limits)
+    motion = time_parametrize(path, robot, **limits)
+    if motion and not (check := motion.check(Limits(robot.limits.lower, robot.limits.upper))):
+        advice = "; --blend keeps between the waypoints" if args.blend is None else ""
+        motion.reason = check.reason + advice
+    return motion
 
 
 def read_waypoint_file(path: Path, dof: int, *, degrees: bool) -> Array:
@@ -249,4 +255,4 @@ def print_motion(args: argparse.Namespace, out: Output, robot: Robot, motion: Tr
     out.table(table)
     out.line()
     check = motion.check(robot.limits)
-    out.facts({"duration": f"{motion.duration:.6g} s", "limits": "kept" if check else repr(check)[1:-1]})
+    out.facts({"duration": f"{motion.duration:.6g} s", "limits": "kept" if check else check.reason})

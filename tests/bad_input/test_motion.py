@@ -1,0 +1,125 @@
+"""Arguments of motions that are none: an error that names them, whatever is given."""
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace import cartesian, trajectory
+from cspace.errors import CspaceError
+
+START = np.array([0.3, -1.2, 1.5, -0.8, -1.3, 0.2])
+WAYPOINTS = START + np.array([[0.0], [0.3], [-0.2]])
+LIMITS = {"velocity": 2.0, "acceleration": 8.0}
+
+STRANGE = (
+    "no such", b"no such", 1j, object(), [], {}, [1, 2], [[1, 2], [3]], np.zeros((2, 6)), np.zeros((0, 6)),
+    np.full((4, 4), np.nan), np.zeros((3, 4, 4)), np.array(["a"]), np.ones(6, dtype=object),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return cs.load_robot("ur5e")
+
+
+def line(robot):
+    T = robot.fk(START)
+    return trajectory.line_path(T, T @ cs.pose((0.1, 0, 0)))
+
+
+CALLS = {
+    "profile": lambda r, x: r.move_to(START + 0.1, start=START, jerk=50.0, profile=x, **LIMITS),
+    "synchronize": lambda r, x: r.move_to(START + 0.1, start=START, jerk=50.0, synchronize=x, **LIMITS),
+    "limits of move_to": lambda r, x: r.move_to(START + 0.1, start=START, jerk=50.0, limits=x, **LIMITS),
+    "state_to_state": lambda r, x: trajectory.state_to_state([0], [1], synchronize=x, **LIMITS),
+    "degree": lambda r, x: cs.spline(WAYPOINTS, x),
+    "ends": lambda r, x: cs.spline(WAYPOINTS, ends=x),
+    "spacing": lambda r, x: cs.spline(WAYPOINTS, spacing=x),
+    "kind": lambda r, x: cs.blend(WAYPOINTS, 0.1, kind=x),
+    "length": lambda r, x: trajectory.b_spline(WAYPOINTS, 2, length=x),
+    "robot": lambda r, x: cs.time_parametrize(cs.spline(WAYPOINTS), robot=x, **LIMITS),
+    "joint path": lambda r, x: cs.time_parametrize(x, **LIMITS),
+    "poses": lambda r, x: r.move_through(x, start=START, **LIMITS),
+    "rotation": lambda r, x: r.move_arc(
+        start=START, center=(0, 0, 0), axis=(0, 0, 1), angle=0.1, rotation=x, **LIMITS
+    ),
+    "path": lambda r, x: cartesian.move_cartesian(r, x, **LIMITS),
+    "followed path": lambda r, x: cartesian.follow_cartesian(r, x),
+    "turned path": lambda r, x: cartesian.follow_free_turn(r, x),
+    "limits of follow_free_turn": lambda r, x: cartesian.follow_free_turn(r, line(r), "z", START, limits=x),
+    "CSV": lambda r, x: trajectory.from_csv(x),
+    "JSON": lambda r, x: trajectory.from_json(x),
+}
+
+
+@pytest.mark.parametrize("value", STRANGE, ids=lambda value: type(value).__name__)
+@pytest.mark.parametrize("argument", CALLS)
+def test_strange_values_are_named(robot, argument, value):
+    with pytest.raises(CspaceError):
+        CALLS[argument](robot, value)
+
+
+@pytest.mark.parametrize("size", [1e6, 1e8, 1e12, 1e100])
+def test_a_path_of_too_many_metres_is_refused_at_once(robot, size):
+    with pytest.raises(CspaceError, match=r"long|large|exceeds|must"):
+        robot.move_linear(cs.pose((size, 0, 0.3)), start=START, **LIMITS)
+    with pytest.raises(CspaceError, match=r"long|large|exceeds|must"):
+        robot.move_arc(start=START, center=(0, 0, 0), axis=(0, 0, 1), angle=size, rotation="keep", **LIMITS)
+
+
+@pytest.mark.parametrize("name", ["planar_2r", "stanford", "pr2_right_torso"])
+def test_torques_without_efforts_are_asked_for(name):
+    robot = cs.load_robot(name)
+    q = robot.random_configuration(rng=0, reach=0.5)
+    path = cs.spline(np.stack([q, q + 0.1]))
+    with pytest.raises(CspaceError, match=r"no effort limits.*pass torque="):
+        cs.time_parametrize(path, robot, torque=True, **LIMITS)
+    assert cs.time_parametrize(path, robot, torque=np.inf, **LIMITS)
+
+
+def test_limits_of_position_may_be_given(robot):
+    limits = cs.Limits(START - 0.05, START + 0.05)
+    given = {"start": START, "jerk": 50.0, **LIMITS}
+    assert robot.move_to(START + 0.04, limits=limits, **given)
+    assert "upper limit" in robot.move_to(START + 0.1, limits=limits, **given).reason
+    assert robot.move_to(START + 0.1, limits=False, **given)
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda", "cobra600", "planar_3r"])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_start_beyond_its_limits_is_named(name, side):
+    robot = cs.load_robot(name)
+    inside = robot.random_configuration(rng=2, reach=0.5)
+    limits = cs.Limits(np.full(robot.dof, -7.0), np.full(robot.dof, 7.0))
+    for j, joint in enumerate(robot.joint_names):
+        start = np.array(inside)
+        start[j] = 7.5 * side
+        goal = cs.pose((0.01, 0, 0)) @ robot.fk(start)
+        motion = robot.move_linear(goal, start=start, limits=limits, **LIMITS)
+        assert not motion
+        assert motion.reason.startswith(
+            f"at s = 0: {joint} of the start is {7.5 * side:g}, beyond its limits"
+        )
+        np.testing.assert_array_equal(motion(0.0), start)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1e-5, 1e-15, 1e-300, np.nan])
+@pytest.mark.parametrize("name", ["ur5e", "panda"])
+@pytest.mark.parametrize("free_axis", [None, "z"])
+def test_a_tolerance_within_rounding_is_refused(name, free_axis, tolerance):
+    robot = cs.load_robot(name)
+    q = robot.random_configuration(rng=2, reach=0.5)
+    goal = robot.fk(q) @ cs.pose((0.01, 0, 0))
+    with pytest.raises(CspaceError, match="tolerance"):
+        robot.move_linear(goal, start=q, tolerance=tolerance, free_axis=free_axis, **LIMITS)
+
+
+@pytest.mark.parametrize("name", ["panda", "ur5e"])
+def test_joints_of_a_floating_robot_are_timed(name):
+    robot = cs.load_robot(name, floating=True)
+    q = np.zeros(len(robot.joint_names))
+    path = cs.spline(np.stack([q, q + 0.3, q - 0.1]))
+    assert cs.time_parametrize(path, robot, **LIMITS)
+    for needs in ({"torque": True}, {"torque": 5.0}, {"speed": 0.1}, {"turn_rate": 0.1}):
+        with pytest.raises(CspaceError, match=r"the base of .* is floating"):
+            cs.time_parametrize(path, robot, **needs, **LIMITS)

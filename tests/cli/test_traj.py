@@ -1,0 +1,55 @@
+"""`cspace traj`: what it refuses, and motions that leave limits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cli.run import cspace
+
+
+def write_waypoints(path, rows):
+    path.write_text("\n".join(",".join(f"{x!r}" for x in row) for row in np.asarray(rows).tolist()) + "\n")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("goal", "option"),
+    [
+        *(("--to ready", f"--{name} 0") for name in ("blend", "speed", "turn-rate")),
+        *(("--line 0.4 0.2 0.4", f"--{name} 0") for name in ("duration", "blend")),
+        *(("--to ready", f"--{name} 1") for name in ("blend", "speed", "turn-rate")),
+        ("--to ready", "--torque"),
+    ],
+)
+def test_options_of_another_goal_are_refused_even_if_zero(goal, option):
+    result = cspace(f"traj panda --from ready {goal} {option}")
+    assert result.code == 2
+    assert f"{option.split()[0]} does not go with {goal.split()[0]}" in result.err
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("name", ["panda", "ur5e", "so101"])
+def test_a_spline_that_leaves_the_limits_is_no_motion(tmp_path, name, seed):
+    """The waypoints are within the limits; the spline through them overshoots, blends do not."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(seed)
+    corners = rng.integers(0, 2, (5, robot.dof))
+    rows = np.where(corners, robot.limits.upper - 1e-3, robot.limits.lower + 1e-3)
+    file = write_waypoints(tmp_path / "way.csv", rows)
+    line = f"traj {name} --velocity 1 --acceleration 3 --waypoints {file} -o {tmp_path / 'motion.csv'}"
+    overshot = cspace(line)
+    assert overshot.code == 1
+    assert "limit from" in overshot.out
+    assert "--blend" in overshot.out
+    assert not (tmp_path / "motion.csv").exists()
+    assert cspace(f"{line} --blend 0.1").code == 0
+    assert (tmp_path / "motion.csv").exists()
+
+
+def test_limits_of_the_caller_are_told_apart_from_those_of_the_robot():
+    result = cspace("traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --velocity 10")
+    assert result.code == 0
+    assert "panda_joint1 exceeds its velocity limit" in result.out
+    assert "TrajectoryCheck" not in result.out
