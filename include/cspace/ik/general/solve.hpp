@@ -65,7 +65,7 @@ inline void split_planes(const Loop& loop, const Elimination& e, const double* a
     const bool doubled = !(e.a4_rank > firm_rank);
     for (int first = 0; first < count; first += 4) {
         const int lanes = count - first < 4 ? count - first : 4;
-        V at;
+        V at = fill<V>(0.0);
         for (int k = 0; k < 4; ++k) set_lane(at, k, angle[first + (k < lanes ? k : lanes - 1)]);
         const Turn<V> a0 = turn_by(at);
         ReducedEquations<V> reduced;
