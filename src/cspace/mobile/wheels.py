@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import inf
@@ -19,7 +20,7 @@ from cspace.tables import join_words
 Floats = npt.ArrayLike
 
 
-class WheelBase:
+class WheelBase(ABC):
     """A vehicle whose wheel speeds are a linear function of its body twist, w = J ξ.
 
     The twists that the wheels allow are ξ = N u: of a robot that cannot slide, N leaves out vy. Forwards is
@@ -80,8 +81,9 @@ class WheelBase:
         N = self.allowed_twists
         return np.asarray(N @ np.linalg.pinv(self.wheel_matrix @ N))
 
+    @abstractmethod
     def _rows(self) -> Array:
-        raise NotImplementedError
+        """The wheel matrix J (k, 3)."""
 
     def _read_wheels(self, wheels: Floats) -> Array:
         return as_floats(wheels, "wheel speeds", last=(len(self.wheel_matrix),))
@@ -183,7 +185,7 @@ class Tracked(WheelBase):
     """Two tracks, left then right, that turn about their instantaneous centres of rotation (ICR).
 
     Rows (1, 0, −y)/r of J with y the place of the ICR of a track across base, and vy = −x_icr ω: a tracked
-    vehicle turns as a differential drive whose wheels stand at its ICRs, farther out than its tracks.
+    vehicle turns as a differential drive whose wheels are at its ICRs, farther out than its tracks.
     wheel_radius of the sprockets [m]; icr_left > 0 > icr_right and icr_x [m]; max_wheel_speed [rad/s].
     Tracked.symmetric(radius, width) has both at half of an effective width. Source: Martínez et al. 2005.
     """

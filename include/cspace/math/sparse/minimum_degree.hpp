@@ -1,7 +1,8 @@
 // Approximate minimum degree: an elimination order of the blocks of a symmetric matrix with little fill
 // (Amestoy, Davis & Duff 1996, "An approximate minimum degree ordering algorithm").
 //
-// The quotient graph holds variables, which wait, and elements, the cliques that eliminated variables leave.
+// The quotient graph holds variables that are not eliminated yet, and elements: the cliques that eliminated
+// variables leave.
 // A pivot absorbs the elements it touches; variables with the same neighbours are merged; the degree of a
 // variable is bounded by the sizes of its elements. Degrees count rows, so that blocks of several sizes are
 // compared fairly.
@@ -252,7 +253,7 @@ class MinimumDegree {
     };
 
     int n_, total_ = 0, least_ = 0, member_rows_ = 0;
-    int left_ = 0;           // rows of the variables that wait
+    int left_ = 0;           // rows of the variables that are not eliminated yet
     std::vector<int> rows_;  // of a variable with all that are merged into it; 0 once merged
     std::vector<int> lists_;
     std::vector<Node> nodes_;

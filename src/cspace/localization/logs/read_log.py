@@ -41,7 +41,7 @@ def read_log(path: str | os.PathLike[str], *, robot: int | None = None) -> Log:
     if found and place.is_file() and is_mrclam(place.parent):
         return read_mrclam(place.parent, int(found[1]) if robot is None else robot)
     if robot is not None:
-        raise InputError(f"robot is {robot}; it goes with a folder of MRCLAM alone")
+        raise InputError(f"robot is {robot}; only folders of MRCLAM have several robots; leave robot= out")
     return read_by_content(read_lines(name))
 
 
