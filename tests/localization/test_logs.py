@@ -154,3 +154,20 @@ def test_bad_arrays_are_named(call, part):
 
 def test_a_log_shows_what_it_holds():
     assert "1 step" in repr(Log(Odometry([0.0, 1.0], [[1.0, 0.0, 0.0]])))
+
+
+def test_one_scan_of_many_and_where_its_beams_ended():
+    """Points of a scan in base: the laser turned by a quarter and moved, one beam without return."""
+    scans = cs.localization.Scans(
+        times=[0.0, 1.0],
+        ranges=[[1.0, 2.0, 3.0], [np.nan, 2.0, 90.0]],
+        angles=[0.0, np.pi / 2, np.pi],
+        T_base_laser=cs.pose_2d(xytheta=[0.5, 0.0, np.pi / 2]),
+    )
+    one = scans[-1]
+    assert len(one) == 1
+    assert one.times[0] == 1.0
+    np.testing.assert_allclose(one.points(), [[-1.5, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(scans.points(0), [[0.5, 1.0], [-1.5, 0.0], [0.5, -3.0]], atol=1e-12)
+    with pytest.raises(IndexError):
+        scans[2]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -185,6 +185,24 @@ class Scans:
     def __len__(self) -> int:
         """How many scans there are."""
         return len(self.times)
+
+    def __getitem__(self, row: int) -> Scans:
+        """One scan, as Scans with a single row."""
+        if not -len(self) <= row < len(self):
+            raise IndexError(f"scan {row} of {len(self)}")
+        at = row % len(self)
+        return self.subset(slice(at, at + 1))
+
+    def subset(self, keep: Mask | Ids | slice) -> Scans:
+        """The scans of a mask, of a slice, or of increasing row numbers."""
+        return replace(self, times=self.times[keep], ranges=self.ranges[keep])
+
+    def points(self, row: int = 0) -> Array:
+        """Where the beams of one scan ended, in base, (m, 2) [m]; beams without return are left out."""
+        ends = self.returns[row]
+        reach, angles = self.ranges[row, ends].astype(np.float64), self.angles[ends]
+        in_laser = np.stack([reach * np.cos(angles), reach * np.sin(angles)], axis=-1)
+        return in_laser @ self.T_base_laser[:2, :2].T + self.T_base_laser[:2, 2]
 
     def __repr__(self) -> str:
         return one_line("Scans", f"{len(self)} of {count_things(len(self.angles), 'beam')}")

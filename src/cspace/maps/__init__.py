@@ -1,5 +1,6 @@
 """Worlds of the plane: polygonal obstacles and occupancy grids."""
 
+from cspace.maps.byte_field import ByteField
 from cspace.maps.movingai import Scenarios, read_scenarios
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, OffsetCurve
@@ -7,6 +8,7 @@ from cspace.maps.outlines import GeometryError
 from cspace.maps.polygon_world import PolygonWorld
 
 __all__ = [
+    "ByteField",
     "GeometryError",
     "OccupancyGrid",
     "Offset",
