@@ -14,7 +14,6 @@
 #include "cspace/dynamics/coriolis.hpp"
 #include "cspace/dynamics/derivatives.hpp"
 #include "cspace/dynamics/make_links.hpp"
-#include "cspace/dynamics/momentum.hpp"
 #include "cspace/dynamics/regressor.hpp"
 #include "cspace/dynamics/roll_out.hpp"
 #include "cspace/dynamics/sparse_factor.hpp"

@@ -899,7 +899,7 @@ def find_reach(checker: CollisionChecker) -> float:
 class Simulator:
     """The compiled half of cspace.dynamics.simulate."""
 
-    def __init__(self, robot: object, method: str, gravity: numpy.typing.NDArray[numpy.float64], damping: numpy.typing.NDArray[numpy.float64] | None, dry: numpy.typing.NDArray[numpy.float64] | None, friction_speed: float, times: tuple[float, float], steps: tuple[int, int], is_held: bool, tolerance: float, lower: numpy.typing.NDArray[numpy.float64] | None, upper: numpy.typing.NDArray[numpy.float64] | None, threads: int) -> None:
+    def __init__(self, robot: object, method: str, gravity: numpy.typing.NDArray[numpy.float64], damping: numpy.typing.NDArray[numpy.float64] | None, dry: numpy.typing.NDArray[numpy.float64] | None, friction_speed: float, times: tuple[float, float], steps: tuple[int, int], is_held: bool, keeps_pieces: bool, tolerance: float, lower: numpy.typing.NDArray[numpy.float64] | None, upper: numpy.typing.NDArray[numpy.float64] | None, threads: int) -> None:
         """
         times: duration and dt; steps: how many, and of how many one state is recorded.
         """
@@ -907,7 +907,7 @@ class Simulator:
     def hold_state(self, q: numpy.typing.NDArray[numpy.float64], qd: numpy.typing.NDArray[numpy.float64], T_world_base: numpy.typing.NDArray[numpy.float64], tau: numpy.typing.NDArray[numpy.float64], status: numpy.typing.NDArray[numpy.int32], joint: numpy.typing.NDArray[numpy.int32], stopped: numpy.typing.NDArray[numpy.float64]) -> None:
         """The arrays of the states of all rows, which are written to."""
 
-    def hold_records(self, q: numpy.typing.NDArray[numpy.float64], qd: numpy.typing.NDArray[numpy.float64], tau: numpy.typing.NDArray[numpy.float64], energy: numpy.typing.NDArray[numpy.float64], T_world_base: numpy.typing.NDArray[numpy.float64] | None) -> None:
+    def hold_records(self, q: numpy.typing.NDArray[numpy.float64], qd: numpy.typing.NDArray[numpy.float64], tau: numpy.typing.NDArray[numpy.float64], energy: numpy.typing.NDArray[numpy.float64], momentum: numpy.typing.NDArray[numpy.float64], T_world_base: numpy.typing.NDArray[numpy.float64] | None) -> None:
         """The arrays (rows, count, …) into which states are recorded."""
 
     def set_torques(self, tau: numpy.typing.NDArray[numpy.float64] | None) -> None:

@@ -117,6 +117,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "tau": MATRIX,
         "T_world_base": LIST_OR_NULL,
         "energy": VECTOR,
+        "momentum": MATRIX,
         "stopped": NUMBER,
         "ended": bool,
         "reason": TEXT,

@@ -63,6 +63,7 @@ def simulate(
     every: int = 1,
     stop_at_limits: bool = False,
     tolerance: float = 1e-9,
+    dense: bool = True,
     time_limit: float | None = None,
     threads: int | None = None,
 ) -> Simulation:
@@ -84,7 +85,8 @@ def simulate(
     takes it implicitly; the others need steps shorter than the decay times of damped joints. T_world_base
     (..., 4, 4): where a floating base starts, or a fixed one stands.
 
-    every: of so many states one is recorded, and the last; the adaptive method also keeps its own steps.
+    every: of so many states one is recorded, and the last. dense: the adaptive method also keeps its own
+    steps, so that the answer is as accurate between records; they take memory.
     stop_at_limits: end where a joint passes one of its limits; otherwise limits do not count. time_limit [s]:
     of the computation, looked at between steps; rows are computed some at a time, others may not have begun.
     threads: as in fk.
@@ -101,13 +103,11 @@ def simulate(
     mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
     start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
     law = check_control(control, start.qd.shape)
-    task = _make_task(
-        mechanics, name, start, law, wrenches, duration, dt, every, stop_at_limits, tolerance, time_limit
-    )
+    lengths, recorded = (duration, dt, tolerance), (every, dense)
+    task = _make_task(mechanics, name, start, law, wrenches, lengths, recorded, stop_at_limits, time_limit)
     rest = np.zeros_like(start.qd)
     forward_dynamics(robot, start.q, rest, rest, T_world_base=start.T_world_base)  # raises if M is singular
-    numbers = task.steps / task.every * start.qd.size * (16.0 if robot.floating else 4.0)
-    with guard_memory("duration / dt", f"{task.steps} steps", numbers, "record fewer states (every=)"):
+    with guard_memory("duration / dt", f"{task.steps} steps", task.size, "record fewer states (every=)"):
         return _make_answer(task, run_steps(task))
 
 
@@ -139,14 +139,14 @@ def _make_task(
     start: State,
     control: Any,
     wrenches: Wrenches | WrenchLaw | None,
-    duration: float,
-    dt: float,
-    every: int,
+    lengths: tuple[float, float, float],
+    recorded: tuple[int, bool],
     stop_at_limits: bool,
-    tolerance: float,
     time_limit: float | None,
 ) -> Task:
-    """The arguments of a simulation, checked."""
+    """The arguments of a simulation, checked. lengths: duration, dt, tolerance. recorded: every, dense."""
+    duration, dt, tolerance = lengths
+    every, dense = recorded
     length = positive_number(duration, "duration", "it must be one positive number [s]")
     step = positive_number(dt, "dt", "it must be one positive number [s]")
     if length / step > MOST_STEPS:
@@ -166,6 +166,7 @@ def _make_task(
         whole_number(every, "every", 1, MOST_STEPS),
         stop_at_limits,
         positive_number(tolerance, "tolerance"),
+        check_flag(dense, "dense"),
         late,
     )
 
@@ -216,6 +217,7 @@ def _make_answer(task: Task, record: Record) -> Simulation:
         qd,
         tau,
         states["energy"].reshape(*shape, count),
+        states["momentum"].reshape(*shape, count, 6),
         T,
         record.stopped.reshape(shape),
         (record.status == ENDED).reshape(shape),

@@ -180,6 +180,7 @@ def describe_simulation(robot: Robot, made: Simulation) -> dict[str, object]:
         "tau": made.tau.tolist(),
         "T_world_base": None if made.T_world_base is None else made.T_world_base.tolist(),
         "energy": made.energy.tolist(),
+        "momentum": made.momentum.tolist(),
         "stopped": float(made.stopped),
         "ended": bool(made.ended),
         "reason": made.reason,
