@@ -54,6 +54,22 @@ cspace._core.RobotBase.coriolis_matrix$:
     def coriolis_matrix(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
         \doc
 
+cspace._core.RobotBase.centroidal_momentum$:
+    def centroidal_momentum(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
+cspace._core.RobotBase.centroidal_momentum_matrix$:
+    def centroidal_momentum_matrix(self, q: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
+cspace._core.RobotBase.kinetic_energy$:
+    def kinetic_energy(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
+cspace._core.RobotBase.potential_energy$:
+    def potential_energy(self, q: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        \doc
+
 cspace._core.RobotBase.inverse_dynamics_derivatives$:
     def inverse_dynamics_derivatives(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
         \doc

@@ -285,6 +285,45 @@ class RobotBase(KinematicsBase):
         Echeandia and Wensing 2021, algorithm 1.
         """
 
+    def centroidal_momentum(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The momentum of the whole robot: linear, and angular about its centre of mass.
+
+        Without external forces it does not change, apart from the weight, which changes the linear part alone.
+
+        q (..., n) [rad or m], qd (..., dof) [rad/s or m/s]; of a floating base [v; ω] comes first. T_world_base
+        (..., 4, 4): where the base is. out (..., 6): float64 array to write into. threads: as in fk.
+
+        Returns [l; k] (..., 6) [kg·m/s, kg·m²/s] in the axes of the base, of the world where the base is placed. Raises
+        InputError for a wrong shape or NaN and where no link has a mass.
+
+        Orin, Goswami and Lee 2013.
+        """
+
+    def centroidal_momentum_matrix(self, q: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The matrix A with [l; k] = A(q) q̇; see centroidal_momentum.
+
+        q (..., n) [rad or m], T_world_base (..., 4, 4), out (..., 6, dof), threads: as there. Returns A (..., 6, dof).
+        Raises InputError for a wrong shape or NaN and where no link has a mass.
+        """
+
+    def kinetic_energy(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The kinetic energy ½ q̇ᵀ M(q) q̇, that of rotors (armature) included.
+
+        q (..., n) [rad or m], qd (..., dof) [rad/s or m/s], T_world_base (..., 4, 4), out (...). Returns (...) [J].
+        Raises InputError for a wrong shape or NaN and where no link has a mass.
+        """
+
+    def potential_energy(self, q: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The energy −m g · c of the weight, zero with the centre of mass at the origin.
+
+        q (..., n) [rad or m], gravity (3,) [m/s²], T_world_base (..., 4, 4), out (...). Returns (...) [J]. Raises
+        InputError for a wrong shape or NaN and where no link has a mass.
+        """
+
     def inverse_dynamics_derivatives(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
         """
         ∂tau/∂q, ∂tau/∂q̇ and ∂tau/∂q̈ = M of inverse dynamics.

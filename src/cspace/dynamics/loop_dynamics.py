@@ -21,7 +21,7 @@ from cspace.kinematics.batch import Batch, check_output
 from cspace.kinematics.loop_closure import number_coordinates
 from cspace.kinematics.loop_constraints import Placement
 from cspace.spatial.checks import PoseLike
-from cspace.tables import join_words
+from cspace.tables import count_things, join_words
 from cspace.tolerances import FARTHEST, LOOP_MOTION, LOOP_OPEN, LOOP_PROJECTED, LOOP_RANK, LOOP_SINGULAR
 
 MOST_PROJECTIONS: Final = 8
@@ -364,5 +364,6 @@ def check_driving(
         raise InputError(
             f"driven {'joint' if one else 'joints'} {join_words([repr(name) for name in driven])}"
             f" {'does' if one else 'do'} not determine the motion of {constraints.robot.name}{where}, which"
-            f" has {int(dof[row])} degrees of freedom there: a dead point, or too few driven joints"
+            f" has {count_things(int(dof[row]), 'degree')} of freedom there: a dead point, or too few driven"
+            " joints"
         )

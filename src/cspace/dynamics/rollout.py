@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Final
@@ -298,6 +298,22 @@ def check_control(control: Control | None, shape: tuple[int, ...]) -> Any:
         f"control is a {type(control).__name__}, expected torques, or a function of t, q and qd that returns"
         " them, or dynamics.PD or dynamics.ComputedTorque"
     )
+
+
+def spread_rows(q: ArrayLike, control: Any, wrenches: Any) -> ArrayLike:
+    """q (..., n) with as many rows as the torques, goals and wrenches that are given have."""
+    leads: dict[str, tuple[int, ...]] = {}
+    if isinstance(control, np.ndarray | list | tuple):
+        leads["control"] = np.shape(control)[:-1]
+    elif type(control) is PD:
+        leads["q_goal"] = np.shape(control.q_goal)[:-1]
+    if isinstance(wrenches, Mapping):
+        leads |= {f"wrench at {frame!r}": np.shape(wrench)[:-1] for frame, wrench in wrenches.items()}
+    if not any(leads.values()):
+        return q
+    joints = as_floats(q, "q", last=(None,), largest=FARTHEST)
+    lead = leading_axes(q=joints.shape[:-1], **leads)
+    return np.broadcast_to(joints, (*lead, joints.shape[-1]))
 
 
 def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:

@@ -69,8 +69,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_option(parser, "--kd K…", "and those of velocity", read_number)
     add_option(parser, "--duration S", "how long [s] (default: 1)", read_number, default=1.0)
     add_option(parser, "--dt S", "the step [s] (default: 0.001)", read_number, default="1e-3")
-    text = "how steps are computed (default: rk4)"
-    add_option(parser, "--method", text, choices=("rk4", "variational", "adaptive"), default="rk4")
+    text = "how steps are computed (default: rk4, or variational if friction is stiff)"
+    add_option(parser, "--method", text, choices=("rk4", "variational", "adaptive"))
     add_option(parser, "--every K", "record every K-th state (default: 1)", int, default=1)
     add_option(parser, "--no-friction", "the joints move without damping and friction")
     add_option(parser, "--stop-at-limits", "end where a joint passes one of its limits")
