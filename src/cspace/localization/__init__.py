@@ -5,6 +5,7 @@ from cspace.localization.filters import Localization, LocalizationStats, localiz
 from cspace.localization.graph import GraphAnswer, PoseGraph, RejectedLoop
 from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
 from cspace.localization.logs import read_log
+from cspace.localization.scans.search import PoseModes, search_pose
 from cspace.localization.sensors import Compass, Gps, RangeBearing
 from cspace.localization.simulate import simulate
 from cspace.mobile import Odometry, TimedPoses
@@ -21,6 +22,7 @@ __all__ = [
     "Log",
     "Odometry",
     "PoseGraph",
+    "PoseModes",
     "RangeBearing",
     "Readings",
     "RejectedLoop",
@@ -29,5 +31,6 @@ __all__ = [
     "calibrate_sensor",
     "localize",
     "read_log",
+    "search_pose",
     "simulate",
 ]
