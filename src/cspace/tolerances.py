@@ -228,6 +228,10 @@ RUN_CELLS: Final = 1 << 28
 """Most cells of a grid that is searched over runs: its corners are numbered in rows as long as the next power
 of two, which fits into 31 bits then."""
 
+WIDEST_SIGMA: Final = 200
+"""Largest standard deviation of a likelihood field, in cells: its table by squared distance then has half a
+million entries, and bytes no longer tell the distances of neighbouring cells apart."""
+
 FARTHEST_CELL: Final = 1e12
 """Farthest cell from zero, in cells: there float64 still resolves a ten thousandth of a cell."""
 ON_WALL: Final = 1e-12

@@ -6,6 +6,7 @@ from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, OffsetCurve
 from cspace.maps.outlines import GeometryError
 from cspace.maps.polygon_world import PolygonWorld
+from cspace.maps.rays import cast_rays
 
 __all__ = [
     "ByteField",
@@ -15,5 +16,6 @@ __all__ = [
     "OffsetCurve",
     "PolygonWorld",
     "Scenarios",
+    "cast_rays",
     "read_scenarios",
 ]
