@@ -5,7 +5,14 @@ from cspace.localization.filters import Localization, LocalizationStats, localiz
 from cspace.localization.graph import GraphAnswer, PoseGraph, RejectedLoop
 from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
 from cspace.localization.logs import read_log
-from cspace.localization.particles import FilterEvent, ParticleFilter, PoseMode
+from cspace.localization.particles import (
+    FilterEvent,
+    HistogramFilter,
+    MapLocalization,
+    MapLocalizationStats,
+    ParticleFilter,
+    PoseMode,
+)
 from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing
 from cspace.localization.simulate import simulate
 from cspace.mobile import Odometry, TimedPoses
@@ -17,11 +24,14 @@ __all__ = [
     "Gps",
     "GraphAnswer",
     "Headings",
+    "HistogramFilter",
     "Landmarks",
     "LaserScanner",
     "Localization",
     "LocalizationStats",
     "Log",
+    "MapLocalization",
+    "MapLocalizationStats",
     "Odometry",
     "ParticleFilter",
     "PoseGraph",

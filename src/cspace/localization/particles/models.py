@@ -60,13 +60,17 @@ class ScanModel:
         ends = self.read_ends(measurement)
         if len(ends) < FEWEST_BEAMS:
             return None
-        used = np.ascontiguousarray(ends[thin_ends(ends, self.scanner.beams)])
-        exponent = self.scanner.independent / max(self.scanner.beams, len(used))
+        used, exponent = self.choose_ends(ends)
         by_field = 0.0 if self.table is not None else share * exponent * self.nats
         best = cloud.add_scan(self.map, used, by_field, threads)
         if self.table is not None and share > 0:
             cloud.add_logs(share * self.weigh_rays(cloud.poses(), measurement))
         return best
+
+    def choose_ends(self, ends: Array) -> tuple[Array, float]:
+        """The ends (k, 2) that are used, and the exponent of their likelihoods."""
+        used = np.ascontiguousarray(ends[thin_ends(ends, self.scanner.beams)])
+        return used, self.scanner.independent / max(self.scanner.beams, len(used), self.scanner.independent)
 
     def weigh_rays(self, poses: Array, scan: Any) -> Array:
         """log p of a scan by the beam model from poses (n, 3): (n,), tempered."""

@@ -119,31 +119,39 @@ class ParticleFilter:
 
     # --- the two steps of the filter --------------------------------------------------------------------
 
-    def predict(self, increment: npt.ArrayLike, dt: float = 0.0) -> None:
+    def predict(
+        self, increment: npt.ArrayLike, dt: float = 0.0, *, covariance: npt.ArrayLike | None = None
+    ) -> None:
         """Moves the particles by odometry: the pose of the next base in the last one, (3,) x, y [m], θ [rad],
-        or (3, 3), that took dt [s], with noise. While the robot stands nothing happens."""
+        or (3, 3), that took dt [s], with noise. covariance (3, 3) of w in T D exp w, in the new base; unless
+        given, that of the model of the motion. While the robot stands nothing happens.
+        """
         shape = np.shape(increment)
         if shape == (3, 3):
             step = to_xytheta(as_pose_2d(increment, "increment"))
         else:
             step = one_array(increment, "increment", (3,))
         seconds = bounded_number(dt, "dt", 0.0, "give seconds, not below zero")
+        Q = None if covariance is None else one_array(covariance, "covariance", (3, 3))
+        if Q is not None:
+            self._move()
         self._pending, self._since = follow_rows(self._pending, step), follow_rows(self._since, step)
         self._path += float(np.hypot(step[0], step[1]) + abs(step[2]))
         self._seconds += seconds
         self._found = None
-        if self._path > LONGEST_STEP:
-            self._move()
+        if Q is not None or self._path > LONGEST_STEP:
+            self._move(Q)
 
-    def _move(self) -> None:
+    def _move(self, covariance: Array | None = None) -> None:
         """Applies the odometry that was not yet, unless the robot stands."""
         self._path = 0.0
         if measure_step(self._pending) < STANDING:
             self._seconds = 0.0
             return
-        xi = log_se2(pose_2d(xytheta=self._pending))
-        Q = self.noise.covariance(xi, self._seconds)
-        self._cloud.move(self._pending, np.ascontiguousarray(Q).ravel(), self.threads)
+        if covariance is None:
+            xi = log_se2(pose_2d(xytheta=self._pending))
+            covariance = self.noise.covariance(xi, self._seconds)
+        self._cloud.move(self._pending, np.ascontiguousarray(covariance).ravel(), self.threads)
         self._pending, self._seconds = np.zeros(3), 0.0
         self._found = None
 

@@ -59,6 +59,15 @@ class FreePlaces:
         rows, columns = np.where(inside[:, None], cells, 0).astype(int).T
         return inside & ~self.blocked[rows, columns]
 
+    def find_coarse_cells(self, side: float, shape: tuple[int, int]) -> npt.NDArray[np.bool_]:
+        """Which larger cells of a side [m], from the same corner, hold a free cell: (rows, columns)."""
+        assert self.blocked is not None
+        rows, columns = np.nonzero(~self.blocked)
+        coarse = np.zeros(shape, dtype=bool)
+        at = [np.minimum(((k + 0.5) * self.side / side).astype(int), n - 1) for k, n in zip((rows, columns), shape, strict=True)]
+        coarse[at[0], at[1]] = True
+        return coarse
+
     def check_start(self, pose: Array) -> None:
         """InputError for a start off the map, or deep in a wall."""
         x, y = pose[:2]
