@@ -13,6 +13,7 @@ from cspace.localization.particles import (
     ParticleFilter,
     PoseMode,
 )
+from cspace.localization.scans.search import PoseModes, search_pose
 from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing
 from cspace.localization.simulate import simulate
 from cspace.mobile import Odometry, TimedPoses
@@ -36,6 +37,7 @@ __all__ = [
     "ParticleFilter",
     "PoseGraph",
     "PoseMode",
+    "PoseModes",
     "RangeBearing",
     "Readings",
     "RejectedLoop",
@@ -44,5 +46,6 @@ __all__ = [
     "calibrate_sensor",
     "localize",
     "read_log",
+    "search_pose",
     "simulate",
 ]

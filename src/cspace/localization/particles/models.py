@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Final, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, one_array
@@ -12,6 +13,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.localization.log import UNKNOWN, Landmarks, Readings, Scans
 from cspace.localization.particles.beam_model import BeamTable
 from cspace.localization.particles.thinning import read_ends, thin_ends
+from cspace.localization.scans.search import search_pose
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.maps import ByteField, cast_rays
 
@@ -19,6 +21,8 @@ FEWEST_BEAMS: Final = 5
 """Ends below which a scan tells nothing: fewer fit anywhere."""
 SEARCH_BEAMS: Final = 180
 """Beams with which the whole map is searched."""
+MOST_PLACES: Final = 3
+"""Places found on the map that get particles."""
 BEAM_MODEL_PARTICLES: Final = 500
 """The most particles of the beam model: each ray takes a third of a microsecond."""
 FALSE_READINGS: Final = 1e-3
@@ -48,6 +52,7 @@ class ScanModel:
         self.field = grid if isinstance(grid, ByteField) else grid.likelihood_field(scanner.sigma, scanner.floor)
         field = self.field
         self.map = _core.ScoreMap(field.scores, field.resolution, tuple(field.origin), field.outside)
+        self.free = find_free_cells(grid, field)
         self.nats = -np.log(scanner.floor) / 255.0  # of a unit of a score
         self.table: BeamTable | None = None
         if scanner.model == "beam":
@@ -91,14 +96,11 @@ class ScanModel:
 
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """The best separate poses on the whole map."""
-        from cspace.localization.scans.search import search_pose
-
         ends = self.read_ends(measurement)
         if len(ends) < FEWEST_BEAMS:
             return np.empty((0, 3))
         used = np.ascontiguousarray(ends[thin_ends(ends, SEARCH_BEAMS)])
-        poses, scores = search_pose(used, self.field)
-        return np.asarray(poses[scores > above])
+        return search_pose(used, self.field, most=MOST_PLACES, least_score=min(above, 1.0), free=self.free).poses
 
     def read_ends(self, measurement: Any) -> Array:
         """The ends (m, 2) in base of one scan, or the points (m, 2) given."""
@@ -107,6 +109,14 @@ class ScanModel:
                 raise InputError(f"update takes one scan, and these are {len(measurement)}; give scans[k]")
             return read_ends(measurement, 0, self.scanner.least_range, self.scanner.most_range)[0]
         return one_array(measurement, "scan", (None, 2), "ends of beams in base [m]")
+
+
+def find_free_cells(grid: Any, field: ByteField) -> npt.NDArray[np.bool_] | None:
+    """The cells in which base may be; None where there is nothing to tell."""
+    if isinstance(grid, ByteField):
+        return None
+    free = ~grid.to_grid().blocked
+    return free if free.shape == field.scores.shape else None
 
 
 class SightingModel:

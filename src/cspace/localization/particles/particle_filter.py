@@ -53,8 +53,6 @@ WIDEST: Final = (1.0, 0.5)
 """Standard deviations of the position [m] and heading [rad] beyond which the place is ambiguous."""
 FRESH_UPDATES: Final = 3
 """Measurements after a search that count wholly, even where the robot stands."""
-MOST_PLACES: Final = 3
-"""Places found on the map that get particles."""
 
 
 class ParticleFilter:
@@ -191,8 +189,6 @@ class ParticleFilter:
         is_start, self.is_searching = self.is_searching, False
         above = LEAST_SCORE if is_start else max(LEAST_SCORE, score + GAIN)
         poses = self.model.search(scan, above, self._rng)
-        if isinstance(self.model, ScanModel):
-            poses = poses[:MOST_PLACES]
         self._monitor.note_search(len(poses))
         self._events.append(FilterEvent(self.updates, "search" if len(poses) else "no place", score, len(poses)))
         if not len(poses):
