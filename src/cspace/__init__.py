@@ -37,7 +37,7 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.localization import PoseGraph, localize, read_log
+    from cspace.localization import LaserScanner, ParticleFilter, PoseGraph, localize, read_log
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
     from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
@@ -65,9 +65,11 @@ logging.getLogger("cspace").addHandler(logging.NullHandler())
 
 __all__ = [
     "CspaceError",
+    "LaserScanner",
     "Limits",
     "Mechanism",
     "OccupancyGrid",
+    "ParticleFilter",
     "PolygonWorld",
     "PoseGraph",
     "Robot",
@@ -118,12 +120,14 @@ _LATER = {
     "HalfSpace": "cspace.shapes",
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
+    "LaserScanner": "cspace.localization",
     "Limits": "cspace.model",
     "Mechanism": "cspace.mechanisms",
     "Mecanum": "cspace.mobile",
     "Mesh": "cspace.shapes",
     "OccupancyGrid": "cspace.maps",
     "Omni": "cspace.mobile",
+    "ParticleFilter": "cspace.localization",
     "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
     "PoseGraph": "cspace.localization",

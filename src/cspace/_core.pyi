@@ -1036,11 +1036,63 @@ class GraphSolver:
 def find_graph_parts(poses: int, landmarks: int, edges: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], sightings: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> list[int]:
     """The connected part of each pose, then of each landmark."""
 
+class ScoreMap:
+    """A score per cell for the ends of beams."""
+
+    def __init__(self, scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int) -> None: ...
+
+class ParticleCloud:
+    """Weighted poses of Monte Carlo localisation."""
+
+    def __init__(self, most: int, seed: int) -> None: ...
+
+    def __len__(self) -> int: ...
+
+    @property
+    def most(self) -> int: ...
+
+    def place(self, poses: numpy.typing.NDArray[numpy.float64]) -> None:
+        """Particles at poses (k, 3), with equal weights."""
+
+    def move(self, increment: numpy.typing.ArrayLike, covariance: numpy.typing.ArrayLike, threads: int) -> None:
+        """A step (3,) with noise of a covariance (9,)."""
+
+    def add_scan(self, map: ScoreMap, ends: numpy.typing.NDArray[numpy.float64], exponent: float, threads: int) -> float:
+        """Weighs by the ends of beams (m, 2) in base; the best mean score."""
+
+    def score(self, map: ScoreMap, ends: numpy.typing.NDArray[numpy.float64], threads: int) -> numpy.typing.NDArray[numpy.float64]:
+        """The mean score of each particle."""
+
+    def add_logs(self, logs: numpy.typing.NDArray[numpy.float64]) -> None:
+        """Adds to the logarithms of the weights (n,)."""
+
+    def add_sightings(self, ranges: numpy.typing.NDArray[numpy.float64], bearings: numpy.typing.NDArray[numpy.float64], rows: numpy.typing.NDArray[numpy.int32], points: numpy.typing.NDArray[numpy.float64], mount: numpy.typing.ArrayLike, range_sigma: float, bearing_sigma: float, false_share: float, exponent: float, threads: int) -> float:
+        """Weighs by readings of landmarks; how well the best particle fits."""
+
+    def effective_count(self) -> float: ...
+
+    def resample(self, least: int, error: float, z: float) -> int:
+        """Systematic resampling; the number of occupied bins."""
+
+    def find_modes(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """Poses (k, 3), covariances (k, 9) and shares (k,) of the clusters."""
+
+    def poses(self) -> numpy.typing.NDArray[numpy.float64]:
+        """(n, 3)"""
+
+    def weights(self) -> numpy.typing.NDArray[numpy.float64]:
+        """(n,)"""
+
+    def draw_normals(self, count: int) -> numpy.typing.NDArray[numpy.float64]:
+        """Standard normal numbers (count, 3) of a step of their own."""
+
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...
 def _car_shortest(*arguments: Any) -> Any: ...
 def _car_distances(*arguments: Any) -> NDArray[numpy.float64]: ...
 def _car_poses(*arguments: Any) -> NDArray[numpy.float64]: ...
+def _draw_counter_words(counter: NDArray[numpy.uint32], key: NDArray[numpy.uint32]) -> NDArray[numpy.uint32]: ...
+def _count_particles_for_bins(bins: int, error: float, z: float) -> float: ...
 def _cast_rays(*arguments: Any) -> NDArray[numpy.float64]: ...
 def _likelihood_field(*arguments: Any) -> NDArray[numpy.uint8]: ...
 def _reached_cells(*arguments: Any) -> tuple[float, float, float, float]: ...

@@ -5,23 +5,38 @@ from cspace.localization.filters import Localization, LocalizationStats, localiz
 from cspace.localization.graph import GraphAnswer, PoseGraph, RejectedLoop
 from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
 from cspace.localization.logs import read_log
+from cspace.localization.particles import (
+    FilterEvent,
+    HistogramFilter,
+    MapLocalization,
+    MapLocalizationStats,
+    ParticleFilter,
+    PoseMode,
+)
 from cspace.localization.scans.search import PoseModes, search_pose
-from cspace.localization.sensors import Compass, Gps, RangeBearing
+from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing
 from cspace.localization.simulate import simulate
 from cspace.mobile import Odometry, TimedPoses
 
 __all__ = [
     "Compass",
+    "FilterEvent",
     "Fixes",
     "Gps",
     "GraphAnswer",
     "Headings",
+    "HistogramFilter",
     "Landmarks",
+    "LaserScanner",
     "Localization",
     "LocalizationStats",
     "Log",
+    "MapLocalization",
+    "MapLocalizationStats",
     "Odometry",
+    "ParticleFilter",
     "PoseGraph",
+    "PoseMode",
     "PoseModes",
     "RangeBearing",
     "Readings",

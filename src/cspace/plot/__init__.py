@@ -12,6 +12,7 @@ from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.mechanisms import mechanism
+from cspace.plot.particles import particles
 from cspace.plot.planar import manipulability, workspace
 from cspace.plot.plans import plan
 from cspace.plot.scenes import collision, scene
@@ -33,6 +34,6 @@ __all__ = [
     "solutions",
     "workspace",
 ]
-__all__ += ["coverage", "drive", "world"]
+__all__ += ["coverage", "drive", "particles", "world"]
 __all__ += ["collision", "configuration_space", "plan", "scene", "surface"]
 __all__ += ["simulation", "space_projection", "space_slice", "trajectory"]
