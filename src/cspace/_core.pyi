@@ -1085,6 +1085,47 @@ class ParticleCloud:
 
     def draw_normals(self, count: int) -> numpy.typing.NDArray[numpy.float64]:
         """Standard normal numbers (count, 3) of a step of their own."""
+def match_points(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float, turn: float, refines: bool) -> tuple:
+    """
+    Found, ambiguous, pose, covariance, score and second score of a correlative match.
+    """
+
+def match_point_lines(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, reference: numpy.typing.NDArray[numpy.float64], points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float) -> tuple:
+    """The same by point-to-line ICP."""
+
+def make_field_of_points(points: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float) -> tuple:
+    """The scores and the origin of a field of bells about points."""
+
+class LaserSlamRun:
+    """Laser SLAM on a pose graph, as far as it is done."""
+
+    def __init__(self, points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], steps: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float, finds_loops: bool) -> None: ...
+
+    def advance(self, scans: int) -> bool:
+        """Works on so many scans more; False when all are done."""
+
+    @property
+    def done(self) -> int: ...
+
+    @property
+    def tried(self) -> int: ...
+
+    @property
+    def optimizations(self) -> int: ...
+
+    @property
+    def poses(self) -> object: ...
+
+    @property
+    def matched(self) -> object: ...
+
+    @property
+    def edges(self) -> tuple:
+        """Ends, poses, covariances, scores with second scores, and verdicts."""
+
+    @property
+    def loops(self) -> tuple:
+        """The same of all loops that were found."""
 
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...
