@@ -45,7 +45,7 @@ class FilterOf : public LandmarkFilter {
         readings_.clear();
         for (const auto& row : readings) readings_.push_back({std::int64_t(row[0]), row[1], row[2]});
         outcomes_ = {};
-        is_broken_ = true;
+        is_broken_ = !Filter::is_resumable;
         outcomes_ = filter_.update(readings_);
         is_broken_ = false;
     }

@@ -21,33 +21,64 @@ constexpr std::size_t panel_offset(std::size_t panel) { return 8 * panel * (pane
 
 namespace cspace::localization::inline CSPACE_ISA {
 
-// One panel of P += Σ X_k Y_kᵀ for `rank` vectors, each `stride` numbers after the one before.
+// The columns first to last − 1 of one panel of P += Σ X_k Y_kᵀ, of `rank` vectors that are `stride` numbers
+// apart.
 template <int rank>
-CSPACE_INLINE void add_to_panel(double* to, const double* X, const double* Y, std::ptrdiff_t stride, int row,
-                                int columns) {
+CSPACE_INLINE void add_to_panel(double* to, const double* X, const double* Y, std::ptrdiff_t stride, int first,
+                                int last) {
     FrontPack x[rank];
-    for (int k = 0; k < rank; ++k) x[k] = load_pack(X + k * stride + row);
-    for (int c = 0; c < columns; ++c) {
+    for (int k = 0; k < rank; ++k) x[k] = load_pack(X + k * stride);
+    for (int c = first; c < last; ++c) {
         FrontPack sum = load_pack(to + panel_rows * c);
         for (int k = 0; k < rank; ++k) sum = mul_add(x[k], fill<FrontPack>(Y[k * stride + c]), sum);
         store_pack(to + panel_rows * c, sum);
     }
+}
+// Two panels in a row at once: each number of Y is read once for both.
+template <int rank>
+CSPACE_INLINE void add_to_two_panels(double* upper, double* lower, const double* X, const double* Y,
+                                     std::ptrdiff_t stride, int columns) {
+    FrontPack x[rank], z[rank];
+    for (int k = 0; k < rank; ++k) {
+        x[k] = load_pack(X + k * stride);
+        z[k] = load_pack(X + k * stride + panel_rows);
+    }
+    for (int c = 0; c < columns; ++c) {
+        FrontPack sum = load_pack(upper + panel_rows * c), next = load_pack(lower + panel_rows * c);
+        for (int k = 0; k < rank; ++k) {
+            const FrontPack y = fill<FrontPack>(Y[k * stride + c]);
+            sum = mul_add(x[k], y, sum), next = mul_add(z[k], y, next);
+        }
+        store_pack(upper + panel_rows * c, sum), store_pack(lower + panel_rows * c, next);
+    }
+    add_to_panel<rank>(lower, X + panel_rows, Y, stride, columns, columns + panel_rows);
+}
+// The same on panel p, and on the next one where there are two.
+template <int rank>
+CSPACE_INLINE void add_to_panels(double* panels, int p, bool are_two, const double* X, const double* Y,
+                                 std::ptrdiff_t stride) {
+    double* upper = panels + panel_offset(std::size_t(p));
+    const int columns = panel_rows * (p + 1);
+    X += panel_rows * p;
+    if (are_two)
+        add_to_two_panels<rank>(upper, panels + panel_offset(std::size_t(p) + 1), X, Y, stride, columns);
+    else
+        add_to_panel<rank>(upper, X, Y, stride, 0, columns);
 }
 
 // P += Σ X_k Y_kᵀ on the panels first to last − 1, of vectors padded with zeros to a multiple of four.
 CSPACE_INLINE void add_products(double* panels, int first, int last, const double* X, const double* Y,
                                 std::ptrdiff_t stride, int rank) {
     constexpr int block = 4;
-    for (int p = first; p < last; ++p) {
-        double* to = panels + panel_offset(std::size_t(p));
-        const int row = panel_rows * p, columns = panel_rows * (p + 1);
+    for (int p = first; p < last; p += 2) {
+        const bool are_two = p + 1 < last;
         int k = 0;
         for (; k + block <= rank; k += block)
-            add_to_panel<block>(to, X + k * stride, Y + k * stride, stride, row, columns);
+            add_to_panels<block>(panels, p, are_two, X + k * stride, Y + k * stride, stride);
         const double *x = X + k * stride, *y = Y + k * stride;
-        if (rank - k == 3) add_to_panel<3>(to, x, y, stride, row, columns);
-        if (rank - k == 2) add_to_panel<2>(to, x, y, stride, row, columns);
-        if (rank - k == 1) add_to_panel<1>(to, x, y, stride, row, columns);
+        if (rank - k == 3) add_to_panels<3>(panels, p, are_two, x, y, stride);
+        if (rank - k == 2) add_to_panels<2>(panels, p, are_two, x, y, stride);
+        if (rank - k == 1) add_to_panels<1>(panels, p, are_two, x, y, stride);
     }
 }
 

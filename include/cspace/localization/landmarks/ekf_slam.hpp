@@ -28,6 +28,8 @@ struct MappedLandmark {
 template <class Kernel>
 class EkfSlam {
   public:
+    static constexpr bool is_resumable = true;  // after an interrupt: readings that it came before are not used
+
     EkfSlam(const EkfSlamRule& rule, const Vector3& start, const std::array<double, 9>& covariance)
         : rule_(rule), pose_(PlanarSpace::read_pose(start.data())), first_{pose_.x, pose_.y}, gate_(rule.landmarks.gate), pairing_gate_(rule.landmarks.pair_share),
           new_gate_(rule.landmarks.new_share) {
@@ -168,7 +170,7 @@ class EkfSlam {
         std::vector<std::vector<Candidate>> candidates(numbers_.size());
         std::vector<char> is_new(numbers_.size(), 1);
         for (std::size_t k = 0; k < numbers_.size(); ++k) {
-            for (int j = 0; j < int(landmarks_.size()); ++j) {
+            for (int j = 0; j < int(landmarks_.size()) && numbers_[k].count; ++j) {
                 const ReadingModel seen = model(k, j, at);
                 const double nis = measure_nis(seen, j);
                 if (nis <= new_gate_.limit(seen.count)) is_new[k] = 0;
@@ -181,13 +183,13 @@ class EkfSlam {
         PairingSearch search(P_, candidates, {rule_.landmarks.pair_share, rule_.most_nodes, rule_.is_joint});
         const std::vector<int> chosen = search.find_pairings();
         counts_.capped += search.is_capped();
-        bool any_paired = false;
+        bool any_fits = false;  // an ambiguous reading fits too
         for (std::size_t k = 0; k < numbers_.size(); ++k) {
+            any_fits = any_fits || !candidates[k].empty();
             if (chosen[k] >= 0) {
                 const Candidate& candidate = candidates[k][std::size_t(chosen[k])];
                 note_innovation(k, candidate.model, candidate.nis);
                 pair_reading(k, candidate.landmark);
-                any_paired = true;
             } else if (is_new[k]) {
                 fresh_.push_back(k);
             } else {
@@ -195,7 +197,7 @@ class EkfSlam {
             }
         }
         const bool expected = miss_landmarks(at);
-        if (!any_paired && expected) reject();
+        if (!any_fits && expected) reject();
     }
     // Counts the landmarks in view that no reading saw; whether a confirmed one was expected.
     bool miss_landmarks(const SensorPose& at) {

@@ -16,7 +16,7 @@
 #include "cspace/localization/graph/residuals.hpp"
 #include "cspace/localization/landmarks/ekf_slam.hpp"
 #include "cspace/localization/landmarks/landmark_chunks.hpp"
-#include "cspace/search/draws.hpp"
+#include "cspace/math/counter_draws.hpp"
 
 namespace cspace::localization {
 
@@ -48,6 +48,7 @@ inline ScalarInnovation weigh_innovation(const Vector2& v, const Matrix2& S, int
 class FastSlam {
   public:
     using Pose = PlanarSpace::Pose;
+    static constexpr bool is_resumable = false;  // an interrupt leaves some particles updated and some not
 
     FastSlam(const FastSlamRule& rule, const Vector3& start, const Covariance3& covariance)
         : rule_(rule), poses_(rule.particles, PlanarSpace::read_pose(start.data())), log_weights_(rule.particles),
@@ -169,16 +170,26 @@ class FastSlam {
         }
         return drawn;
     }
-    search::Draws draws_of(std::size_t particle) const {
-        constexpr std::uint64_t odd = 0x9e3779b97f4a7c15u;
-        return search::Draws(rule_.seed + odd * (step_ * (std::uint64_t(poses_.size()) + 1) + particle));
+    // Random words of this update and a particle, or of the one past the last.
+    FourWords draw_four(std::size_t particle, std::uint32_t part) const {
+        const std::uint32_t low = std::uint32_t(particle), step = std::uint32_t(step_);
+        const std::uint32_t high = std::uint32_t(step_ >> 32);
+        return draw_words({{low, part, step, high}}, {{std::uint32_t(rule_.seed), std::uint32_t(rule_.seed >> 32)}});
     }
+    // In (0, 1), from two words.
+    static double uniform(std::uint32_t first, std::uint32_t second) {
+        constexpr double last_place = 0x1p-53;
+        const std::uint64_t bits = (std::uint64_t(first) << 32 | second) >> 12;
+        return double(2 * bits + 1) * last_place;
+    }
+    // Box & Muller 1958.
     Vector3 draw_normals(std::size_t particle) const {
-        search::Draws draws = draws_of(particle);
         double normal[4];
-        for (int k = 0; k < 4; k += 2) {
-            const double radius = std::sqrt(-2 * std::log(1 - draws.uniform())), angle = 2 * half_turn * draws.uniform();
-            normal[k] = radius * std::cos(angle), normal[k + 1] = radius * std::sin(angle);
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            const FourWords drawn = draw_four(particle, k);
+            const double radius = std::sqrt(-2 * std::log(uniform(drawn.word[0], drawn.word[1])));
+            const double angle = 2 * half_turn * uniform(drawn.word[2], drawn.word[3]);
+            normal[2 * k] = radius * std::cos(angle), normal[2 * k + 1] = radius * std::sin(angle);
         }
         return {normal[0], normal[1], normal[2]};
     }
@@ -472,7 +483,8 @@ class FastSlam {
     // Low variance: one draw, then equal steps.
     void resample() {
         const std::size_t n = poses_.size();
-        const double start = draws_of(n).uniform();
+        const FourWords drawn = draw_four(n, 0);
+        const double start = uniform(drawn.word[0], drawn.word[1]);
         std::vector<std::uint32_t> sources(n);
         double sum = shares_[0];
         std::size_t from = 0;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "cspace/localization/landmarks/joint_covariance.hpp"
@@ -81,6 +82,12 @@ class JointInnovation {
         nis_ = 0;
         for (double y : y_) nis_ += y * y;
     }
+    // νᵀ S⁻¹ ν + log det S: minus twice the logarithm of the likelihood, but for a constant.
+    double cost() const {
+        double sum = nis_;
+        for (std::size_t k = 0; k < y_.size(); ++k) sum += 2 * std::log(factor(k, k));
+        return sum;
+    }
     double factor(std::size_t row, std::size_t column) const { return factor_[row * (row + 1) / 2 + column]; }
     const std::vector<double>& whitened() const { return y_; }
 
@@ -116,10 +123,11 @@ class PairingSearch {
     }
     static constexpr int none = -1;
 
-    // The candidate of each reading, or none.
+    // The candidate of each reading, or none: also for a reading that another landmark explains nearly as well.
     std::vector<int> find_pairings() {
         pair_nearest();
         if (rule_.is_joint && best_count_ < int(order_.size())) branch(0);
+        drop_ambiguous();
         return best_;
     }
     bool is_capped() const { return nodes_ > rule_.most_nodes; }
@@ -181,6 +189,30 @@ class PairingSearch {
         keep_if_better();
         while (!paired_.empty()) remove_pairing();
         chosen_.assign(chosen_.size(), none);
+    }
+    // The cost of a pairing beside those of all other readings; infinite where it is not compatible.
+    double cost_of(std::size_t reading, int candidate) {
+        double cost = std::numeric_limits<double>::infinity();
+        bool are_all = true;
+        for (const std::size_t i : order_)
+            are_all = are_all && (i == reading || best_[i] == none || add_pairing(candidates_[i][std::size_t(best_[i])]));
+        if (are_all && add_pairing(candidates_[reading][std::size_t(candidate)])) cost = innovation_.cost();
+        while (!paired_.empty()) remove_pairing();
+        return cost;
+    }
+    void drop_ambiguous() {
+        constexpr double twice_log_twenty = 5.99;  // the other landmark is not twenty times less likely
+        std::vector<std::size_t> ambiguous;
+        for (const std::size_t i : order_) {
+            if (best_[i] == none || candidates_[i].size() < 2) continue;
+            const double cost = cost_of(i, best_[i]);
+            for (int c = 0; c < int(candidates_[i].size()); ++c) {
+                if (c == best_[i] || cost_of(i, c) > cost + twice_log_twenty) continue;
+                ambiguous.push_back(i);
+                break;
+            }
+        }
+        for (const std::size_t i : ambiguous) best_[i] = none;
     }
     void branch(std::size_t depth) {
         if (++nodes_ > rule_.most_nodes) return;

@@ -58,11 +58,11 @@ class LandmarkFilter:
         The noise is that of the filter. Raises InputError for numbers that are not finite.
         """
         try:
-            if self._walk is not None:
+            if self._walk is not None and 0.0 <= duration < np.inf:
                 self._core.predict_walk(increment, self._walk, duration)
                 return
         except TypeError:
-            pass
+            pass  # what follows says what is wrong, or converts it
         step = one_array(increment, "increment", (3,))
         dt = bounded_number(duration, "duration", 0.0, "give the seconds that the step took")
         if self._walk is not None:
