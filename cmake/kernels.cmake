@@ -4,7 +4,7 @@ file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels
 list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
 # Kernels that work on packs of four numbers: an AVX-512 copy of them is no faster than that for AVX2
 # (docs/decisions/compiled-boundary.md). Their headers say CSPACE_NARROW_KERNEL.
-set(narrow_kernels math_fronts localization_correlation localization_particles localization_search ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision search)
+set(narrow_kernels math_fronts localization_correlation localization_landmarks localization_particles localization_search ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision search)
 list(TRANSFORM narrow_kernels PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/)
 list(TRANSFORM narrow_kernels APPEND .cpp)
 set(wide_files ${kernel_files})

@@ -1126,6 +1126,50 @@ class LaserSlamRun:
     @property
     def loops(self) -> tuple:
         """The same of all loops that were found."""
+class LandmarkFilter:
+    """A filter on a pose and landmarks."""
+
+    def predict(self, increment: numpy.typing.ArrayLike, noise: numpy.typing.ArrayLike) -> None:
+        """Moves the pose."""
+
+    def predict_walk(self, increment: numpy.typing.ArrayLike, walk: numpy.typing.ArrayLike, duration: float) -> None:
+        """Moves the pose, with the noise of a random walk."""
+
+    def update(self, readings: numpy.typing.NDArray[numpy.float64]) -> bool:
+        """False, and nothing done, for rows that cannot be used."""
+
+    @property
+    def outcomes(self) -> tuple[numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.uint8], numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+
+    @property
+    def pose(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def landmarks(self) -> tuple[numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.uint8]]: ...
+
+    @property
+    def is_lost(self) -> bool: ...
+
+    @property
+    def counts(self) -> tuple[int, int, int, int, int, int, int, int, int]: ...
+
+    @property
+    def joint_covariance(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def particles(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def chunks(self) -> int: ...
+
+def make_ekf_slam(sensor: numpy.typing.ArrayLike, rule: numpy.typing.ArrayLike, linearization: int, is_joint: bool, most_nodes: int, start: numpy.typing.ArrayLike, covariance: numpy.typing.ArrayLike) -> LandmarkFilter:
+    """A Kalman filter on a pose and landmarks."""
+
+def make_fast_slam(sensor: numpy.typing.ArrayLike, rule: numpy.typing.ArrayLike, version: int, particles: int, seed: int, resample_below: float, start: numpy.typing.ArrayLike, covariance: numpy.typing.ArrayLike) -> LandmarkFilter:
+    """Particles with maps of landmarks."""
 
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...

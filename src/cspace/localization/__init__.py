@@ -3,6 +3,15 @@
 from cspace.localization.calibrate_sensor import calibrate_sensor
 from cspace.localization.filters import Localization, LocalizationStats, localize
 from cspace.localization.graph import GraphAnswer, PoseGraph, RejectedLoop
+from cspace.localization.landmark_slam import (
+    EkfSlam,
+    FastSlam,
+    LandmarkSlam,
+    LandmarkSlamStats,
+    ReadingOutcomes,
+    run_ekf_slam,
+    run_fast_slam,
+)
 from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
 from cspace.localization.logs import read_log
 from cspace.localization.particles import (
@@ -20,12 +29,16 @@ from cspace.mobile import Odometry, TimedPoses
 
 __all__ = [
     "Compass",
+    "EkfSlam",
+    "FastSlam",
     "FilterEvent",
     "Fixes",
     "Gps",
     "GraphAnswer",
     "Headings",
     "HistogramFilter",
+    "LandmarkSlam",
+    "LandmarkSlamStats",
     "Landmarks",
     "LaserScanner",
     "Localization",
@@ -39,6 +52,7 @@ __all__ = [
     "PoseMode",
     "PoseModes",
     "RangeBearing",
+    "ReadingOutcomes",
     "Readings",
     "RejectedLoop",
     "Scans",
@@ -46,6 +60,8 @@ __all__ = [
     "calibrate_sensor",
     "localize",
     "read_log",
+    "run_ekf_slam",
+    "run_fast_slam",
     "search_pose",
     "simulate",
 ]

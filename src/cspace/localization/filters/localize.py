@@ -158,13 +158,19 @@ def read_start(
     log: Log, start: npt.ArrayLike | None, covariance: npt.ArrayLike | None
 ) -> tuple[Array, Array]:
     """The first pose (3,) and its covariance (3, 3)."""
-    if start is not None:
-        shape = np.shape(start)
-        pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
-    else:
-        pose = find_start(log)
-    if covariance is None:
-        return pose, np.diag(np.square(START_DEVIATIONS))
+    pose = read_pose(start) if start is not None else find_start(log)
+    return pose, np.diag(np.square(START_DEVIATIONS)) if covariance is None else read_covariance(covariance)
+
+
+def read_pose(start: npt.ArrayLike) -> Array:
+    """A first pose (3,), given as x, y, θ (3,) or (3, 3)."""
+    if np.shape(start) == (3, 3):
+        return np.ascontiguousarray(to_xytheta(as_pose_2d(start, "start")))
+    return one_array(start, "start", (3,))
+
+
+def read_covariance(covariance: npt.ArrayLike) -> Array:
+    """The covariance (3, 3) of a first pose, symmetrised; InputError for one that is none."""
     P = one_array(covariance, "start_covariance", (3, 3))
     least = float(np.linalg.eigvalsh(P)[0])
     if (
@@ -175,7 +181,7 @@ def read_start(
             f"start_covariance is not symmetric and positive semi-definite (least eigenvalue {least:.3g});"
             " give variances on the diagonal, np.diag(...)"
         )
-    return pose, 0.5 * (P + P.T)
+    return 0.5 * (P + P.T)
 
 
 def find_start(log: Log) -> Array:

@@ -79,9 +79,7 @@ class EstimatedPoses:
             raise suggest("frame", frame, FRAMES)
         if frame == "base":
             return self.covariances
-        turn = np.zeros((len(self), 3, 3))
-        turn[:, :2, :2], turn[:, 2, 2] = rotation_2d(self.poses[:, 2]), 1.0
-        return np.asarray(turn @ self.covariances @ np.swapaxes(turn, -1, -2))
+        return turn_covariances(self.poses, self.covariances)
 
     def nees(self, truth: TimedPoses) -> Array:
         """ξᵀ P⁻¹ ξ with T exp ξ the true pose, χ² with 3 degrees of freedom for a consistent filter.
@@ -142,6 +140,13 @@ class Localization(EstimatedPoses):
             poses, covariances = smooth_lag(self._timeline, self._passed, positive_number(lag, "lag"))
             name = f"{self.filter}, lag {lag:g} s" + SMOOTHED
         return replace(self, poses=poses, covariances=covariances, filter=name)
+
+
+def turn_covariances(poses: Array, covariances: Array) -> Array:
+    """Covariances (n, 3, 3) in base turned into axes of the map, at poses (n, 3)."""
+    turn = np.zeros_like(covariances)
+    turn[:, :2, :2], turn[:, 2, 2] = rotation_2d(poses[:, 2]), 1.0
+    return np.asarray(turn @ covariances @ np.swapaxes(turn, -1, -2))
 
 
 SMOOTHED = ", smoothed"
