@@ -31,6 +31,7 @@
 #include "cspace/ik/tracking/cheapest_chain.hpp"
 #include "cspace/ik/tracking/follow.hpp"
 #include "cspace/localization/graph/false_loops.hpp"
+#include "cspace/localization/graph/incremental_graph.hpp"
 #include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
 #include "cspace/maps/byte_field.hpp"

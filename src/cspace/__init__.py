@@ -37,7 +37,7 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.localization import PoseGraph, localize, read_log
+    from cspace.localization import IncrementalGraph, PoseGraph, localize, read_log
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
     from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
@@ -65,6 +65,7 @@ logging.getLogger("cspace").addHandler(logging.NullHandler())
 
 __all__ = [
     "CspaceError",
+    "IncrementalGraph",
     "Limits",
     "Mechanism",
     "OccupancyGrid",
@@ -118,6 +119,7 @@ _LATER = {
     "HalfSpace": "cspace.shapes",
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
+    "IncrementalGraph": "cspace.localization",
     "Limits": "cspace.model",
     "Mechanism": "cspace.mechanisms",
     "Mecanum": "cspace.mobile",

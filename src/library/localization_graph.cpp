@@ -6,26 +6,11 @@
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
-#include "kernels/math_fronts.hpp"
+#include "localization_fronts.hpp"
 
 namespace cspace::localization {
 
 namespace {
-
-struct KernelFronts {
-    static bool factor(double* panel, int stride, int pivots, int first) {
-        return kernels::factor_front_columns(panel, stride, pivots, first);
-    }
-    static void update(double* schur, int size, const double* panel, int stride, int pivots, int row) {
-        kernels::update_front_strip(schur, size, panel, stride, pivots, row);
-    }
-    static void lower(const double* panel, int stride, int pivots, double* x) {
-        kernels::solve_front_lower(panel, stride, pivots, x);
-    }
-    static void upper(const double* panel, int stride, int pivots, double* x) {
-        kernels::solve_front_upper(panel, stride, pivots, x);
-    }
-};
 
 void require(bool fits) {
     if (!fits) throw std::invalid_argument("the arrays of a pose graph do not fit together");

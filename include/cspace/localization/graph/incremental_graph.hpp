@@ -49,11 +49,19 @@ class IncrementalGraph {
         queue_.push_back({false, int(sightings_.size()) - 1});
     }
 
-    // False where the equations are singular.
+    // Takes up the measurements; false where the equations are singular. A pose with one edge fits it exactly
+    // and moves nothing else: its elimination is put off until another measurement touches the graph.
     bool step() {
+        activate_queue();
+        if (tree_.is_whole() && far_.empty() && !has_residual_) return true;
+        return finish_step();
+    }
+    // Eliminates what was put off.
+    bool finish_step() {
         activate_queue();
         move_linearizations();
         linearize_stale();
+        has_residual_ = false;
         if (touched_.empty() && tree_.is_whole()) return true;
         if (!tree_.update(touched_, newest_)) return false;
         touched_.clear();
@@ -71,7 +79,7 @@ class IncrementalGraph {
         stale_.clear();
         for (int f = 0; f < int(factors_.size()); ++f) stale_.push_back(f);
         tree_.spoil();
-        return step();
+        return finish_step();
     }
 
     const GraphState<Space>& state() const { return estimate_; }
@@ -188,6 +196,8 @@ class IncrementalGraph {
         } else if (edge.from < 0) {
             edge.from = int(pose_ids_.size());
             create_pose(from, Space::compose(estimate_.poses[std::size_t(edge.to)], Space::inverse(edge.z)), false);
+        } else {
+            has_residual_ = true;
         }
         add_factor(at, pose_variables_[std::size_t(edge.from)], pose_variables_[std::size_t(edge.to)]);
     }
@@ -206,7 +216,7 @@ class IncrementalGraph {
             place_landmark(landmark);  // which wakes this sighting, if it can
             return;
         }
-        is_sighting_active_[std::size_t(at.index)] = 1;
+        is_sighting_active_[std::size_t(at.index)] = has_residual_ = true;
         add_factor(at, pose_variables_[std::size_t(seen.pose)], landmark_variables_[std::size_t(seen.landmark)]);
     }
     // A landmark that a sighting just began to wait for: where that has it, or where two lines of sight cross.
@@ -322,6 +332,7 @@ class IncrementalGraph {
     std::vector<int> stale_, touched_;  // factors to linearise, and variables to eliminate
     std::vector<int> far_;
     std::vector<char> is_far_;
+    bool has_residual_ = false;  // whether a measurement that waits for its elimination has an error
     int newest_ = none;
     std::size_t eliminated_ = 0;
 };

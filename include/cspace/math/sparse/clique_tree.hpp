@@ -425,9 +425,11 @@ class CliqueTree {
         const Clique& at = clique(c);
         x_.resize(std::max(x_.size(), std::size_t(at.stride())));
         double* to = std::copy_n(at.side(), at.pivots, x_.data());
-        for (int k = at.fronts; k < at.count; ++k)
-            to = std::copy_n(solution(at.variables[k]), sizes_[std::size_t(at.variables[k])], to);
-        std::fill(to, x_.data() + at.stride(), 0.0);
+        for (int k = at.fronts; k < at.count; ++k) {
+            const double* const known = solution(at.variables[k]);
+            for (int i = 0; i < sizes_[std::size_t(at.variables[k])]; ++i) *to++ = known[i];
+        }
+        for (double* const end = x_.data() + at.stride(); to != end;) *to++ = 0;
         Fronts::upper(at.panel(), at.stride(), at.pivots, x_.data());
         double farthest = 0;
         const double* from = x_.data();
@@ -440,8 +442,8 @@ class CliqueTree {
         from = x_.data();
         for (int k = 0; k < at.fronts; ++k) {
             const int v = at.variables[k];
-            std::copy_n(from, sizes_[std::size_t(v)], solution(v));
-            from += sizes_[std::size_t(v)];
+            double* const to_solution = solution(v);
+            for (int i = 0; i < sizes_[std::size_t(v)]; ++i) to_solution[i] = *from++;
             stamp_[std::size_t(v)] = step_;
             changed_.push_back(v);
         }

@@ -50,6 +50,14 @@ def list_rejected(
     )
 
 
+def turn_to_map(pose: Array) -> Array:
+    """The matrix that turns disturbances of a pose into the axes of the map; angles of the plane stay."""
+    if pose.ndim == 2:
+        return np.asarray(np.kron(np.eye(2), pose[:3, :3]), dtype=np.float64)
+    c, s = np.cos(pose[2]), np.sin(pose[2])
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class GraphAnswer(Renamed):
     """An optimized pose graph; truthy if it converged.
@@ -111,7 +119,7 @@ class GraphAnswer(Renamed):
         found: Array = self._read_covariances(a, b, self._size(rows[0]), self._size(rows[1]))[0]
         if frame == "base":
             return found
-        first, second = (self._turn(row) for row in rows)
+        first, second = (turn_to_map(self.poses[row]) for row in rows)
         turned: Array = first @ found @ second.T
         return turned
 
@@ -124,13 +132,6 @@ class GraphAnswer(Renamed):
         if row >= len(self.poses):
             return self.graph.dimension
         return 6 if self.graph.is_spatial else 3
-
-    def _turn(self, row: int) -> Array:
-        """The matrix that turns disturbances of a pose into the axes of the map; angles of the plane stay."""
-        if self.graph.is_spatial:
-            return np.asarray(np.kron(np.eye(2), self.poses[row, :3, :3]), dtype=np.float64)
-        c, s = np.cos(self.poses[row, 2]), np.sin(self.poses[row, 2])
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
     def _read_covariances(
         self, first: npt.NDArray[np.int32], second: npt.NDArray[np.int32], rows: int, columns: int
