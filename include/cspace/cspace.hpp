@@ -30,6 +30,7 @@
 #include "cspace/ik/tracking/along.hpp"
 #include "cspace/ik/tracking/cheapest_chain.hpp"
 #include "cspace/ik/tracking/follow.hpp"
+#include "cspace/localization/graph/certificate.hpp"
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/graph/incremental_graph.hpp"
 #include "cspace/localization/graph/initial_guess.hpp"

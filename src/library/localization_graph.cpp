@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "cspace/localization/graph/certificate.hpp"
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
@@ -121,6 +122,11 @@ class SolverOf : public GraphSolver {
             to += size_of(a) * size_of(b);
         }
         return true;
+    }
+
+    std::ptrdiff_t anisotropic_measurement() const override { return find_anisotropic(graph_, is_used_); }
+    CertificateResult certify() const override {
+        return DualCertificate<Space, KernelFronts>(graph_, is_used_).certify(state_);
     }
 
   private:

@@ -2,7 +2,7 @@
 
 from cspace.localization.calibrate_sensor import calibrate_sensor
 from cspace.localization.filters import Localization, LocalizationStats, localize
-from cspace.localization.graph import GraphAnswer, IncrementalGraph, PoseGraph, RejectedLoop
+from cspace.localization.graph import Certificate, GraphAnswer, IncrementalGraph, PoseGraph, RejectedLoop
 from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
 from cspace.localization.logs import read_log
 from cspace.localization.sensors import Compass, Gps, RangeBearing
@@ -10,6 +10,7 @@ from cspace.localization.simulate import simulate
 from cspace.mobile import Odometry, TimedPoses
 
 __all__ = [
+    "Certificate",
     "Compass",
     "Fixes",
     "Gps",

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
+from cspace.errors import CspaceError, InputError
 from data import shared_data
 from localization.graph.graphs import random_graph
 
@@ -111,7 +112,7 @@ def test_parts_wait_until_they_are_joined():
     grown.add_sighting(21, 0, [0.0, 1.0], np.eye(2))
     assert grown.waiting == 2 and grown.ids.tolist() == [10, 11]
     assert "2 waiting" in repr(grown)
-    with pytest.raises(cs.InputError, match="no pose 20"):
+    with pytest.raises(InputError, match="no pose 20"):
         grown.pose(20)
     grown.add(11, 20, [1.0, 0, 0], np.eye(3))
     assert grown.waiting == 0
@@ -183,25 +184,25 @@ def test_public_graph():
 def test_bad_edges_change_nothing(arguments, words):
     grown = cs.IncrementalGraph()
     grown.add(0, 1, [1.0, 0, 0], np.eye(3))
-    with pytest.raises(cs.CspaceError, match=words):
+    with pytest.raises(CspaceError, match=words):
         grown.add(*arguments)
     assert repr(grown) == "<IncrementalGraph 2 poses, 1 edge in the plane>"
 
 
 def test_bad_sightings():
     grown = cs.IncrementalGraph()
-    with pytest.raises(cs.InputError, match="empty"):
+    with pytest.raises(InputError, match="empty"):
         grown.to_graph()
     grown.add(0, 1, [1.0, 0, 0], np.eye(3))
-    with pytest.raises(cs.InputError, match="point has shape"):
+    with pytest.raises(InputError, match="point has shape"):
         grown.add_sighting(0, 0, [1.0], np.eye(2))
-    with pytest.raises(cs.InputError, match="radians"):
+    with pytest.raises(InputError, match="radians"):
         grown.add_sighting(0, 0, [1.0, 90.0], np.eye(2), ranged=True)
-    with pytest.raises(cs.InputError, match="NaN"):
+    with pytest.raises(InputError, match="NaN"):
         grown.add_sighting(0, 0, [np.nan, 1.0], np.eye(2))
-    with pytest.raises(cs.InputError, match="of space"):
+    with pytest.raises(InputError, match="of space"):
         grown.add_sighting(0, 0, [1.0, 1.0, 1.0], np.eye(3))
-    with pytest.raises(cs.InputError, match="no landmark 0"):
+    with pytest.raises(InputError, match="no landmark 0"):
         grown.landmark_covariance(0)
-    with pytest.raises(cs.InputError, match="relinearize"):
+    with pytest.raises(InputError, match="relinearize"):
         cs.IncrementalGraph(relinearize=-1)

@@ -56,6 +56,8 @@ class LinearGraph {
         for (auto& side : sides_) solver_.solve(side.data());
         return true;
     }
+    SparseCholesky<Fronts>& solver() { return solver_; }
+    std::vector<double>& values() { return values_; }
     const double* solution(int side, int block) const {
         return sides_[std::size_t(side)].data() + solver_.row_of(block);
     }
