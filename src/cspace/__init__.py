@@ -37,7 +37,14 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.localization import LaserScanner, ParticleFilter, PoseGraph, localize, read_log
+    from cspace.localization import (
+        IncrementalGraph,
+        LaserScanner,
+        ParticleFilter,
+        PoseGraph,
+        localize,
+        read_log,
+    )
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
     from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
@@ -65,6 +72,7 @@ logging.getLogger("cspace").addHandler(logging.NullHandler())
 
 __all__ = [
     "CspaceError",
+    "IncrementalGraph",
     "LaserScanner",
     "Limits",
     "Mechanism",
@@ -120,6 +128,7 @@ _LATER = {
     "HalfSpace": "cspace.shapes",
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
+    "IncrementalGraph": "cspace.localization",
     "LaserScanner": "cspace.localization",
     "Limits": "cspace.model",
     "Mechanism": "cspace.mechanisms",

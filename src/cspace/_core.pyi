@@ -1033,6 +1033,14 @@ class GraphSolver:
     def write_covariances(self, pairs: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> bool:
         """Writes the blocks of pairs of variables; False where singular."""
 
+    @property
+    def anisotropic_measurement(self) -> int: ...
+
+    def certify(self) -> tuple[bool, float, float]:
+        """
+        Whether the dual has a proof, the bound of chi2, and the cost of the optimum next to that proved.
+        """
+
 def find_graph_parts(poses: int, landmarks: int, edges: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], sightings: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> list[int]:
     """The connected part of each pose, then of each landmark."""
 
@@ -1170,6 +1178,63 @@ def make_ekf_slam(sensor: numpy.typing.ArrayLike, rule: numpy.typing.ArrayLike, 
 
 def make_fast_slam(sensor: numpy.typing.ArrayLike, rule: numpy.typing.ArrayLike, version: int, particles: int, seed: int, resample_below: float, start: numpy.typing.ArrayLike, covariance: numpy.typing.ArrayLike) -> LandmarkFilter:
     """Particles with maps of landmarks."""
+
+class IncrementalSolver:
+    """A pose graph that grows, and its estimate."""
+
+    def __init__(self, is_spatial: bool, relinearize: float, substitute: float) -> None: ...
+
+    @property
+    def is_spatial(self) -> bool: ...
+
+    def hold_pose(self, id: int, pose: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None: ...
+
+    def add_edges(self, ids: Annotated[NDArray[numpy.int64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], motions: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], information: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None: ...
+
+    def add_sightings(self, ids: Annotated[NDArray[numpy.int64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], information: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], has_bearing: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    def step(self) -> bool:
+        """False where the equations are singular."""
+
+    def restart(self, poses: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], landmarks: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> bool:
+        """False where the equations are singular."""
+
+    @property
+    def pose_ids(self) -> list[int]: ...
+
+    @property
+    def landmark_ids(self) -> list[int]: ...
+
+    def find_pose(self, id: int) -> int:
+        """Its row; -1: none of this id."""
+
+    def find_landmark(self, id: int) -> int:
+        """Its row; -1: none of this id."""
+
+    def write_pose(self, row: int, out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None: ...
+
+    def write_state(self, poses: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')], landmarks: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None: ...
+
+    @property
+    def waiting(self) -> int: ...
+
+    @property
+    def eliminated(self) -> int: ...
+
+    def cost(self) -> float: ...
+
+    def arrays(self) -> tuple:
+        """
+        Edges, motions, information, sightings, points, their information, and has_bearing, flat.
+        """
+
+    def write_covariance(self, is_pose: bool, first: int, second: int, out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> bool:
+        """False where singular."""
+
+def are_clearly_positive(matrices: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], size: int) -> bool:
+    """
+    Whether square matrices are symmetric and far from singular; where not, they need a closer look.
+    """
 
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...

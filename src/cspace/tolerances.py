@@ -725,4 +725,8 @@ GRAPH_DECREASE: Final = 1e-9
 """Decrease of χ² that the last step of a pose graph predicts, relative to χ²: thousandths of what is asked of
 its digits."""
 
+SAME_CHI2: Final = 1e-6
+"""Difference of two values of χ², relative, within which they are of one optimum: steps that end the search
+leave 1e-9."""
+
 __all__ = [name for name in globals() if name.isupper()]

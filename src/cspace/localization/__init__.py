@@ -2,7 +2,7 @@
 
 from cspace.localization.calibrate_sensor import calibrate_sensor
 from cspace.localization.filters import Localization, LocalizationStats, localize
-from cspace.localization.graph import GraphAnswer, PoseGraph, RejectedLoop
+from cspace.localization.graph import Certificate, GraphAnswer, IncrementalGraph, PoseGraph, RejectedLoop
 from cspace.localization.landmark_slam import (
     EkfSlam,
     FastSlam,
@@ -28,6 +28,7 @@ from cspace.localization.simulate import simulate
 from cspace.mobile import Odometry, TimedPoses
 
 __all__ = [
+    "Certificate",
     "Compass",
     "EkfSlam",
     "FastSlam",
@@ -37,6 +38,7 @@ __all__ = [
     "GraphAnswer",
     "Headings",
     "HistogramFilter",
+    "IncrementalGraph",
     "LandmarkSlam",
     "LandmarkSlamStats",
     "Landmarks",
