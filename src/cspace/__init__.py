@@ -37,7 +37,7 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.localization import PoseGraph, localize, read_log
+    from cspace.localization import PoseGraph, ate, localize, read_log, rpe
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
     from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
@@ -73,6 +73,7 @@ __all__ = [
     "Robot",
     "Scene",
     "__version__",
+    "ate",
     "cartesian",
     "collision",
     "configuration_space",
@@ -94,6 +95,7 @@ __all__ = [
     "plan_many",
     "planning",
     "read_log",
+    "rpe",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
@@ -136,6 +138,7 @@ _LATER = {
     "Tracked": "cspace.mobile",
     "Unicycle": "cspace.mobile",
     "__version__": "cspace._core",
+    "ate": "cspace.localization",
     "blend": "cspace.trajectory",
     "cartesian": "",
     "collision": "",
@@ -160,6 +163,7 @@ _LATER = {
     "plot": "",
     "read_log": "cspace.localization",
     "robots": "",
+    "rpe": "cspace.localization",
     "shapes": "",
     "spatial": "",
     "spline": "cspace.trajectory",

@@ -685,6 +685,14 @@ of Thrun takes the first turn as zero."""
 LOG_BYTES: Final = 1 << 30
 """Largest log that is read, after decompression: a day of a laser scanner; the numbers take as much again."""
 
+PRINTED_ROTATION: Final = 1e-3
+"""By how much a printed matrix may miss a rotation and still be projected on one: files print four digits and
+more."""
+
+ALIGNMENT_ROUNDING: Final = 1e-14
+"""Spread of points relative to their largest coordinate that is rounding, so that it determines no
+rotation."""
+
 LEVEL_TILT: Final = 1e-3
 """Tilt [rad] up to which a pose of space counts as planar: rounding of quaternions printed with four
 digits."""
