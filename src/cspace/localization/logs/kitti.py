@@ -41,10 +41,10 @@ def read_kitti_poses(lines: Lines) -> Array:
     T[:, :3] = rows.reshape(-1, 3, 4)
     R = T[:, :3, :3]
     miss = np.abs(R @ np.swapaxes(R, 1, 2) - np.eye(3)).max(axis=(1, 2))
-    bad = np.flatnonzero((miss > tolerances.PRINTED_ROTATION) | (np.linalg.det(R) < 0))
-    if len(bad):
-        number = [number for number, _ in lines.rows()][int(bad[0])]
-        raise lines.error(number, f"columns 1 to 3 miss a rotation by {miss[bad[0]]:.3g}")
+    is_bad = (miss > tolerances.PRINTED_ROTATION) | (np.linalg.det(R) < 0)
+    lines.refuse(
+        is_bad, f"columns 1 to 3 of the matrix miss a rotation by more than {tolerances.PRINTED_ROTATION:g}"
+    )
     T[:, :3, :3] = project_rotation(R)
     return T
 

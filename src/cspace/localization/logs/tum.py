@@ -38,12 +38,9 @@ def read_tum_poses(lines: Lines) -> tuple[Array, Array]:
     """
     rows = lines.table(COLUMNS, "time, x, y, z, qx, qy, qz, qw")
     lengths = np.linalg.norm(rows[:, 4:], axis=1)
-    numbers = [number for number, _ in lines.rows()]
-    if (lengths == 0).any():
-        raise lines.error(numbers[int((lengths == 0).argmax())], "the quaternion is zero; it has no rotation")
-    back = np.flatnonzero(np.diff(rows[:, 0]) < 0)
-    if len(back):
-        raise lines.error(numbers[int(back[0]) + 1], "the time runs backwards; sort the lines by time")
+    lines.refuse(lengths == 0, "the quaternion is zero; it has no rotation")
+    backwards = np.diff(rows[:, 0], prepend=rows[:1, 0]) < 0
+    lines.refuse(backwards, "the time runs backwards; sort the lines by time")
     if not len(rows):
         raise LogError("the file has no poses", path=lines.path)
     return rows[:, 0], pose(xyz=rows[:, 1:4], xyzw=rows[:, 4:] / lengths[:, None])
