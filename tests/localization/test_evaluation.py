@@ -195,7 +195,10 @@ def test_unknown_words_are_named():
 def test_a_bad_file_of_poses_is_named(tmp_path):
     path = tmp_path / "p.txt"
     for text, part in [
-        ("1 0 0 0 0 1 0 0 0 0 1 0\n2 0 0 0 0 1 0 0 0 0 1 0\n", ":2: columns 1 to 3 miss a rotation"),
+        (
+            "1 0 0 0 0 1 0 0 0 0 1 0\n2 0 0 0 0 1 0 0 0 0 1 0\n",
+            ":2: the first three columns of the matrix are no rotation",
+        ),
         ("1 2 3\n", "neither 8 columns"),
         ("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1\n", ":2: the line has 11 columns"),
     ]:

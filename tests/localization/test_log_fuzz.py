@@ -19,14 +19,12 @@ WORDS += ["x", "3.5", "#", "\x00", "ODOM", "FLASER", "٣", "1_0", "0x10", "1e9",
 def carmen(name: str) -> str:
     """Odometry and scans of five beams."""
     head = {"FLASER": "FLASER 5", "ROBOTLASER1": "ROBOTLASER1 0 -1.5 3.1 0.7 80 0.01 0 5"}[name]
-    tail = {
-        "FLASER": "{x} 0 0.1 {x} 0 0.1 {t} host {t}",
-        "ROBOTLASER1": "1 7 {x} 0 0.1 {x} 0 0.1 0 0 0 0 0 {t} host {t}",
-    }
+    poses = "{x} 0 0.1 {x} 0 0.1"
+    tail = {"FLASER": poses, "ROBOTLASER1": f"1 7 {poses} 0 0 0 0 0"}[name] + " {t} host {t}"
     lines = ["# log", "PARAM robot_front_laser_max 81.9 0 h 0"]
     for k in range(6):
         lines.append(f"ODOM {0.1 * k} 0 0.1 0.5 0 0 {k} host {k}")
-        lines.append(f"{head} 1.0 2.0 3.5 81.9 4 " + tail[name].format(x=0.1 * k, t=k + 0.5))
+        lines.append(f"{head} 1.0 2.0 3.5 81.9 4 " + tail.format(x=0.1 * k, t=k + 0.5))
     return "\n".join(lines) + "\n"
 
 
@@ -82,16 +80,23 @@ def mutate(text: str, rng: np.random.Generator) -> str:
     return text
 
 
-def read_or_refuse(path) -> Log | None:
-    """The log, checked; or None where it was refused by its name."""
+def read_quietly(path) -> Log | str:
+    """The log, or the message with which it was refused; warnings are errors."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:
-            log = read_log(path)
+            return read_log(path)
         except LogError as error:
-            assert path.name in str(error)
-            assert len(str(error)) < 400
-            return None
+            return str(error)
+
+
+def read_or_refuse(path, folder="") -> Log | None:
+    """The log, checked; or None where it was refused by its name."""
+    log = read_quietly(path)
+    if isinstance(log, str):
+        assert (folder or path.name) in log
+        assert len(log) < 400
+        return None
     for part in (log.odometry, log.scans, log.readings, log.truth):
         if part is not None:
             assert np.isfinite(part.times).all()
@@ -157,12 +162,4 @@ def test_mutated_folders_are_read_whole_or_refused(tmp_path, name, seed):
     assert len(read_log(path).readings) == 4
     for _ in range(100):
         (tmp_path / name).write_text(mutate(MRCLAM[name], rng), encoding="utf-8")
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            try:
-                log = read_log(path)
-            except LogError as error:
-                assert name in str(error) or "folder" in str(error) or str(tmp_path) in str(error)
-                continue
-        assert np.isfinite(log.odometry.steps).all()
-        assert np.isfinite(log.truth.poses).all()
+        read_or_refuse(path, str(tmp_path))

@@ -42,9 +42,7 @@ def read_kitti_poses(lines: Lines) -> Array:
     R = T[:, :3, :3]
     miss = np.abs(R @ np.swapaxes(R, 1, 2) - np.eye(3)).max(axis=(1, 2))
     is_bad = (miss > tolerances.PRINTED_ROTATION) | (np.linalg.det(R) < 0)
-    lines.refuse(
-        is_bad, f"columns 1 to 3 of the matrix miss a rotation by more than {tolerances.PRINTED_ROTATION:g}"
-    )
+    lines.refuse(is_bad, "the first three columns of the matrix are no rotation")
     T[:, :3, :3] = project_rotation(R)
     return T
 

@@ -49,10 +49,9 @@ class Lines:
             raise self.error(line, f"{shorten(bad, 40)!r} is no number; {what} expected") from None
         if not np.isfinite(found).all():
             raise self.error(line, f"{what} must be finite, and one of them is not")
-        if max(map(abs, found), default=0.0) > tolerances.LARGEST_LOGGED:
-            raise self.error(
-                line, f"{what} must not exceed {tolerances.LARGEST_LOGGED:g}, and one of them does"
-            )
+        largest = tolerances.LARGEST_LOGGED
+        if max(map(abs, found), default=0.0) > largest:
+            raise self.error(line, f"{what} must not exceed {largest:g}, and one of them does")
         return found
 
     def whole(self, line: int, word: str, what: str) -> int:
