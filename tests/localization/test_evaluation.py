@@ -197,7 +197,7 @@ def test_a_bad_file_of_poses_is_named(tmp_path):
     for text, part in [
         (
             "1 0 0 0 0 1 0 0 0 0 1 0\n2 0 0 0 0 1 0 0 0 0 1 0\n",
-            ":2: the first three columns of the matrix are no rotation",
+            ":2: the first three columns",
         ),
         ("1 2 3\n", "neither 8 columns"),
         ("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1\n", ":2: the line has 11 columns"),
