@@ -42,8 +42,10 @@ if TYPE_CHECKING:
         LaserScanner,
         ParticleFilter,
         PoseGraph,
+        ate,
         localize,
         read_log,
+        rpe,
     )
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
@@ -83,6 +85,7 @@ __all__ = [
     "Robot",
     "Scene",
     "__version__",
+    "ate",
     "cartesian",
     "collision",
     "configuration_space",
@@ -104,6 +107,7 @@ __all__ = [
     "plan_many",
     "planning",
     "read_log",
+    "rpe",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
@@ -149,6 +153,7 @@ _LATER = {
     "Tracked": "cspace.mobile",
     "Unicycle": "cspace.mobile",
     "__version__": "cspace._core",
+    "ate": "cspace.localization",
     "blend": "cspace.trajectory",
     "cartesian": "",
     "collision": "",
@@ -173,6 +178,7 @@ _LATER = {
     "plot": "",
     "read_log": "cspace.localization",
     "robots": "",
+    "rpe": "cspace.localization",
     "shapes": "",
     "spatial": "",
     "spline": "cspace.trajectory",

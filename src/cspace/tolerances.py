@@ -689,6 +689,18 @@ of Thrun takes the first turn as zero."""
 LOG_BYTES: Final = 1 << 30
 """Largest log that is read, after decompression: a day of a laser scanner; the numbers take as much again."""
 
+LARGEST_LOGGED: Final = 1e18
+"""Largest number of a log: beyond it squares overflow, and nothing measures so much; stamps in nanoseconds
+are below."""
+
+PRINTED_ROTATION: Final = 1e-3
+"""By how much a printed matrix may miss a rotation and still be projected on one: files print four digits and
+more."""
+
+ALIGNMENT_ROUNDING: Final = 1e-14
+"""Spread of points relative to their largest coordinate that is rounding, so that it determines no
+rotation."""
+
 LEVEL_TILT: Final = 1e-3
 """Tilt [rad] up to which a pose of space counts as planar: rounding of quaternions printed with four
 digits."""

@@ -1,6 +1,7 @@
 """Localisation of mobile robots: logs, filters and smoothers on maps of landmarks."""
 
 from cspace.localization.calibrate_sensor import calibrate_sensor
+from cspace.localization.evaluation import PoseErrors, ate, rpe
 from cspace.localization.filters import Localization, LocalizationStats, localize
 from cspace.localization.graph import Certificate, GraphAnswer, IncrementalGraph, PoseGraph, RejectedLoop
 from cspace.localization.landmark_slam import (
@@ -13,7 +14,7 @@ from cspace.localization.landmark_slam import (
     run_fast_slam,
 )
 from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
-from cspace.localization.logs import read_log
+from cspace.localization.logs import read_log, read_poses, write_poses
 from cspace.localization.particles import (
     FilterEvent,
     HistogramFilter,
@@ -50,6 +51,7 @@ __all__ = [
     "MapLocalizationStats",
     "Odometry",
     "ParticleFilter",
+    "PoseErrors",
     "PoseGraph",
     "PoseMode",
     "PoseModes",
@@ -59,11 +61,15 @@ __all__ = [
     "RejectedLoop",
     "Scans",
     "TimedPoses",
+    "ate",
     "calibrate_sensor",
     "localize",
     "read_log",
+    "read_poses",
+    "rpe",
     "run_ekf_slam",
     "run_fast_slam",
     "search_pose",
     "simulate",
+    "write_poses",
 ]
