@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -23,6 +23,7 @@ from cspace.cli.output import tidy_number
 from cspace.cli.robot import joint_called, load_chosen, read_configuration
 
 if TYPE_CHECKING:
+    from cspace.mechanisms import Mechanism
     from cspace.robot import Robot
 
 Typed = float | tuple[str, float]
@@ -274,17 +275,29 @@ def loop_words(robot: Robot) -> list[str]:
     return [f"{loop.name} ({loop.type}: {loop.parent} to {loop.child})" for loop in robot.description.loops]
 
 
-def close_start(robot: Robot, q: Array) -> tuple[Any, Array]:
-    """The mechanism of a robot whose description has loops, and the closed configuration (n,) nearest to q.
+def close_start(args: argparse.Namespace, robot: Robot, start: Start) -> tuple[Mechanism, Start]:
+    """The mechanism of a robot whose description has loops, and the start with closed loops.
 
-    Raises UsageError where the loops cannot be closed.
+    Joints that are typed by name keep their values, and their velocities make those of the others; else the
+    closed configuration nearest to the typed one counts. Raises UsageError where the loops cannot be closed.
     """
     from cspace.mechanisms import Mechanism
 
     mechanism = Mechanism(robot)
-    closure = mechanism.close(near=q)
+    q, qd = start.q, start.qd
+    closure = mechanism.close(name_values(args.q, q, robot), near=q)
     if not closure:
         raise UsageError(
-            f"the loops of {robot.name} cannot be closed near the start: {closure.reason}; give another start"
+            f"the loops of {robot.name} cannot be closed there: {closure.reason}; give other joints"
         )
-    return mechanism, closure.q
+    driven = name_values(args.qd or [], qd, robot)
+    if driven and not robot.floating:
+        qd = mechanism.velocities(closure.q, driven)
+    words = f"{start.words or 'as typed'}; the loops closed"
+    return mechanism, replace(start, q=closure.q, qd=qd, words=words)
+
+
+def name_values(typed: Sequence[Any], values: Array, robot: Robot) -> dict[str, float]:
+    """The values (n,) of the joints that are typed by name."""
+    names = [joint_called(each[0], robot) for each in typed if isinstance(each, tuple)]
+    return {name: float(values[robot.joint_names.index(name)]) for name in names}

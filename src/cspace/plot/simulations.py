@@ -78,7 +78,7 @@ def simulation(
         raise InputTypeError(f"run is a {type(run).__name__}, expected what robot.simulate returns")
     check_robot_of(run, robot, degrees)
     found = find_curves(run, robot, degrees)
-    chosen = [name for name in PANELS if name in found and shows_motion(name, found[name])]
+    chosen: list[str] = [name for name in PANELS if name in found and shows_motion(name, found[name])]
     if panels is not None:
         chosen = [check_panel(name, found) for name in panels]
     drawn = make_axes(len(chosen)) if axes is None else list(np.ravel(np.asarray(axes, dtype=object)))

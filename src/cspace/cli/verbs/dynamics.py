@@ -30,6 +30,7 @@ from cspace.cli.state import (
 
 if TYPE_CHECKING:
     from cspace.dynamics import OperationalSpace
+    from cspace.mechanisms import Mechanism
     from cspace.robot import Robot
 
 EXAMPLES: Final = """
@@ -71,8 +72,10 @@ def run(args: argparse.Namespace, out: Output) -> int:
         check_writable(args.plot)
         check_format(args.plot)
     robot = load_heavy(args)
-    start = read_start(args, robot)
-    numbers = compute_motion(args, robot, start)
+    start, mechanism = read_start(args, robot), None
+    if robot.description.loops:
+        mechanism, start = close_start(args, robot, start)
+    numbers = compute_motion(args, robot, start, mechanism)
     felt = None
     if args.frame is not None:
         felt = robot.operational_space(start.q, args.frame, T_world_base=start.T_world_base)
@@ -98,18 +101,17 @@ def run(args: argparse.Namespace, out: Output) -> int:
     return Exit.DONE
 
 
-def compute_motion(args: argparse.Namespace, robot: Robot, start: Start) -> dict[str, Any]:
+def compute_motion(
+    args: argparse.Namespace, robot: Robot, start: Start, mechanism: Mechanism | None
+) -> dict[str, Any]:
     """The numbers of the answer by their keys in JSON."""
-    q, qd, place = start.q, start.qd, {"T_world_base": start.T_world_base}
+    q, qd = start.q, start.qd
+    place: dict[str, Any] = {"T_world_base": start.T_world_base}
     acts = read_acts(args)
     down = {"gravity": acts["gravity"]} if "gravity" in acts else {}
     if args.tau is not None:
         tau = read_torques(args.tau, robot, "--tau")
-        if robot.description.loops:
-            mechanism, q = close_start(robot, q)
-            qdd = mechanism.forward_dynamics(q, qd, tau, **acts, **place)
-        else:
-            qdd = robot.forward_dynamics(q, qd, tau, **acts, **place)
+        qdd = (mechanism or robot).forward_dynamics(q, qd, tau, **acts, **place)
     else:
         qdd = read_rates(args.qdd, robot, "--qdd", degrees=args.deg)
         tau = robot.inverse_dynamics(q, qd, qdd, **acts, **place)
@@ -146,7 +148,7 @@ def draw_torques(args: argparse.Namespace, robot: Robot, start: Start, numbers: 
     from cspace import plot
 
     acts, place = read_acts(args), start.T_world_base
-    artists = plot.torques(robot, numbers["q"], start.qd, numbers["qdd"], T_world_base=place, **acts)
+    artists = plot.torques(robot, start.q, start.qd, numbers["qdd"], T_world_base=place, **acts)
     plot.save(artists, args.plot)
 
 

@@ -31,6 +31,7 @@ from cspace.cli.state import (
 
 if TYPE_CHECKING:
     from cspace.dynamics import Simulation
+    from cspace.mechanisms import Mechanism
     from cspace.robot import Robot
 
 EXAMPLES: Final = """
@@ -89,7 +90,11 @@ def run(args: argparse.Namespace, out: Output) -> int:
         check_format(args.plot)
     robot = load_heavy(args)
     start = read_start(args, robot)
-    made = run_motion(args, robot, start)
+    mechanism = None
+    if robot.description.loops:
+        refuse_for_loops(args, robot)
+        mechanism, start = close_start(args, robot, start)
+    made = run_motion(args, robot, start, mechanism)
     if args.plot:
         from cspace import plot
 
@@ -104,25 +109,29 @@ def run(args: argparse.Namespace, out: Output) -> int:
     return Exit.DONE if made else Exit.NEGATIVE
 
 
-def run_motion(args: argparse.Namespace, robot: Robot, start: Start) -> Simulation:
-    """The simulation; of a robot whose description has closed loops that of the mechanism."""
-    common = {
+def refuse_for_loops(args: argparse.Namespace, robot: Robot) -> None:
+    """Raise UsageError for options that simulations of closed loops do not know."""
+    word = "--stop-at-limits" if args.stop_at_limits else f"--method {args.method}"
+    if args.method != "rk4" or args.stop_at_limits:
+        raise UsageError(f"{robot.name} has closed loops, which do not go with {word}; leave it out")
+
+
+def run_motion(
+    args: argparse.Namespace, robot: Robot, start: Start, mechanism: Mechanism | None
+) -> Simulation:
+    """The simulation, with closed loops that of the mechanism."""
+    options: dict[str, Any] = {
+        "control": read_control(args, robot, start.q, start.T_world_base),
         "duration": args.duration,
         "dt": args.dt,
         "every": args.every,
         "T_world_base": start.T_world_base,
+        **read_acts(args),
     }
-    common |= read_acts(args)
-    if robot.description.loops:
-        if args.method != "rk4" or args.stop_at_limits:
-            word = "--stop-at-limits" if args.stop_at_limits else f"--method {args.method}"
-            raise UsageError(f"{robot.name} has closed loops, which {word} does not know; leave it out")
-        mechanism, q = close_start(robot, start.q)
-        control = read_control(args, robot, q, start.T_world_base)
-        return mechanism.simulate(q, start.qd, control=control, **common)
-    control = read_control(args, robot, start.q, start.T_world_base)
+    if mechanism is not None:
+        return mechanism.simulate(start.q, start.qd, **options)
     more = {"method": args.method, "stop_at_limits": args.stop_at_limits}
-    return robot.simulate(start.q, start.qd, control=control, **common, **more)
+    return robot.simulate(start.q, start.qd, **options, **more)
 
 
 def read_control(args: argparse.Namespace, robot: Robot, q: Array, T: Array | None) -> Any:
