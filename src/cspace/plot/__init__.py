@@ -18,6 +18,7 @@ from cspace.plot.plans import plan
 from cspace.plot.scenes import collision, scene
 from cspace.plot.simulations import simulation
 from cspace.plot.space_slices import space_projection, space_slice
+from cspace.plot.torques import torques
 from cspace.plot.trajectories import trajectory
 from cspace.plot.vehicles import coverage, drive
 from cspace.plot.worlds import animation, route, routes, world
@@ -36,4 +37,4 @@ __all__ = [
 ]
 __all__ += ["coverage", "drive", "particles", "world"]
 __all__ += ["collision", "configuration_space", "plan", "scene", "surface"]
-__all__ += ["simulation", "space_projection", "space_slice", "trajectory"]
+__all__ += ["simulation", "space_projection", "space_slice", "torques", "trajectory"]
