@@ -2,7 +2,9 @@
 #include <nanobind/stl/tuple.h>
 
 #include <cmath>
+#include <limits>
 #include <tuple>
+#include <vector>
 
 #include "arrays.hpp"
 #include "arrays_in_place.hpp"
@@ -44,7 +46,15 @@ void solve(const States& states, const Matrix& limits, const Row& durations, dou
     solve_states(problems, threads);
 }
 
-std::tuple<Doubles, Doubles, Doubles> make_arrays(const OneState& states, const Matrix& limits,
+using PieceArrays = std::tuple<Doubles, Doubles, Doubles>;
+
+PieceArrays show(const StatePieces& made, std::size_t dof) {
+    const npy_intp n = npy_intp(dof), pieces = npy_intp(made.pieces);
+    return {Doubles({n, pieces + 1}, made.knots.data()), Doubles({n, pieces, 4}, made.coefficients.data()),
+            Doubles({n, pieces}, made.origins.data())};
+}
+
+PieceArrays make_arrays(const OneState& states, const Matrix& limits,
                                                   const Row& shortest, const Matrix& motions, double duration,
                                                   int mode) {
     const std::size_t dof = states.shape(2);
@@ -52,9 +62,57 @@ std::tuple<Doubles, Doubles, Doubles> make_arrays(const OneState& states, const 
                   has_shape(motions, numbers_of_motion(), dof) && mode >= 0 && mode < modes);
     const StatePieces made = make_pieces({dof, states.data(), limits.data(), shortest.data(), motions.data(),
                                           duration, Synchronize(mode)});
-    const npy_intp n = npy_intp(dof), pieces = npy_intp(made.pieces);
-    return {Doubles({n, pieces + 1}, made.knots.data()), Doubles({n, pieces, 4}, made.coefficients.data()),
-            Doubles({n, pieces}, made.origins.data())};
+    return show(made, dof);
+}
+
+bool is_number(nb::handle given) {
+    int overflow = 0;
+    if (PyFloat_Check(given.ptr())) return true;
+    return PyLong_CheckExact(given.ptr()) && PyLong_AsLongLongAndOverflow(given.ptr(), &overflow) != -1 &&
+           overflow == 0;
+}
+
+// One number per axis from None (what is given for it), a number, or an array; false for anything else.
+bool read_row(nb::handle given, double absent, double scale, std::vector<double>& out, std::size_t at,
+              std::size_t n) {
+    const auto begin = out.begin() + std::ptrdiff_t(at);
+    if (given.is_none()) {
+        std::fill_n(begin, n, absent);
+    } else if (is_number(given)) {
+        std::fill_n(begin, n, scale * nb::cast<double>(given));
+    } else {
+        ConstDoubles row;
+        if (!row.read(given.ptr()) || row.ndim() != 1 || std::size_t(row.size) != n) return false;
+        for (std::size_t i = 0; i < n; ++i) begin[std::ptrdiff_t(i)] = scale * row.data[i];
+    }
+    return true;
+}
+
+// states: start, goal and their velocities and accelerations; limits: velocity, acceleration, jerk; bounds:
+// lower and upper positions.
+nb::object move_plain(const nb::tuple& states, const nb::tuple& limits, const nb::tuple& bounds,
+                      double farthest) {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    ConstDoubles start;
+    require_sizes(states.size() == 6 && limits.size() == 3 && bounds.size() == 2);
+    if (!start.read(states[0].ptr()) || start.ndim() != 1 || start.size == 0) return nb::none();
+    const std::size_t n = std::size_t(start.size);
+    std::vector<double> rows(13 * n);
+    for (std::size_t k = 0; k < 6; ++k) {
+        const bool is_position = k % 3 == 0, is_row = !is_number(states[k]) && !states[k].is_none();
+        if ((is_position && !is_row) ||
+            !read_row(states[k], 0, 1, rows, k * n, n))
+            return nb::none();
+    }
+    const double signs[5] = {1, -1, 1, -1, 1};
+    for (std::size_t k = 0; k < 5; ++k)
+        if (!read_row(limits[k / 2], signs[k] * none, signs[k], rows, (6 + k) * n, n)) return nb::none();
+    for (std::size_t k = 0; k < 2; ++k)
+        if (!read_row(bounds[k], k ? none : -none, 1, rows, (11 + k) * n, n)) return nb::none();
+    const double* at = rows.data();
+    if (!can_be_asked(at, at + 6 * n, n, farthest)) return nb::none();
+    const OneMotion made = move_axes(at, at + 6 * n, at + 11 * n, at + 12 * n, n);
+    return nb::make_tuple(show(made.pieces, n), made.duration, made.keeps_within);
 }
 
 }  // namespace
@@ -71,4 +129,9 @@ void bind_trajectory(nb::module_& m) {
     m.def("make_pieces", &make_arrays, "states"_a, "limits"_a, "shortest"_a, "motions"_a, "duration"_a,
           "mode"_a,
           "Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).");
+    m.def("move_plain", &move_plain, "states"_a, "limits"_a, "bounds"_a, "farthest"_a,
+          "The fastest motion between two states, or None where arguments are not plain rows that can be asked."
+          "\n\nstates: start, its velocity and acceleration, goal, likewise. limits: velocity, acceleration, "
+          "jerk. bounds: lower and upper positions. Each an array (n,), a float, or None. Returns knots, "
+          "coefficients and origins, the duration, and whether positions keep within bounds.");
 }

@@ -947,6 +947,13 @@ def make_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None
     Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
     """
 
+def move_plain(states: tuple, limits: tuple, bounds: tuple, farthest: float) -> object:
+    """
+    The fastest motion between two states, or None where arguments are not plain rows that can be asked.
+
+    states: start, its velocity and acceleration, goal, likewise. limits: velocity, acceleration, jerk. bounds: lower and upper positions. Each an array (n,), a float, or None. Returns knots, coefficients and origins, the duration, and whether positions keep within bounds.
+    """
+
 def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], intervals: int) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     Pieces, from and to (k,) of about so many intervals of a path, two or more in each piece.

@@ -119,8 +119,7 @@ class LaneSolver {
           dof_(all.dof),
           width_(rows * all.dof),
           numbers_(tables * width_),
-          possible_(new bool[width_]),
-          axes_(all.dof) {
+          possible_(new bool[width_]) {
         for (std::size_t k = 0; k < 5; ++k)
             for (std::size_t i = 0; i < width_; ++i)
                 table(limits + k)[i] = all.limits[k * dof_ + i % dof_];
@@ -184,6 +183,7 @@ class LaneSolver {
         if (agreed && all_.mode == Synchronize::none)
             return problem.answer(Verdict::found, greatest_of(problem.shortest(), dof_));
         if (agreed) return answer_duration(problem, all_.duration[row]);
+        axes_.resize(dof_);
         for (std::size_t i = 0; i < dof_; ++i) {
             set_task(axes_[i], task.state(0, i), task.state(1, i), task.limits(i));
             axes_[i].shortest = problem.shortest()[i];
@@ -439,6 +439,66 @@ StatePieces make_pieces(const StateMotion& motion) {
         pieces.write_from_start(half);
         pieces.write_from_end(half);
         pieces.write_rest();
+    }
+    return made;
+}
+
+bool can_be_asked(const double* states, const double* limits, std::size_t dof, double farthest) {
+    for (std::size_t k = 0; k < 6 * dof; ++k)
+        if (!(std::fabs(states[k]) <= farthest)) return false;
+    const Task task{dof, states, limits};
+    for (std::size_t i = 0; i < dof; ++i) {
+        const AxisLimits l = task.limits(i);
+        if (!(l.v_max > 0 && l.v_min < 0 && l.a_max > 0 && l.a_min < 0 && l.jerk > 0)) return false;
+        if (!l.has_jerk() && !(l.a_max < never && -l.a_min < never)) return false;
+        const AxisState goal = task.state(1, i);
+        const double a = l.has_jerk() ? goal.a : 0, before = goal.v - a * std::fabs(a) / (2 * l.jerk);
+        if (std::max(goal.v, before) > l.v_max || std::min(goal.v, before) < l.v_min) return false;
+        if (a > l.a_max || a < l.a_min) return false;
+    }
+    return true;
+}
+
+namespace {
+
+// Whether a cubic piece keeps between two values from one local time to another.
+bool keeps_within(const double* c, double from, double to, double lower, double upper) {
+    const auto fits = [&](double t) {
+        const double q = c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+        return lower <= q && q <= upper;
+    };
+    if (!fits(from) || !fits(to)) return false;
+    // Where the velocity is zero: a t² + 2 b t + c₁.
+    const double a = 3 * c[3], b = c[2], square = b * b - a * c[1];
+    if (square < 0) return true;
+    const double sum = -(b + std::copysign(std::sqrt(square), b));
+    for (const double t : {sum / a, c[1] / sum})
+        if (from < t && t < to && !fits(t)) return false;
+    return true;
+}
+
+}  // namespace
+
+OneMotion move_axes(const double* states, const double* limits, const double* lower, const double* upper,
+                    std::size_t dof) {
+    std::vector<double> shortest(dof), motions(numbers_of_motion() * dof);
+    const double free = std::nan("");
+    std::int32_t verdict = 0;
+    OneMotion made{};
+    solve_states({1, dof, states, limits, &free, 0, Synchronize::time, &verdict, &made.duration,
+                  shortest.data(), motions.data()},
+                 1);
+    made.pieces = make_pieces(
+        {dof, states, limits, shortest.data(), motions.data(), made.duration, Synchronize::time});
+    const std::size_t n = made.pieces.pieces;
+    made.keeps_within = true;
+    for (std::size_t i = 0; i < dof; ++i) {
+        for (std::size_t k = 0; k < n; ++k) {
+            const double* t = made.pieces.knots.data() + i * (n + 1) + k;
+            const double origin = made.pieces.origins[i * n + k];
+            made.keeps_within &= keeps_within(made.pieces.coefficients.data() + (i * n + k) * 4, t[0] - origin,
+                                              t[1] - origin, lower[i], upper[i]);
+        }
     }
     return made;
 }

@@ -48,4 +48,17 @@ struct StatePieces {
 };
 StatePieces make_pieces(const StateMotion& motion);
 
+// Whether the states (2, 3, dof) are within `farthest`, the limits (5, dof) above and below zero, and the goal
+// within limits that a motion can keep before it: what solve_states takes for granted.
+bool can_be_asked(const double* states, const double* limits, std::size_t dof, double farthest);
+
+// One problem in the shortest time, and whether its positions keep between `lower` and `upper` (dof,).
+struct OneMotion {
+    StatePieces pieces;
+    double duration;
+    bool keeps_within;
+};
+OneMotion move_axes(const double* states, const double* limits, const double* lower, const double* upper,
+                    std::size_t dof);
+
 }  // namespace cspace::trajectory

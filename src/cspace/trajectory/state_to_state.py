@@ -13,6 +13,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, guard_memory, leading_axes, whole_number
 from cspace.errors import InputError, InputTypeError, check_known
 from cspace.tables import one_line
+from cspace.tolerances import FARTHEST
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.states import (
     AxisLimits,
@@ -154,6 +155,14 @@ def state_to_state(
     Kröger 2010 states the problem; Berscheid and Kröger 2021 solve it by polynomials of degree six.
     """
     check_known("synchronize", synchronize, SYNCHRONIZE)
+    if synchronize == "time" and duration is cycle is lowest_velocity is lowest_acceleration is None:
+        motion = move_plain_states(
+            (start, start_velocity, start_acceleration, goal, goal_velocity, goal_acceleration),
+            (velocity, acceleration, jerk),
+            None if joint_names is None else tuple(joint_names),
+        )
+        if motion is not None:
+            return motion[0]
     first = read_states(start, start_velocity, start_acceleration, "start")
     dof = first.shape[-1]
     last = read_states(goal, goal_velocity, goal_acceleration, "goal", dof)
@@ -174,6 +183,24 @@ def state_to_state(
     )
     batch.joint_names = None if joint_names is None else labels
     return batch if shape else batch[0]
+
+
+def move_plain_states(
+    states: tuple[Any, ...],
+    limits: tuple[Any, ...],
+    joint_names: tuple[str, ...] | None,
+    bounds: tuple[Any, ...] = (None, None),
+) -> tuple[PolynomialTrajectory, bool] | None:
+    """The fastest motion of plain arrays (n,), in one compiled call; None for all that is to be looked at.
+
+    states: start and goal, each with its velocity and acceleration. limits: velocity, acceleration, jerk.
+    bounds: lower and upper positions. Returns the motion and whether it keeps within bounds.
+    """
+    made = _core.move_plain(states, limits, bounds, FARTHEST)
+    if made is None or (joint_names is not None and len(joint_names) != len(made[0][0])):
+        return None
+    pieces, duration, keeps_within = made
+    return PolynomialTrajectory._trusted(*pieces, duration, joint_names, ""), keeps_within
 
 
 def read_durations(duration: ArrayLike | None, cycle: float | None, synchronize: str) -> Array:
@@ -218,7 +245,7 @@ def solve_batch(
         batch = TrajectoryBatch(
             states.reshape(rows, 2, 3, dof), limits, durations.reshape(rows), synchronize
         )
-    batch._solve(cycle or 0.0, threads)
+    batch._solve(cycle or 0.0, threads if rows > 1 else 1)
     check_parallel(batch, bool(shape))
     return batch
 
