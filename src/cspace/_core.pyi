@@ -964,6 +964,11 @@ def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typi
     Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.
     """
 
+def evaluate_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], piece: numpy.typing.NDArray[numpy.int32], local: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Configurations (m, dof) and their first two derivatives at places (m,) within pieces (m,).
+    """
+
 def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], jerk: numpy.typing.NDArray[numpy.float64], grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], start: numpy.typing.ArrayLike, end: numpy.typing.ArrayLike, duration: float, tolerance: float) -> tuple[bool, numpy.typing.NDArray[numpy.float64], float, float, float, int]:
     """
     Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, seconds, steps.

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
+from cspace._core import evaluate_path
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
@@ -146,12 +147,15 @@ class Path:
         slopes = np.abs(self._derivatives[1]).max(axis=1)
         return np.asarray(slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True))
 
+    @cached_property
     def turning_places(self) -> Array:
         """Breaks (m,) inside at which the slope of all joints vanishes and the second derivative jumps."""
-        slopes = np.linalg.norm(self._derivatives[1], axis=2)
-        small = SAME_WAYPOINT * np.maximum(slopes[:-1].max(axis=1), slopes[1:].max(axis=1))
-        vanish = (slopes[:-1, -1] <= small) & (slopes[1:, 0] <= small)
-        return np.asarray(self.breaks[1:-1][vanish & self._jumps(2)])
+        slopes = self._derivatives[1]
+        squares = np.einsum("kij,kij->ki", slopes, slopes)
+        small = SAME_WAYPOINT**2 * np.maximum(squares[:-1].max(axis=1), squares[1:].max(axis=1))
+        vanish = (squares[:-1, -1] <= small) & (squares[1:, 0] <= small)
+        inside = self.breaks[1:-1]
+        return freeze_array(inside[vanish & self._jumps(2)] if vanish.any() else inside[:0].copy())
 
     @cached_property
     def continuity(self) -> int:
@@ -208,6 +212,11 @@ class Path:
                 weights[:, k] = rest * weights[:, k] + local * weights[:, k - 1]
             weights[:, 0] *= rest
         return np.asarray(np.einsum("mi,mij->mj", weights, points))
+
+    def evaluate_motion(self, piece: Any, local: Array) -> tuple[Array, Array, Array]:
+        """Configurations (m, dof) and their first two derivatives, as of evaluate_pieces."""
+        pieces = np.ascontiguousarray(piece, dtype=np.int32)
+        return evaluate_path(self.control_points, self.lengths, self.stop_flags, pieces, local)
 
     @cached_property
     def excursion(self) -> Array:

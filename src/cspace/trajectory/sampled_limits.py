@@ -107,22 +107,36 @@ class SampledLimits:
     expected: tuple[Array, Array] | None = None
     margin: Array | None = None
     slower: Array | None = None
+    _last: tuple[tuple[Any, ...], tuple[Array | None, ...]] | None = None
 
     def __call__(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
         """The samples at the begin, the middle and the end of each interval, as the core wants them."""
+        along, across, offset, inverse = self._sample(piece, begin, end)
+        limit = None if self.torque is None else self.torque.limit
+        if inverse is not None and self.slower is not None:
+            inverse = inverse * self.slower[:, None]
+        return along, across, offset, self.margin, limit, inverse
+
+    def _sample(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
+        """What is along, across and offset of torques, and the inverse of the squared speed.
+
+        They are kept for the grid of the last call. Of damping they depend on the motion that is expected.
+        """
+        grid = (piece, begin, end)
+        if self._last is not None and all(map(np.array_equal, grid, self._last[0])):
+            return self._last[1]
         places = np.stack([begin, 0.5 * (begin + end), end], axis=1).ravel()
         pieces = np.repeat(piece, 3)
-        q, slope, bend = (self.path.evaluate_pieces(pieces, places, order) for order in range(3))
-        along = across = offset = limit = None
+        q, slope, bend = self.path.evaluate_motion(pieces, places)
+        along = across = offset = inverse = None
         if self.torque is not None:
             along, across, offset = self.torque.terms(q, slope, bend, self._expected_at(pieces, places))
-            limit = self.torque.limit
-        inverse = None
         if self.frame is not None:
             inverse = _inverse_squares(self.frame.shares(q, slope).reshape(-1, 3))
-            if self.slower is not None:
-                inverse = inverse * self.slower[:, None]
-        return along, across, offset, self.margin, limit, inverse
+        made = along, across, offset, inverse
+        if self.torque is None or not self.torque.resists:
+            self._last = grid, made
+        return made
 
     def _expected_at(self, pieces: Array, places: Array) -> Array:
         if self.expected is None:

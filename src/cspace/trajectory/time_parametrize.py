@@ -144,29 +144,31 @@ class _Timer:
 
     def find_locked_joint(self) -> TimedPath | None:
         """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
-        moves = self.path.moving
         limits = {"velocity": self.velocity, "acceleration": self.acceleration}
         if self.jerk is not None:
             limits["jerk"] = self.jerk
+        moves = self.path.moving
         for name, limit in limits.items():
+            if limit.all():
+                continue
             locked = np.argwhere(moves & (limit == 0.0))
             if locked.size:
                 piece, j = map(int, locked[0])
                 s = float(self.path.breaks[piece])
                 return self._refuse(f"{self.labels[j]} moves from s = {s:.6g} on; its {name} limit is 0", s)
-        standing = np.flatnonzero(~moves.any(axis=1))
-        if standing.size:
+        if not moves.all() and (standing := np.flatnonzero(~moves.any(axis=1))).size:
             s = float(self.path.breaks[standing[0]])
             return self._refuse(f"nothing moves from s = {s:.6g} on; leave such pieces out of the path", s)
-        turning = self.path.turning_places()
-        if turning.size:
-            s = float(turning[0])
+        if self.path.turning_places.size:
+            s = float(self.path.turning_places[0])
             return self._refuse(
                 f"the slope vanishes at s = {s:.6g}, where the second derivative jumps; make the path in"
                 " parts that end there",
                 s,
             )
         limited = np.isfinite(self.velocity) | np.isfinite(self.acceleration)
+        if limited.all() and moves.all():
+            return None
         free = ~(moves & limited).any(axis=1)
         if self.sampled is None and free.any():
             s = float(self.path.breaks[np.flatnonzero(free)[0]])
@@ -240,9 +242,9 @@ class _Timer:
             reason = f"{outcome}_speed is {speed:.6g}; from {least:.6g} to {most:.6g} are possible"
             s = 0.0 if outcome == "start" else self.path.length
             return self._refuse(reason, s, (least, most))
-        standing = np.flatnonzero((squared_speed[:-1] == 0.0) & (squared_speed[1:] == 0.0))
-        if standing.size:
-            s = self._parameter(used, int(standing[0]))
+        rests = squared_speed == 0.0
+        if (rests[:-1] & rests[1:]).any():
+            s = self._parameter(used, int(np.flatnonzero(rests[:-1] & rests[1:])[0]))
             return self._refuse(f"the motion stands at s = {s:.6g}; pass a finer grid=", s)
         return TimedPath(
             self.path,
@@ -339,8 +341,8 @@ def _read_limit(
             raise InputError(f"limits is of {len(own)} joints, the path of {n}")
     else:
         raise InputTypeError(f"limits is a {type(limits).__name__}; give Limits or a robot")
-    absent = [label for label, limit in zip(labels, own, strict=True) if np.isinf(limit)]
-    if required and absent:
+    if required and np.isinf(own).any():
+        absent = [label for label, limit in zip(labels, own, strict=True) if np.isinf(limit)]
         which = "" if len(absent) == n else f" of {join_words(absent)}"
         raise InputError(f"there are no {name} limits{which}; pass {argument or name}=, with inf for none")
     return own

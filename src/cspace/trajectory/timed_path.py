@@ -268,7 +268,7 @@ def move_along(path: Path, at: Places, order: int) -> Array:
 
 def move_along_path(path: Path, at: Places) -> tuple[Array, Array, Array]:
     """Positions, velocities and accelerations (m, dof) of a motion along a path."""
-    q, slope, bend = (path.evaluate_pieces(at.piece, at.local, order) for order in range(3))
+    q, slope, bend = path.evaluate_motion(at.piece, at.local)
     v, u = at.speed[:, None], at.acceleration[:, None]
     return q, slope * v, bend * (v * v) + slope * u
 
