@@ -307,3 +307,20 @@ def test_bad_input_is_named(options, message):
         options["robot"] = cs.load_robot(options["robot"])
     with pytest.raises(cs.CspaceError, match=message):
         cs.time_parametrize(**options)
+
+
+def test_dry_friction_keeps_torque_limits_where_joints_reverse():
+    robot = cs.load_robot("puma560")
+    limit, (low, high) = 0.8 * robot.limits.effort, robot.limits.range
+    rng, reversals = np.random.default_rng(5), 0
+    for _ in range(80):
+        q = 0.5 * (low + high) + 0.3 * (high - low) * rng.uniform(-1, 1, (rng.integers(3, 7), 6))
+        timed = cs.time_parametrize(cs.spline(q), robot, velocity=3.0, acceleration=20.0, torque=limit)
+        if not timed:
+            continue
+        shares = np.linspace(0.0, 1.0, 41)
+        t = (timed.knots[:-1] + shares[:, None] * np.diff(timed.knots)).ravel()
+        q, qd, qdd = (timed(t, order) for order in range(3))
+        reversals += int((np.diff(np.sign(timed(timed.knots, 1)), axis=0) != 0.0).sum())
+        assert (np.abs(robot.inverse_dynamics(q, qd, qdd)) <= limit * (1.0 + 1e-4)).all()
+    assert reversals > 500

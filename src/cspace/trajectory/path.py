@@ -218,6 +218,10 @@ class Path:
         pieces = np.ascontiguousarray(piece, dtype=np.int32)
         return evaluate_path(self.control_points, self.lengths, self.stop_flags, pieces, local)
 
+    def slope_controls(self, piece: Any, begin: Array, end: Array) -> Array:
+        """Bernstein coefficients (k, degree, dof) of the slope on parts [begin, end] of pieces (k,)."""
+        return restrict_pieces(self._derivatives[1][piece], begin, end)
+
     @cached_property
     def excursion(self) -> Array:
         """How far each joint leaves the range between the ends of a piece, at most (dof,) [rad or m]."""
@@ -271,6 +275,20 @@ def raise_degree(control_points: Array, degree: int) -> Array:
         padded = np.pad(control_points, ((0, 0), (1, 1), (0, 0)))
         control_points = share * padded[:, :-1] + (1.0 - share) * padded[:, 1:]
     return control_points
+
+
+def restrict_pieces(control_points: Array, begin: Array, end: Array) -> Array:
+    """Control points (k, degree + 1, dof) of parts [begin, end] of pieces, by two subdivisions."""
+    made = np.array(control_points)
+    degree = made.shape[1] - 1
+    t = end[:, None, None]
+    for level in range(1, degree + 1):
+        made[:, level:] = made[:, level - 1 : -1] + t * (made[:, level:] - made[:, level - 1 : -1])
+    t = (begin / end)[:, None, None]
+    for level in range(1, degree + 1):
+        kept = degree + 1 - level
+        made[:, :kept] = made[:, :kept] + t * (made[:, 1 : kept + 1] - made[:, :kept])
+    return made
 
 
 def hermite_quintics(h: Array, q: Array, slope: Array, bend: Array) -> Array:

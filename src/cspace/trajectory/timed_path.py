@@ -13,7 +13,7 @@ from cspace.arrays import Array, positive_number
 from cspace.model.values import freeze_array
 from cspace.tables import count_things, one_line, shown
 from cspace.trajectory.limit_check import BindingLimit
-from cspace.trajectory.path import HIGHEST_ORDER, Path, _powers_to_bernstein
+from cspace.trajectory.path import HIGHEST_ORDER, Path, _powers_to_bernstein, restrict_pieces
 from cspace.trajectory.piece_roots import find_piece_roots
 from cspace.trajectory.trajectory import Trajectory
 
@@ -271,17 +271,3 @@ def move_along_path(path: Path, at: Places) -> tuple[Array, Array, Array]:
     q, slope, bend = path.evaluate_motion(at.piece, at.local)
     v, u = at.speed[:, None], at.acceleration[:, None]
     return q, slope * v, bend * (v * v) + slope * u
-
-
-def restrict_pieces(control_points: Array, begin: Array, end: Array) -> Array:
-    """Control points (k, degree + 1, dof) of parts [begin, end] of pieces, by two subdivisions."""
-    made = np.array(control_points)
-    degree = made.shape[1] - 1
-    t = end[:, None, None]
-    for level in range(1, degree + 1):
-        made[:, level:] = made[:, level - 1 : -1] + t * (made[:, level:] - made[:, level - 1 : -1])
-    t = (begin / end)[:, None, None]
-    for level in range(1, degree + 1):
-        kept = degree + 1 - level
-        made[:, :kept] = made[:, :kept] + t * (made[:, 1 : kept + 1] - made[:, :kept])
-    return made
