@@ -239,6 +239,27 @@ class Path:
             most = np.maximum(most, np.maximum(q - high, low - q).max(axis=0))
         return freeze_array(most)
 
+    def first_beyond(self, lower: Array, upper: Array) -> tuple[int, float, float] | None:
+        """The joint, the place s and the value where the path is first beyond bounds (dof,), if it is.
+
+        Of the places where a joint is farthest out on a piece, so that none is missed.
+        """
+        control = self.control_points
+        outside = (control.min(axis=1) < lower) | (control.max(axis=1) > upper)
+        if not outside.any():
+            return None
+        piece, joint = np.nonzero(outside)
+        c = self.coefficients[piece, :, joint]
+        h = self.lengths[piece]
+        roots = find_piece_roots(c[:, 1:] * np.arange(1.0, self.degree + 1.0), np.zeros_like(h), h)
+        places = np.concatenate([np.zeros((len(h), 1)), h[:, None], roots], axis=1)
+        local = np.where(np.isnan(places), 0.0, places)
+        values = np.sum(c[:, None, :] * local[..., None] ** np.arange(self.degree + 1.0), axis=2)
+        beyond = (values < lower[joint, None]) | (values > upper[joint, None])
+        s = np.where(beyond, self.breaks[piece, None] + local, np.inf)
+        at = np.unravel_index(int(np.argmin(s)), s.shape)
+        return (int(joint[at[0]]), float(s[at]), float(values[at])) if beyond.any() else None
+
     def reversed(self) -> Path:
         """The same path from its end to its start."""
         breaks = self.length - self.breaks[::-1]

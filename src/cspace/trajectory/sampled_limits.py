@@ -14,7 +14,7 @@ from cspace.kinematics import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED
 from cspace.trajectory.path import Path
-from cspace.trajectory.timed_path import Grid, Places, TimedPath, move_along, move_along_path
+from cspace.trajectory.timed_path import FEED, Grid, Places, TimedPath, move_along, move_along_path
 
 CHECKED_PLACES: Final = 10
 """Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss."""
@@ -92,12 +92,16 @@ class TorqueLimits:
 
 @dataclass
 class FrameLimits:
-    """Largest speed [m/s] and turn rate [rad/s] of a frame of a robot; inf where there is none."""
+    """Largest speed [m/s] and turn rate [rad/s] of a frame of a robot; inf where there is none.
+
+    is_feed: whether the speed is one that the frame is to have.
+    """
 
     robot: KinematicModel
     frame: str | None
     speed: float
     turn_rate: float
+    is_feed: bool = False
 
     def rates(self, q: Array, qd: Array) -> tuple[Array, Array]:
         """The speed and the turn rate (m,) at configurations and velocities (m, dof)."""
@@ -230,7 +234,7 @@ class LimitShares:
         if self.frame is not None:
             speed, turn = self.frame.rates(q, qd)
             frame = self.frame.frame or "tip"
-            rows.append((frame, "speed", speed / self.frame.speed))
+            rows.append((frame, FEED if self.frame.is_feed else "speed", speed / self.frame.speed))
             rows.append((frame, "turn_rate", turn / self.frame.turn_rate))
         return rows
 

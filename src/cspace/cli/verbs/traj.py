@@ -167,7 +167,7 @@ def time_waypoints(args: argparse.Namespace, robot: Robot, limits: dict[str, Any
 
     waypoints = read_waypoint_file(args.waypoints, robot.dof, degrees=args.deg)
     path = spline(waypoints) if args.blend is None else blend(waypoints, args.blend)
-    motion = time_parametrize(path, robot, **limits)
+    motion = time_parametrize(path, robot, positions=False, **limits)
     if motion and not (check := motion.check(Limits(robot.limits.lower, robot.limits.upper))):
         advice = "; --blend keeps between the waypoints" if args.blend is None else ""
         motion.reason = check.reason + advice
