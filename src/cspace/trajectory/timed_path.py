@@ -30,7 +30,7 @@ FEED: Final = "feed"
 class SlowStretch(NamedTuple):
     """A stretch of time on which a frame is slower than its feed.
 
-    begin, end [s]. slowest [m/s]: its least speed. joint, limit: what slows it down, of which most is used.
+    begin, end [s]. slowest [m/s]: its least speed, at three places of each interval. joint, limit: what slows it down, of which most is used.
     """
 
     begin: float
