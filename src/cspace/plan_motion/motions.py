@@ -76,7 +76,7 @@ def move(
     Returns a Motion, of zero length where the start is the goal; falsy, with reason, where no way was found
     or the limits cannot be kept. Raises as plan and time_parametrize do.
     """
-    allowed = bounded_number(deviation, "deviation", 0.0, "it must be 0 or more")
+    bounded_number(deviation, "deviation", 0.0, "it must be 0 or more")
     found = plan(robot, start, goal, scene, planner=planner, margin=margin, rng=rng, **options)
     limits: dict[str, Any] = {
         "velocity": velocity,
@@ -86,6 +86,23 @@ def move(
         "speed": speed,
         "turn_rate": turn_rate,
     }
+    return time_plan(robot, found, scene, deviation=deviation, margin=margin, **limits)
+
+
+def time_plan(
+    robot: Robot,
+    found: Plan,
+    scene: Scene | None = None,
+    *,
+    deviation: float = 0.2,
+    margin: float = 0.0,
+    **limits: Any,
+) -> Motion:
+    """The motion along a plan: what move does after planning.
+
+    found: of this robot, scene and margin. deviation: as of move. limits: as of time_parametrize.
+    """
+    allowed = bounded_number(deviation, "deviation", 0.0, "it must be 0 or more")
     if not found:
         return _refuse(robot, found, found.reason)
     if len(found.path) < 2 or found.cost == 0.0:
