@@ -1,8 +1,10 @@
 // Motions from state to state.
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/tuple.h>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -54,14 +56,13 @@ PieceArrays show(const StatePieces& made, std::size_t dof) {
             Doubles({n, pieces}, made.origins.data())};
 }
 
-PieceArrays make_arrays(const OneState& states, const Matrix& limits,
-                                                  const Row& shortest, const Matrix& motions, double duration,
-                                                  int mode) {
+PieceArrays make_arrays(const OneState& states, const Matrix& limits, const Row& shortest,
+                        const Matrix& motions, double duration, int mode) {
     const std::size_t dof = states.shape(2);
     require_sizes(has_shape(limits, 5u, dof) && has_shape(shortest, dof) &&
                   has_shape(motions, numbers_of_motion(), dof) && mode >= 0 && mode < modes);
-    const StatePieces made = make_pieces({dof, states.data(), limits.data(), shortest.data(), motions.data(),
-                                          duration, Synchronize(mode)});
+    const StatePieces made = make_pieces(
+        {dof, states.data(), limits.data(), shortest.data(), motions.data(), duration, Synchronize(mode)});
     return show(made, dof);
 }
 
@@ -88,50 +89,54 @@ bool read_row(nb::handle given, double absent, double scale, std::vector<double>
     return true;
 }
 
-// states: start, goal and their velocities and accelerations; limits: velocity, acceleration, jerk; bounds:
+using PlainMotion = std::tuple<PieceArrays, double, bool>;
+
+// states: start, its velocity and acceleration, goal, likewise; limits: velocity, acceleration, jerk; bounds:
 // lower and upper positions.
-nb::object move_plain(const nb::tuple& states, const nb::tuple& limits, const nb::tuple& bounds,
-                      double farthest) {
+std::optional<PlainMotion> move_plain(const nb::object& states, const nb::object& limits,
+                                      const nb::object& bounds, double farthest) {
     constexpr double none = std::numeric_limits<double>::infinity();
+    const auto at = [](const nb::object& given, std::size_t k) { return nb::object(given[k]); };
     ConstDoubles start;
-    require_sizes(states.size() == 6 && limits.size() == 3 && bounds.size() == 2);
-    if (!start.read(states[0].ptr()) || start.ndim() != 1 || start.size == 0) return nb::none();
+    require_sizes(nb::len(states) == 6 && nb::len(limits) == 3 && nb::len(bounds) == 2);
+    if (!start.read(at(states, 0).ptr()) || start.ndim() != 1 || start.size == 0) return {};
     const std::size_t n = std::size_t(start.size);
     std::vector<double> rows(13 * n);
     for (std::size_t k = 0; k < 6; ++k) {
-        const bool is_position = k % 3 == 0, is_row = !is_number(states[k]) && !states[k].is_none();
-        if ((is_position && !is_row) ||
-            !read_row(states[k], 0, 1, rows, k * n, n))
-            return nb::none();
+        const nb::object given = at(states, k);
+        const bool is_row = !is_number(given) && !given.is_none();
+        if ((k % 3 == 0 && !is_row) || !read_row(given, 0, 1, rows, k * n, n)) return {};
     }
     const double signs[5] = {1, -1, 1, -1, 1};
     for (std::size_t k = 0; k < 5; ++k)
-        if (!read_row(limits[k / 2], signs[k] * none, signs[k], rows, (6 + k) * n, n)) return nb::none();
+        if (!read_row(at(limits, k / 2), signs[k] * none, signs[k], rows, (6 + k) * n, n)) return {};
     for (std::size_t k = 0; k < 2; ++k)
-        if (!read_row(bounds[k], k ? none : -none, 1, rows, (11 + k) * n, n)) return nb::none();
-    const double* at = rows.data();
-    if (!can_be_asked(at, at + 6 * n, n, farthest)) return nb::none();
-    const OneMotion made = move_axes(at, at + 6 * n, at + 11 * n, at + 12 * n, n);
-    return nb::make_tuple(show(made.pieces, n), made.duration, made.keeps_within);
+        if (!read_row(at(bounds, k), k ? none : -none, 1, rows, (11 + k) * n, n)) return {};
+    const double* first = rows.data();
+    if (!can_be_asked(first, first + 6 * n, n, farthest)) return {};
+    const OneMotion made = move_axes(first, first + 6 * n, first + 11 * n, first + 12 * n, n);
+    return PlainMotion{show(made.pieces, n), made.duration, made.keeps_within};
 }
 
 }  // namespace
 
 void bind_trajectory(nb::module_& m) {
     m.attr("NUMBERS_OF_MOTION") = int(numbers_of_motion());
-    m.def("solve_states", &solve, "states"_a, "limits"_a, "durations"_a, "cycle"_a, "mode"_a, "threads"_a,
-          "verdict"_a, "duration"_a, "shortest"_a, "motions"_a,
-          "Motions of axes from state to state.\n\nstates (rows, 2, 3, dof): q, qd, qdd at the start and the "
-          "goal. limits (5, dof): highest and lowest velocity and acceleration, jerk. durations (rows,): NaN "
-          "for the shortest. mode: 0 in time, 1 in phase, 2 each axis alone. Writes verdict (rows,): 0 found, "
-          "1 another duration, 2 not parallel; duration (rows,), shortest (rows, dof), motions "
-          "(NUMBERS_OF_MOTION, rows, dof).");
+    m.def(
+        "solve_states", &solve, "states"_a, "limits"_a, "durations"_a, "cycle"_a, "mode"_a, "threads"_a,
+        "verdict"_a, "duration"_a, "shortest"_a, "motions"_a,
+        "Motions of axes from state to state.\n\nstates (rows, 2, 3, dof): q, qd, qdd at the start and the "
+        "goal. limits (5, dof): highest and lowest velocity and acceleration, jerk. durations (rows,): NaN "
+        "for the shortest. mode: 0 in time, 1 in phase, 2 each axis alone. Writes verdict (rows,): 0 found, "
+        "1 another duration, 2 not parallel; duration (rows,), shortest (rows, dof), motions "
+        "(NUMBERS_OF_MOTION, rows, dof).");
     m.def("make_pieces", &make_arrays, "states"_a, "limits"_a, "shortest"_a, "motions"_a, "duration"_a,
           "mode"_a,
           "Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).");
-    m.def("move_plain", &move_plain, "states"_a, "limits"_a, "bounds"_a, "farthest"_a,
-          "The fastest motion between two states, or None where arguments are not plain rows that can be asked."
-          "\n\nstates: start, its velocity and acceleration, goal, likewise. limits: velocity, acceleration, "
-          "jerk. bounds: lower and upper positions. Each an array (n,), a float, or None. Returns knots, "
-          "coefficients and origins, the duration, and whether positions keep within bounds.");
+    m.def(
+        "move_plain", &move_plain, "states"_a, "limits"_a, "bounds"_a, "farthest"_a,
+        "The fastest motion between two states, or None where arguments are not plain rows that can be asked."
+        "\n\nstates: start, its velocity and acceleration, goal, likewise. limits: velocity, acceleration, "
+        "jerk. bounds: lower and upper positions. Each an array (n,), a float, or None. Returns knots, "
+        "coefficients and origins, the duration, and whether positions keep within bounds.");
 }

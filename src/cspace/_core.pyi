@@ -947,7 +947,7 @@ def make_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None
     Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
     """
 
-def move_plain(states: tuple, limits: tuple, bounds: tuple, farthest: float) -> object:
+def move_plain(states: object, limits: object, bounds: object, farthest: float) -> tuple[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], float, bool] | None:
     """
     The fastest motion between two states, or None where arguments are not plain rows that can be asked.
 

@@ -121,17 +121,24 @@ class LaneSolver {
           numbers_(tables * width_),
           possible_(new bool[width_]) {
         for (std::size_t k = 0; k < 5; ++k)
-            for (std::size_t i = 0; i < width_; ++i)
-                table(limits + k)[i] = all.limits[k * dof_ + i % dof_];
+            for (std::size_t i = 0; i < width_; ++i) table(limits + k)[i] = all.limits[k * dof_ + i % dof_];
     }
 
     // Rows begin … end, no more than there is room for.
     void solve(std::size_t begin, std::size_t end) {
         const std::size_t count = (end - begin) * dof_, first = begin * dof_;
         for (std::size_t row = begin; row < end; ++row) set_tasks(row, (row - begin) * dof_);
-        const AxisRows rows{count,        table(v0),         table(a0),         table(vf),        table(af),
-                            table(P),     table(limits),     table(limits + 1), table(limits + 2),
-                            table(limits + 3), table(limits + 4)};
+        const AxisRows rows{count,
+                            table(v0),
+                            table(a0),
+                            table(vf),
+                            table(af),
+                            table(P),
+                            table(limits),
+                            table(limits + 1),
+                            table(limits + 2),
+                            table(limits + 3),
+                            table(limits + 4)};
         kernels::find_shortest_times(rows, table(time));
         for (std::size_t i = 0; i < count; ++i) all_.shortest[first + i] = table(brake)[i] + table(time)[i];
         if (all_.mode == Synchronize::time)
@@ -488,16 +495,16 @@ OneMotion move_axes(const double* states, const double* limits, const double* lo
     solve_states({1, dof, states, limits, &free, 0, Synchronize::time, &verdict, &made.duration,
                   shortest.data(), motions.data()},
                  1);
-    made.pieces = make_pieces(
-        {dof, states, limits, shortest.data(), motions.data(), made.duration, Synchronize::time});
+    made.pieces =
+        make_pieces({dof, states, limits, shortest.data(), motions.data(), made.duration, Synchronize::time});
     const std::size_t n = made.pieces.pieces;
     made.keeps_within = true;
     for (std::size_t i = 0; i < dof; ++i) {
         for (std::size_t k = 0; k < n; ++k) {
             const double* t = made.pieces.knots.data() + i * (n + 1) + k;
             const double origin = made.pieces.origins[i * n + k];
-            made.keeps_within &= keeps_within(made.pieces.coefficients.data() + (i * n + k) * 4, t[0] - origin,
-                                              t[1] - origin, lower[i], upper[i]);
+            made.keeps_within &= keeps_within(made.pieces.coefficients.data() + (i * n + k) * 4,
+                                              t[0] - origin, t[1] - origin, lower[i], upper[i]);
         }
     }
     return made;

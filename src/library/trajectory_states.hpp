@@ -40,16 +40,16 @@ struct StateMotion {
     Synchronize mode;
 };
 // Polynomials. Pieces of the first half are given from their beginnings, those of the second half from their
-// ends: both ends of the motion are exact. Each axis has `pieces` pieces; those with fewer rest at their goal.
-// knots (dof, pieces + 1), coefficients (dof, pieces, 4), origins (dof, pieces).
+// ends: both ends of the motion are exact. Each axis has `pieces` pieces; those with fewer rest at their
+// goal. knots (dof, pieces + 1), coefficients (dof, pieces, 4), origins (dof, pieces).
 struct StatePieces {
     std::size_t pieces;
     std::vector<double> knots, coefficients, origins;
 };
 StatePieces make_pieces(const StateMotion& motion);
 
-// Whether the states (2, 3, dof) are within `farthest`, the limits (5, dof) above and below zero, and the goal
-// within limits that a motion can keep before it: what solve_states takes for granted.
+// Whether the states (2, 3, dof) are within `farthest`, the limits (5, dof) above and below zero, and the
+// goal within limits that a motion can keep before it: what solve_states takes for granted.
 bool can_be_asked(const double* states, const double* limits, std::size_t dof, double farthest);
 
 // One problem in the shortest time, and whether its positions keep between `lower` and `upper` (dof,).

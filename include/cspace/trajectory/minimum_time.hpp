@@ -302,7 +302,8 @@ inline bool is_still(const AxisTask& x) {
 inline void append_motion(const AxisTask& x, double T, const Combination& combination, Phases& out) {
     using namespace crossing;
     if (is_still(x)) return out.append({T, 0, 0});
-    const SevenPhases up = restore_phases(x.up, combination.up), down = restore_phases(x.down, combination.down);
+    const SevenPhases up = restore_phases(x.up, combination.up),
+                      down = restore_phases(x.down, combination.down);
     const double jerk = x.up.limits.jerk, theta = combination.theta, other = 1 - theta;
     Walk a{up, x.up.a0, jerk, 1}, b{down, x.down.a0, jerk, -1};
     for (double t = 0; t < T;) {

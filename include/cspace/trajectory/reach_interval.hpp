@@ -120,23 +120,20 @@ CSPACE_INLINE mask_of<V> hold_peak(const VelocityChangeOf<V>& q, V T, mask_of<V>
     const V l = c / (p + root(s2)), hold = T - (2 * (p - l) + af - a0) / J;
     const auto fits = asked && s2 >= 0 && l >= q.limits.a_min && hold >= -time_rounding * T;
     const V bend = p * (p - 4 * l) / (4 * (p - l));
-    found.replace(fits,
-                  {p, l, not_negative(hold), fill<V>(0.0), bend, number_of<V>(Regime::peak_held)});
+    found.replace(fits, {p, l, not_negative(hold), fill<V>(0.0), bend, number_of<V>(Regime::peak_held)});
     return fits;
 }
 
 // With l = a_min, likewise.
 template <class V>
-CSPACE_INLINE mask_of<V> hold_trough(const VelocityChangeOf<V>& q, V T, mask_of<V> asked,
-                                     Peaks<V>& found) {
+CSPACE_INLINE mask_of<V> hold_trough(const VelocityChangeOf<V>& q, V T, mask_of<V> asked, Peaks<V>& found) {
     const V J = q.limits.jerk, a0 = q.a0, af = q.af, l = q.limits.a_min, dv = q.vf - q.v0;
     const V c = J * l * T - l * (af - a0 - 2 * l) + (af * af - a0 * a0 - 2 * l * l) / 2 - J * dv;
     const V s2 = l * l - c;
     const V p = -c / (root(s2) - l), hold = T - (2 * (p - l) + af - a0) / J;
     const auto fits = asked && s2 >= 0 && p <= q.limits.a_max && hold >= -time_rounding * T;
     const V bend = -l * (4 * p - l) / (4 * (p - l));
-    found.replace(fits,
-                  {p, l, fill<V>(0.0), not_negative(hold), bend, number_of<V>(Regime::trough_held)});
+    found.replace(fits, {p, l, fill<V>(0.0), not_negative(hold), bend, number_of<V>(Regime::trough_held)});
     return fits;
 }
 
@@ -350,8 +347,9 @@ inline DomainOf<V> find_domain(const VelocityChangeOf<V>& q) {
     const SevenPhasesOf<V> f = change_upwards(u);
     const V never = fill<V>(infinity), displaced = displace_axis(u, f);
     const V room = (u.a0 * u.a0 + u.af * u.af) / 2 - J * (u.vf - u.v0);
-    DomainOf<V> d{duration_of(f), never, never, select(upwards, displaced, -displaced), zero,
-                  u.a0 > 0 && u.af > 0 && room > 0};
+    DomainOf<V> d{duration_of(f), never,
+                  never,          select(upwards, displaced, -displaced),
+                  zero,           u.a0 > 0 && u.af > 0 && room > 0};
     if (any(d.has_gap)) {
         const SevenPhasesOf<V> g = change_downwards(u);
         const V begin = max((u.a0 + u.af - 2 * root(room)) / J, d.first), after = displace_axis(u, g);

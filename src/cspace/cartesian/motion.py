@@ -38,7 +38,7 @@ RANKING_GRID: Final = 100
 
 SHORTENED: Final = (0.0, 1e-4, 1e-2, 0.1, 0.3, 0.6)
 """Shares by which the part of a path that is followed is shortened until a motion ends there: beside a
-singular configuration joints move without bound on the last of it, and where a search ended a chain may not."""
+singular configuration joints move without bound on the last of it, and a chain may end before a search."""
 
 HALVINGS: Final = 5
 """Of the last of these shares."""
@@ -102,14 +102,15 @@ def move_cartesian(
     Every branch of solutions is followed along the path, each that arrives is timed, and the fastest is
     taken. A redundant arm is planned along the whole path at once (follow_redundant).
 
-    path: such as of line_path. start (dof,) [rad or m]: the configuration at its begin, whose branch alone is
-    followed. speed [m/s], turn_rate [rad/s]: of the tip, at most; feed [m/s]: held where the limits allow it. velocity, acceleration, jerk, torque, grid:
-    as of time_parametrize. free_axis: an axis of the tip about which it may turn freely ("z", or a direction
-    (3,) in its frame). scene: obstacles; branches that touch them or the arm itself are left out, proved with
-    `margin` [m] to spare. limits: True for those of the robot, False for none, or Limits. tolerance [m and
-    rad]: the largest distance of the tip from the path, checked at the middle of each piece of the joint
-    path. as_far_as_possible: where no branch arrives, the motion along the part of the path that the farthest
-    one follows; stopped_by says what ends it, and s_end where.
+    path: such as of line_path. start (dof,) [rad or m]: the configuration at its begin, whose branch alone
+    is followed. speed [m/s], turn_rate [rad/s]: of the tip, at most; feed [m/s]: held where the limits
+    allow it. velocity, acceleration, jerk, torque, grid: as of time_parametrize. free_axis: an axis of the
+    tip about which it may turn freely ("z", or a direction (3,) in its frame). scene: obstacles; branches
+    that touch them or the arm itself are left out, proved with `margin` [m] to spare. limits: True for
+    those of the robot, False for none, or Limits. tolerance [m and rad]: the largest distance of the tip
+    from the path, checked at the middle of each piece of the joint path. as_far_as_possible: where no
+    branch arrives, the motion along the part of the path that the farthest one follows; stopped_by says
+    what ends it, and s_end where.
 
     Returns a CartesianMotion; falsy, with reason and place s, where no branch arrives (limit, singularity,
     jump, unreachable), each touches something, or the limits cannot be kept. Near singular configurations the
@@ -314,7 +315,9 @@ def _take_fastest(
     space = None if scene is None else space_of_curves(robot, scene, margin)
     if len(arrived) > 1:
         for k in arrived:
-            timed = time_parametrize(_joints(branches[k]), robot, grid=RANKING_GRID, positions=False, **options)
+            timed = time_parametrize(
+                _joints(branches[k]), robot, grid=RANKING_GRID, positions=False, **options
+            )
             durations[k] = timed.duration if timed else np.inf
         arrived.sort(key=lambda k: durations[k])
     for k in arrived:

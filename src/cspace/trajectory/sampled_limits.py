@@ -71,7 +71,8 @@ class TorqueLimits:
     ) -> tuple[Array, ...]:
         """τ = along s̈ + across ṡ² + offset: the three terms, each (m, dof).
 
-        Where a joint reverses (m, dof) its dry friction, which may act both ways, is left out. Damping is proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
+        Where a joint reverses (m, dof) its dry friction, which may act both ways, is left out. Damping is
+        proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
         """
         rest = np.zeros_like(q)
         rates = np.stack([rest, rest, slope]), np.stack([rest, slope, bend])

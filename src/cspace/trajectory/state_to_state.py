@@ -242,9 +242,7 @@ def solve_batch(
         states[..., 0, :, :], states[..., 1, :, :] = first, last
         durations = np.empty(shape)
         durations[...] = asked
-        batch = TrajectoryBatch(
-            states.reshape(rows, 2, 3, dof), limits, durations.reshape(rows), synchronize
-        )
+        batch = TrajectoryBatch(states.reshape(rows, 2, 3, dof), limits, durations.reshape(rows), synchronize)
     batch._solve(cycle or 0.0, threads if rows > 1 else 1)
     check_parallel(batch, bool(shape))
     return batch

@@ -329,7 +329,8 @@ def _refuse_floating(robot: KinematicModel, torque: Any, *rates: Any) -> None:
     """InputError for limits that need the pose of the base."""
     if not (torque is None or torque is False) or any(rate is not None for rate in rates):
         raise InputError(
-            f"the base of {robot.name} is floating; torque=, speed=, turn_rate= and feed= need one that stands"
+            f"the base of {robot.name} is floating; torque=, speed=, turn_rate= and feed="
+            " need one that stands"
         )
 
 

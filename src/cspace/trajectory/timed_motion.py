@@ -80,7 +80,7 @@ class TimedMotion(Trajectory):
 
 
 def stand_still(q: Array, length: float, reason: str, place: float, joint_names: Any) -> TimedPath:
-    """No motion along a path of that length: it stays at q (dof,); without a reason that is what was asked."""
+    """No motion: it stays at q (dof,). Without a reason that is what was asked for."""
     still = Path([0.0, length], np.nan_to_num(np.stack([q, q]))[None])
     empty = Grid(np.zeros(0, dtype=np.int32), np.zeros(0), np.zeros(0))
     return TimedPath(

@@ -30,7 +30,8 @@ FEED: Final = "feed"
 class SlowStretch(NamedTuple):
     """A stretch of time on which a frame is slower than its feed.
 
-    begin, end [s]. slowest [m/s]: its least speed, at three places of each interval. joint, limit: what slows it down, of which most is used.
+    begin, end [s]. slowest [m/s]: its least speed, at three places of each interval. joint, limit: what
+    slows it down, of which most is used.
     """
 
     begin: float
@@ -197,8 +198,9 @@ class TimedPath(Trajectory):
         """Which limit determines the speed, when: on each interval the one of which most is used.
 
         Without limits those that the path was timed with; their names are "velocity", "acceleration",
-        "jerk", "torque", "speed" or "feed", and "turn_rate", the last ones of a frame. Intervals that use no limit
-        fully are left out. With limits (Limits or a robot) as of Trajectory.binding. Returns BindingLimits.
+        "jerk", "torque", "speed" or "feed", and "turn_rate", the last ones of a frame. Intervals that use
+        no limit fully are left out. With limits (Limits or a robot) as of Trajectory.binding. Returns
+        BindingLimits.
         """
         if limits is not None or self._ratios is None:
             return super().binding(limits)
@@ -298,7 +300,7 @@ class TimedPath(Trajectory):
 
 def _find_binding(shares: Array) -> npt.NDArray[np.intp]:
     """The limit (k,) of which most is used on each interval, of shares (limits, k); −1 where none binds."""
-    most = shares.argmax(axis=0)
+    most: npt.NDArray[np.intp] = shares.argmax(axis=0)
     most[shares.max(axis=0) < NEAR_LIMIT] = -1
     return most
 

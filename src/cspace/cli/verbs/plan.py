@@ -186,9 +186,7 @@ def time_found(args: argparse.Namespace, robot: Robot, plan: Plan, scene: Scene 
     has_jerk = bool(np.isfinite(robot.limits.jerk).all())
     jerk = args.jerk if args.jerk is not None else has_jerk
     with show_progress("timing the path"):
-        return time_plan(
-            robot, plan, scene, margin=args.margin, acceleration=args.acceleration, jerk=jerk
-        )
+        return time_plan(robot, plan, scene, margin=args.margin, acceleration=args.acceleration, jerk=jerk)
 
 
 def options_of_planner(args: argparse.Namespace) -> dict[str, Any]:
@@ -303,7 +301,7 @@ def goal_wanted(args: argparse.Namespace, goal: Array | Goal) -> Any:
 def write_files(
     args: argparse.Namespace, robot: Robot, plan: Plan, motion: Motion | None, scene: Scene | None
 ) -> list[Path]:
-    """Write the path, the trajectory and the picture that were requested, of a failed descent the picture; the files."""
+    """Write what was requested, of a failed descent the picture; the files."""
     written = []
     if args.output is not None and plan:
         plan.save(args.output)
