@@ -972,18 +972,25 @@ class Simulator:
         The steps of the adaptive method (k, width), and where those of each row begin.
         """
 
-PHASES_OF_AXIS: int = ...
+NUMBERS_OF_MOTION: int = ...
 
-def solve_states(states: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], durations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cycle: float, mode: int, threads: int, verdict: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None, None), order='C', device='cpu')]) -> None:
+def solve_states(states: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], durations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cycle: float, mode: int, threads: int, verdict: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], motions: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]) -> None:
     """
     Motions of axes from state to state.
 
-    states (rows, 2, 3, dof): q, qd, qdd at the start and the goal. limits (5, dof): highest and lowest velocity and acceleration, jerk. durations (rows,): NaN for the shortest. mode: 0 in time, 1 in phase, 2 each axis alone. Writes verdict (rows,): 0 found, 1 another duration, 2 not parallel; duration (rows,), shortest (rows, dof), count (rows, dof), phases (rows, dof, PHASES_OF_AXIS, 3).
+    states (rows, 2, 3, dof): q, qd, qdd at the start and the goal. limits (5, dof): highest and lowest velocity and acceleration, jerk. durations (rows,): NaN for the shortest. mode: 0 in time, 1 in phase, 2 each axis alone. Writes verdict (rows,): 0 found, 1 another duration, 2 not parallel; duration (rows,), shortest (rows, dof), motions (NUMBERS_OF_MOTION, rows, dof).
     """
 
-def fill_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None), order='C', device='cpu', writable=False)], count: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], duration: float, knots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], origins: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+def make_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], motions: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], duration: float, mode: int) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
-    Polynomials of the phases of one motion: writes knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
+    Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
+    """
+
+def move_plain(states: object, limits: object, bounds: object, farthest: float) -> tuple[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], float, bool] | None:
+    """
+    The fastest motion between two states, or None where arguments are not plain rows that can be asked.
+
+    states: start, its velocity and acceleration, goal, likewise. limits: velocity, acceleration, jerk. bounds: lower and upper positions. Each an array (n,), a float, or None. Returns knots, coefficients and origins, the duration, and whether positions keep within bounds.
     """
 
 def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], intervals: int) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -994,6 +1001,11 @@ def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.ty
 def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], numpy.typing.NDArray[numpy.float64], bool]:
     """
     Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.
+    """
+
+def evaluate_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], piece: numpy.typing.NDArray[numpy.int32], local: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Configurations (m, dof) and their first two derivatives at places (m,) within pieces (m,).
     """
 
 def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], jerk: numpy.typing.NDArray[numpy.float64], grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], start: numpy.typing.ArrayLike, end: numpy.typing.ArrayLike, duration: float, tolerance: float) -> tuple[bool, numpy.typing.NDArray[numpy.float64], float, float, float, int]:

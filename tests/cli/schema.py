@@ -202,6 +202,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "clearance": NUMBER_OR_NULL,
         "seconds": NUMBER,
         "stats": dict,
+        "duration": NUMBER_OR_NULL,
         "written": [TEXT],
     },
     "cspace.planners/1": {

@@ -6,6 +6,7 @@ Needs the extra `[plot]` (matplotlib), which is imported when a function is firs
 
 from __future__ import annotations
 
+from cspace.plot.animations import animation
 from cspace.plot.arms import robot, solutions
 from cspace.plot.configuration_space import configuration_space
 from cspace.plot.fields import surface
@@ -21,7 +22,7 @@ from cspace.plot.space_slices import space_projection, space_slice
 from cspace.plot.torques import torques
 from cspace.plot.trajectories import trajectory
 from cspace.plot.vehicles import coverage, drive
-from cspace.plot.worlds import animation, route, routes, world
+from cspace.plot.worlds import route, routes, world
 
 __all__ = [
     "animation",
