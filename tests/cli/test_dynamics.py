@@ -237,6 +237,14 @@ def test_dynamics_of_files_with_loops(four_bar):
     assert "loops cut" in cspace(f"dynamics {path} crank=0.9").out
 
 
+def test_gains_have_no_default_where_a_joint_moves_nothing():
+    told = cspace("simulate gen3_lite --hold")
+    assert told.code == 2
+    assert "joint_6" in told.err
+    assert "--kp" in told.err
+    assert "joint_6" in cspace("simulate gen3_lite --hold --kp 1 --kd 1").err
+
+
 def test_robots_without_masses_are_told_where_masses_are():
     for verb in ("dynamics", "simulate"):
         refused = cspace(f"{verb} kr6_r900")

@@ -146,11 +146,23 @@ def read_control(args: argparse.Namespace, robot: Robot, q: Array, T: Array | No
             raise UsageError("--kp and --kd are gains of --hold or --goal; give one of these too")
         return None
     goal = q if args.hold else read_goal(args, robot, q)
-    inertia = 1.0 / np.diagonal(np.linalg.inv(robot.mass_matrix(q, T_world_base=T)))[first:]
+    inertia = np.zeros(n) if args.kp and args.kd else find_inertias(robot, q, T)[first:]
     kp = STIFFNESS**2 * inertia if args.kp is None else read_gains(args.kp, robot, "--kp")
     kd = 2.0 * STIFFNESS * inertia if args.kd is None else read_gains(args.kd, robot, "--kd")
     gains = np.broadcast_to(kp, n), np.broadcast_to(kd, n)
     return PD(goal, *gains, gravity_compensation=not robot.floating)  # what falls carries no weight
+
+
+def find_inertias(robot: Robot, q: Array, T: Array | None) -> Array:
+    """The inertia (dof,) that each joint feels when the others are free to move."""
+    try:
+        return 1.0 / np.diagonal(np.linalg.inv(robot.mass_matrix(q, T_world_base=T)))
+    except np.linalg.LinAlgError:
+        idle = ", ".join(robot.inertia_report().singular)
+        raise UsageError(
+            f"the mass matrix of {robot.name} is singular ({idle} without inertia), so gains have no default;"
+            " give --kp and --kd, and its links a mass or its joints an armature"
+        ) from None
 
 
 def read_goal(args: argparse.Namespace, robot: Robot, q: Array) -> Array:
