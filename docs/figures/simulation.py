@@ -116,7 +116,23 @@ def draw_friction(ax: Any) -> None:
     ax.grid(alpha=0.3)
 
 
+def draw_motion() -> None:
+    """A Panda that a controller brings to a goal, with a payload that the controller does not know."""
+    robot = cs.load_robot("panda")
+    loaded = robot.with_payload(2.0)
+    start, goal = np.array([0, -0.785, 0, -2.356, 0, 1.571, 0.785]), np.array([1, 0, 0.3, -1.571, 0, 2, 0])
+    inertia = 1 / np.diagonal(np.linalg.inv(robot.mass_matrix(start)))
+
+    def control(t: float, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        return inertia * (100 * (goal - q) - 20 * qd) + robot.gravity_torques(q)
+
+    run = loaded.simulate(start, np.zeros(7), control=control, duration=2.0, dt=0.002)
+    title = "panda with 2 kg more than its controller knows"
+    cs.plot.save(cs.plot.simulation(run, robot=loaded, title=title), HERE / "simulated_motion.png", dpi=110)
+
+
 def main() -> None:
+    draw_motion()
     for name, left, right in (
         ("simulation.png", draw_energy, draw_spin),
         ("simulation_control.png", draw_roll_outs, draw_friction),

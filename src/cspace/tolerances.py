@@ -455,6 +455,14 @@ DRAWN_LENGTH: Final = 1e-9
 DRAWN_PLANE: Final = 1e-6
 """Sine of the angle by which the axes of an arm that is drawn in a plane may miss it: files round axes."""
 
+DRAWN_MOTION: Final = 1e-12
+"""The largest velocity, torque or force of a simulation that a picture leaves out [SI units]: rounding around
+zero of values of size one is smaller by four orders."""
+
+DRAWN_SHARE: Final = 1e-9
+"""Share of the largest torque below which a cause of torques is not drawn: differences of two torques have a
+rounding of that order where they cancel."""
+
 LEAST_DIVISOR: Final = 1e-12
 """Least divisor of a picture, in place of zero: lengths and shares of what is drawn are far above it."""
 

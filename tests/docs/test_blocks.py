@@ -118,7 +118,7 @@ def check_output(expected: list[str], output: str, where: str) -> None:
 
 @pytest.mark.parametrize("page", has("console"), ids=name_of)
 def test_console_blocks_run(page, tmp_path):
-    for name in ("yard.txt", "cell.toml", "two_links.txt"):
+    for name in ("yard.txt", "cell.toml", "two_links.txt", "four_bar.toml"):
         shutil.copy(ROOT / "examples" / name, tmp_path)
     for block in blocks(page):
         if block.language != "console":

@@ -459,3 +459,17 @@ def test_a_still_robot_shows_its_weight_alone():
     assert set(found.unexcited) == set(ARM.joint_names)
     for name, value in itertools.chain(zip(found.names, found.base, strict=True)):
         assert np.isnan(value) or name[0] in "hm"
+
+
+def test_printed_tables_are_as_wide_as_a_screen():
+    robot = cs.load_robot("panda")
+    base = cs.dynamics.base_parameters(robot)
+    q, qd, qdd = np.random.default_rng(0).normal(size=(3, 1, 7))
+    found = cs.dynamics.identify(robot, q, qd, qdd, np.zeros((1, 7)))
+    for printed in (base, found):
+        text = str(printed)
+        assert max(map(len, text.splitlines())) <= 110
+        together = " ".join(text.split())
+        for name in printed.names:
+            assert name in together
+    assert "from 1 sample:" in str(found)

@@ -256,10 +256,10 @@ class Units:
         """What velocities (dof,) are multiplied by for print."""
         return np.array([np.degrees(1.0) if kind == "R" and self.degrees else 1.0 for kind in self.kinds])
 
-    def headings(self) -> list[str]:
-        """Column headings of the joints with their units: their names where they are short, else q1, q2, …"""
+    def headings(self, *, short: bool = False) -> list[str]:
+        """The joints with the units of their values, by name, or as q1, q2, …"""
         names = list(self.robot.joint_names)
-        if max(map(len, names), default=0) > 8:
+        if short:
             names = [f"q{k + 1}" for k in range(len(names))]
         units = [self.angle if kind == "R" else "m" for kind in self.robot.joint_types]
         return [f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]

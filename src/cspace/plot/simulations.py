@@ -13,6 +13,7 @@ from cspace.errors import InputError, InputTypeError, suggest
 from cspace.plot.axes import need_matplotlib, write_title
 from cspace.plot.motion_colors import REST, color_joints
 from cspace.robot import Robot
+from cspace.tolerances import DRAWN_MOTION
 
 PANELS: Final = (
     "base position",
@@ -30,8 +31,6 @@ PANELS: Final = (
 BASE_COLORS: Final = {"x": "#d62728", "y": "#2ca02c", "z": "#1f77b4"}
 """Of what a floating base does along x, y and z: those of the axes of a frame."""
 ENERGY_COLORS: Final = {"total": "0.15", "kinetic": "#ff7f0e", "potential": "#1f77b4"}
-STILL: Final = 1e-12
-"""The largest values of a panel that shows nothing but rounding."""
 WIDTH, HEIGHT = 8.4, 1.65
 """Of a figure, and of one of its panels [inch]."""
 
@@ -189,7 +188,7 @@ def shows_motion(name: str, curves: Curves) -> bool:
     if name in ("joints", "prismatic joints", "energy", "base position"):
         return True
     values = curves.values[np.isfinite(curves.values)]
-    return bool(np.abs(values).max(initial=0.0) > STILL)
+    return bool(np.abs(values).max(initial=0.0) > DRAWN_MOTION)
 
 
 def draw_curves(panel: Any, run: Simulation, name: str, curves: Curves) -> list[Any]:

@@ -14,6 +14,7 @@ from cspace.plot.axes import need_matplotlib, write_title
 from cspace.plot.colors import INK
 from cspace.robot import Robot
 from cspace.spatial.checks import PoseLike
+from cspace.tolerances import DRAWN_SHARE
 
 PARTS: Final = {
     "inertia": "#1f77b4",
@@ -31,8 +32,6 @@ LIMIT, EFFORT = "effort of the robot", "#d62728"
 """The entry of the legend for the efforts of the robot, and their colour."""
 EDGE: Final = 0.05
 """Free space at both ends of an axis, as a share of what is drawn."""
-SMALL: Final = 1e-9
-"""Share of the largest torque below which a part is not drawn."""
 
 
 def torques(
@@ -114,7 +113,7 @@ def split_torques(
         pushed = robot.inverse_dynamics(q, qd, qdd, gravity=gravity, friction=False, **acts, **place) - smooth
     terms = (smooth - weight - moving, moving, weight, rubbing, pushed)
     parts = dict(zip(PARTS, terms, strict=True))
-    least = SMALL * max(float(np.abs(part).max(initial=0.0)) for part in parts.values())
+    least = DRAWN_SHARE * max(float(np.abs(part).max(initial=0.0)) for part in parts.values())
     shown = {name: part for name, part in parts.items() if np.abs(part).max(initial=0.0) > least}
     return shown or {"gravity": weight}
 

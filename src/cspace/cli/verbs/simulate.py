@@ -146,11 +146,23 @@ def read_control(args: argparse.Namespace, robot: Robot, q: Array, T: Array | No
             raise UsageError("--kp and --kd are gains of --hold or --goal; give one of these too")
         return None
     goal = q if args.hold else read_goal(args, robot, q)
-    inertia = 1.0 / np.diagonal(np.linalg.inv(robot.mass_matrix(q, T_world_base=T)))[first:]
+    inertia = np.zeros(n) if args.kp and args.kd else find_inertias(robot, q, T)[first:]
     kp = STIFFNESS**2 * inertia if args.kp is None else read_gains(args.kp, robot, "--kp")
     kd = 2.0 * STIFFNESS * inertia if args.kd is None else read_gains(args.kd, robot, "--kd")
     gains = np.broadcast_to(kp, n), np.broadcast_to(kd, n)
     return PD(goal, *gains, gravity_compensation=not robot.floating)  # what falls carries no weight
+
+
+def find_inertias(robot: Robot, q: Array, T: Array | None) -> Array:
+    """The inertia (dof,) that each joint feels when the others are free to move."""
+    try:
+        return 1.0 / np.diagonal(np.linalg.inv(robot.mass_matrix(q, T_world_base=T)))
+    except np.linalg.LinAlgError:
+        idle = ", ".join(robot.inertia_report().singular)
+        raise UsageError(
+            f"the mass matrix of {robot.name} is singular ({idle} without inertia), so gains have no default;"
+            " give --kp and --kd, and its links a mass or its joints an armature"
+        ) from None
 
 
 def read_goal(args: argparse.Namespace, robot: Robot, q: Array) -> Array:
@@ -208,42 +220,32 @@ def print_simulation(out: Output, units: Units, start: Start, made: Simulation) 
 
 
 def fit_table(width: int, units: Units, made: Simulation) -> Table:
-    """States as a table with a row per time; where this is too wide, with a column per time, for as many
-    times as fit."""
-    heads, cells = list_states(units, made, ROWS)
-    table = Table(heads)
-    for row in cells:
-        table.add(*row)
-    if table.width <= width:
-        return table
+    """States as a table with a row per time, with short names where it is too wide; else with a column per
+    time, for as many times as fit."""
+    base = ["base x [m]", "base y [m]", "base z [m]"] if made.T_world_base is not None else []
+    for short in (False, True):
+        table = Table(["time [s]", *base, *units.headings(short=short), "energy [J]"])
+        for row in list_states(units, made, ROWS):
+            table.add(*row)
+        if table.width <= width:
+            return table
     for rows in range(ROWS, FEWEST - 1, -1):
-        heads, cells = list_states(units, made, rows)
-        columns = list(zip(*cells, strict=True))
-        names = [*heads[: len(heads) - 1 - len(units.robot.joint_names)], *long_names(units), heads[-1]]
-        table = Table([heads[0], *columns[0]])
-        for name, column in zip(names[1:], columns[1:], strict=True):
+        columns = list(zip(*list_states(units, made, rows), strict=True))
+        names = [*base, *units.headings(), "energy [J]"]
+        table = Table(["time [s]", *columns[0]])
+        for name, column in zip(names, columns[1:], strict=True):
             table.add(name, *column)
         if table.width <= width:
             break
     return table
 
 
-def long_names(units: Units) -> list[str]:
-    """The names of the joints with their units."""
-    kinds = units.robot.joint_types
-    return [
-        f"{name} [{units.angle if kind == 'R' else 'm'}]"
-        for name, kind in zip(units.robot.joint_names, kinds, strict=True)
-    ]
-
-
-def list_states(units: Units, made: Simulation, rows: int) -> tuple[list[str], list[list[str]]]:
-    """Headings, and the texts of states at so many steps of time."""
-    base = ["base x [m]", "base y [m]", "base z [m]"] if made.T_world_base is not None else []
+def list_states(units: Units, made: Simulation, rows: int) -> list[list[str]]:
+    """The texts of states at so many steps of time."""
     cells = []
     for k in np.unique(np.linspace(0, len(made) - 1, rows + 1).round().astype(int)):
         state = joint_texts(made.q[k], units.robot, degrees=units.degrees)
         if made.T_world_base is not None:
             state = [f"{tidy_number(x, 5):.5f}" for x in made.T_world_base[k, :3, 3]] + state
         cells.append([f"{made.times[k]:.4g}", *state, f"{made.energy[k]:.6g}"])
-    return ["time [s]", *base, *units.headings(), "energy [J]"], cells
+    return cells
