@@ -112,7 +112,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
 def refuse_for_loops(args: argparse.Namespace, robot: Robot) -> None:
     """Raise UsageError for options that simulations of closed loops do not know."""
     word = "--stop-at-limits" if args.stop_at_limits else f"--method {args.method}"
-    if args.method != "rk4" or args.stop_at_limits:
+    if args.method not in (None, "rk4") or args.stop_at_limits:
         raise UsageError(f"{robot.name} has closed loops, which do not go with {word}; leave it out")
 
 
