@@ -310,8 +310,9 @@ class EkfSlam {
         const double turn = by_pose[2];
         const bool is_invariant = rule_.linearization == Linearization::invariant;
         if (is_invariant) {
-            turn_offset(turn, by_pose.data());
-            for (std::size_t j = 0; j < landmarks_.size(); ++j) turn_offset(turn, by.data() + 2 * j);
+            const Vector2 V = offset_matrix(turn);
+            turn_offset(V, by_pose.data());
+            for (std::size_t i = 0; i < by.size(); i += 2) turn_offset(V, by.data() + i);
         }
         const double c = std::cos(turn), s = std::sin(turn);
         pose_ = {pose_.x + by_pose[0], pose_.y + by_pose[1], c * pose_.c - s * pose_.s, s * pose_.c + c * pose_.s};
@@ -320,14 +321,16 @@ class EkfSlam {
         if (rule_.linearization != Linearization::first_estimate) first_ = {pose_.x, pose_.y};
         if (is_invariant) carry_covariance(by_pose, by, y.size(), change);
     }
-    // V(turn) δ of the exponential of the group.
-    static void turn_offset(double turn, double* offset) {
+    // The first column of V(turn), of which the exponential of the group is made: p ← p + V δ.
+    static Vector2 offset_matrix(double turn) {
         constexpr double small = 1e-4;  // where the series is exact to rounding
         const bool is_small = std::fabs(turn) < small;
-        const double a = is_small ? 1 - turn * turn / 6 : std::sin(turn) / turn;
-        const double b = is_small ? turn / 2 : (1 - std::cos(turn)) / turn;
-        const double x = offset[0];
-        offset[0] = a * x - b * offset[1], offset[1] = b * x + a * offset[1];
+        return {is_small ? 1 - turn * turn / 6 : std::sin(turn) / turn,
+                is_small ? turn / 2 : (1 - std::cos(turn)) / turn};
+    }
+    static void turn_offset(const Vector2& V, double* offset) {
+        const double x = offset[0], y = offset[1];
+        offset[0] = V[0] * x - V[1] * y, offset[1] = V[1] * x + V[0] * y;
     }
     // P ← B P Bᵀ with B = I + b e_θᵀ and b = J (new − old), as P + b cᵀ + c bᵀ with c = P e_θ + ½ P_θθ b.
     void carry_covariance(const Vector3& by_pose, const std::vector<double>& by, std::size_t rows, LowRank& change) {

@@ -153,7 +153,7 @@ class JointCovariance {
     }
     // What is left of an update that was interrupted.
     void finish_update() {
-        constexpr std::size_t numbers_per_look = 1 << 17;  // take some tens of microseconds
+        constexpr std::size_t numbers_per_look = 1 << 21;  // take some hundred microseconds
         const int end = int(change_.stride / panel_rows);
         while (next_panel_ < end) {
             int last = next_panel_ + 1;
