@@ -270,7 +270,9 @@ def main() -> None:
         for version in (1, 2):
             python = sys.executable
             rows.append(
-                compare("particles", "pythonrobotics", version, options.rounds, python, options.pythonrobotics)
+                compare(
+                    "particles", "pythonrobotics", version, options.rounds, python, options.pythonrobotics
+                )
             )
             show(rows[-1])
     for row in [] if options.no_logs else measure_logs():

@@ -35,6 +35,7 @@ COURSE += (
     "cars",
     "mobile",
     "localization",
+    "landmark-slam",
     "pose-graphs",
 )
 COURSE += ("plot", "cli", "cpp")
