@@ -1,10 +1,10 @@
 """Consistency of filters: NEES in simulation, the mean over many runs at every time step.
 
-Usage: python benchmarks/consistency.py [--runs 100] [--only ekf iekf …] [--save FILE]. A robot drives an eight
-among 25 landmarks. The true starts have exactly the covariance that the filter is given, odometry and readings have
-the noise of the models. NEES of a consistent filter is χ² with 3 degrees of freedom, and the mean over 100 runs
-lies in [2.54, 3.50] for 95 % of the time steps (Bar-Shalom et al. 2001). Printed: the share of steps inside,
-the least and the largest mean, and whether 90 % are inside and all in [2.14, 4.05].
+Usage: python benchmarks/consistency.py [--runs 100] [--only ekf iekf …] [--save FILE]. A robot drives an
+eight among 25 landmarks. The true starts have exactly the covariance that the filter is given, odometry and
+readings have the noise of the models. NEES of a consistent filter is χ² with 3 degrees of freedom, and the
+mean over 100 runs lies in [2.54, 3.50] for 95 % of the time steps (Bar-Shalom et al. 2001). Printed: the
+share of steps inside, the least and the largest mean, and whether 90 % are inside and all in [2.14, 4.05].
 
 Runs are seeded; gates are open, as a rejected reading is no sample of its model.
 """
@@ -123,8 +123,8 @@ def main() -> None:
         rows[name] = judge(measure_nees(run, options.runs, options.seconds, options.first))
         r = rows[name]
         print(
-            f"{name:30s} inside {r['inside']:6.1%}  {r['least']:.2f} to {r['largest']:.2f}  mean {r['mean']:.2f}"
-            f"  {'passes' if r['passes'] else 'fails'}",
+            f"{name:30s} inside {r['inside']:6.1%}  {r['least']:.2f} to {r['largest']:.2f}"
+            f"  mean {r['mean']:.2f}  {'passes' if r['passes'] else 'fails'}",
             flush=True,
         )
     if options.save:

@@ -1,15 +1,15 @@
 """Landmark SLAM: time of a step beside the Robotics Toolbox and PythonRobotics, errors on public logs.
 
-Usage: python benchmarks/landmark_slam.py [--toolbox PYTHON] [--pythonrobotics FOLDER] [--rounds 3] [--save FILE].
-PYTHON is an interpreter with roboticstoolbox-python, FOLDER a checkout of PythonRobotics. A step is what a user
-calls from Python: a prediction and an update.
+Usage: python benchmarks/landmark_slam.py [--toolbox PYTHON] [--pythonrobotics FOLDER] [--rounds 3] [--save
+FILE]. PYTHON is an interpreter with roboticstoolbox-python, FOLDER a checkout of PythonRobotics. A step is
+what a user calls from Python: a prediction and an update.
 
 - EKF-SLAM, one reading per step, all landmarks on the map before. The step of the toolbox also simulates the
   robot and its sensor; the time of that alone is printed beside it.
 - FastSLAM, 100 particles, the world of PythonRobotics (8 landmarks, of which each step sees some): the same
   inputs and readings for both.
-- MRCLAM 6 without its map, Victoria Park: errors after alignment, of poses to the truth (of Victoria Park to the
-  optimum of the pose graph) and of landmarks.
+- MRCLAM 6 without its map, Victoria Park: errors after alignment, of poses to the truth (of Victoria Park to
+  the optimum of the pose graph) and of landmarks.
 
 Contenders run in processes of their own, turn by turn, on one thread; medians over all steps of all rounds.
 """
@@ -94,7 +94,7 @@ def make_beacon_world(seed: int) -> tuple[np.ndarray, list[np.ndarray], np.ndarr
     rng, pose, beacons = np.random.default_rng(seed), np.zeros(3), np.array(BEACONS, float)
     inputs, readings, truth = [], [], []
     for _ in range(BEACON_STEPS):
-        pose = pose + [DT * np.cos(pose[2]), DT * np.sin(pose[2]), 0.1 * DT]
+        pose = pose + np.array([DT * np.cos(pose[2]), DT * np.sin(pose[2]), 0.1 * DT])
         offset = beacons - pose[:2]
         far = np.hypot(*offset.T)
         seen = np.flatnonzero(far <= 20.0)
@@ -133,7 +133,7 @@ def time_pythonrobotics(version: int) -> dict[str, Any]:
     theirs = importlib.import_module(f"SLAM.FastSLAM{version}.fast_slam{version}")
     inputs, readings, truth = make_beacon_world(1)
     step = getattr(theirs, f"fast_slam{version}")
-    np.random.seed(0)
+    np.random.seed(0)  # noqa: NPY002  what they draw from
     particles = [theirs.Particle(len(BEACONS)) for _ in range(theirs.N_PARTICLE)]
     seconds, errors = [], []
     for u, z, pose in zip(inputs, readings, truth, strict=True):

@@ -133,7 +133,8 @@ def read_rows(log: Log) -> Array:
     known = log.readings.landmark != UNKNOWN
     if known.any() and not known.all():
         raise InputError(
-            f"{int((~known).sum())} of {len(known)} readings have no name; give all of them names, or −1 to all"
+            f"{int((~known).sum())} of {len(known)} readings have no name; give all of them"
+            " names, or −1 to all"
         )
     return LandmarkFilter._read_rows(log.readings)
 
