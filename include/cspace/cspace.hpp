@@ -42,6 +42,7 @@
 #include "cspace/math/float_packs.hpp"
 #include "cspace/math/stream.hpp"
 #include "cspace/math/threads.hpp"
+#include "cspace/mobile/random_walk.hpp"
 #include "cspace/navigation/any_angle/grid_any_angle.hpp"
 #include "cspace/navigation/bugs/bug_1.hpp"
 #include "cspace/navigation/bugs/bug_2.hpp"

@@ -2,8 +2,8 @@
 // Tardós 2001), and sequential compatible nearest neighbour.
 //
 // A set of pairings is compatible if its joint innovation passes a gate of χ². Each node of the search
-// extends the Cholesky factor of the joint covariance by one block. Most pairings win; of as many, the least
-// NIS.
+// extends the triangular factor of the joint covariance by one block. Most pairings win; of as many, the
+// least NIS.
 #pragma once
 
 #include <algorithm>
