@@ -41,9 +41,11 @@ def main(folder: Path) -> None:
         )
         assert rmse(found.at(truth.times)) < odometry
 
-    marks = answers["invariant"].landmarks
-    rows = np.column_stack([marks.names, marks.points, np.sqrt(np.linalg.eigvalsh(marks.covariances))])
-    np.savetxt(folder / "landmarks.csv", rows, fmt="%.4f", delimiter=",", header="name,x,y,minor,major")
+    best = answers["invariant"]
+    rows = np.column_stack([best.times, best.poses])
+    np.savetxt(folder / "drive.csv", rows, fmt="%.4f", delimiter=",", header="time,x,y,theta")
+    ellipses = np.sqrt(np.linalg.eigvalsh(best.landmarks.covariances))
+    print(f"landmarks are known to {ellipses.min():.3f} to {ellipses.max():.3f} m")
 
 
 if __name__ == "__main__":
