@@ -35,6 +35,7 @@ COURSE += (
     "cars",
     "mobile",
     "localization",
+    "monte-carlo",
     "landmark-slam",
     "pose-graphs",
 )
