@@ -36,6 +36,7 @@ COURSE += (
     "mobile",
     "localization",
     "monte-carlo",
+    "landmark-slam",
     "pose-graphs",
 )
 COURSE += ("plot", "cli", "cpp")

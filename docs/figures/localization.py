@@ -83,6 +83,36 @@ def draw_filter() -> None:
     plt.close(figure)
 
 
+def draw_landmarks() -> None:
+    """Odometry and EKF-SLAM of a drive without a map, with ellipses of poses and landmarks of 95 %."""
+    run = cs.navigation.follow([(0, 0), (9, 0), (9, 6), (0, 6), (0, 1)], vehicle=cs.Unicycle())
+    points = [(3, -1.5), (6, -1.5), (10.5, 1), (10.5, 5), (7, 7.5), (3, 7.5), (-1.5, 5), (-1.5, 1), (4.5, 3)]
+    sensor = RangeBearing(range_sigma=0.1, bearing_sigma=0.02, most_range=4.0)
+    log = simulate(run, Landmarks(range(9), points), sensor=sensor, rng=3)
+    start = log.truth.poses[0]
+    found = cs.localization.run_ekf_slam(log, sensor=sensor, start=start)
+    figure, ax = plt.subplots(figsize=(6.4, 4.8))
+    ax.plot(*log.truth.poses[:, :2].T, color=INK, lw=2.5, alpha=0.35, label="truth")
+    ax.plot(*log.odometry.dead_reckoning(start).poses[:, :2].T, color=RED, lw=1, label="odometry")
+    ax.plot(*found.poses[:, :2].T, color=BLUE, lw=1.2, label="EKF-SLAM")
+    P = found.covariance(frame="map")
+    for k in range(0, len(found), 35):
+        add_ellipse(ax, found.poses[k], P[k], BLUE)
+    ax.plot(*np.transpose(points), "^", color=FAINT, ms=8, label="true landmarks")
+    ax.plot(*found.landmarks.points.T, ".", color=GREEN, ms=5, label="landmarks found")
+    for point, C in zip(found.landmarks.points, found.landmarks.covariances, strict=True):
+        add_ellipse(ax, point, C, GREEN)
+    ax.set_aspect("equal")
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("y [m]")
+    ax.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    figure.tight_layout()
+    figure.savefig(HERE / "landmark_slam.png", dpi=DPI, bbox_inches="tight")
+    plt.close(figure)
+
+
 if __name__ == "__main__":
     draw_noise()
     draw_filter()
+    draw_landmarks()

@@ -1105,6 +1105,7 @@ class ParticleCloud:
 
     def draw_normals(self, count: int) -> numpy.typing.NDArray[numpy.float64]:
         """Standard normal numbers (count, 3) of a step of their own."""
+
 def match_points(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float, turn: float, refines: bool) -> tuple:
     """
     Found, ambiguous, pose, covariance, score and second score of a correlative match.
@@ -1146,6 +1147,7 @@ class LaserSlamRun:
     @property
     def loops(self) -> tuple:
         """The same of all loops that were found."""
+
 class LandmarkFilter:
     """A filter on a pose and landmarks."""
 

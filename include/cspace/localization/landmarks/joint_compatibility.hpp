@@ -1,8 +1,9 @@
 // Data association by joint compatibility: branch and bound over pairings of readings with landmarks (Neira &
 // Tardós 2001), and sequential compatible nearest neighbour.
 //
-// A set of pairings is compatible if its joint innovation passes a gate of χ². Each node of the search extends
-// the Cholesky factor of the joint covariance by one block. Most pairings win; of as many, the least NIS.
+// A set of pairings is compatible if its joint innovation passes a gate of χ². Each node of the search
+// extends the triangular factor of the joint covariance by one block. Most pairings win; of as many, the
+// least NIS.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +28,8 @@ Matrix2 innovation_block(const Covariance& P, const ReadingModel& a, int i, cons
         double with_pose[3], with_landmark[2];
         for (std::size_t c = 0; c < 3; ++c) {
             const double* column = P.cross(c).data() + 2 * i;
-            with_pose[c] = Hx[0] * X[c] + Hx[1] * X[3 + c] + Hx[2] * X[6 + c] + A[0] * column[0] + A[1] * column[1];
+            with_pose[c] =
+                Hx[0] * X[c] + Hx[1] * X[3 + c] + Hx[2] * X[6 + c] + A[0] * column[0] + A[1] * column[1];
         }
         for (std::size_t c = 0; c < 2; ++c) {
             const std::size_t at = 2 * std::size_t(j) + c;
@@ -112,7 +114,8 @@ template <class Covariance>
 class PairingSearch {
   public:
     // candidates: of each reading, individually compatible ones by NIS.
-    PairingSearch(const Covariance& P, const std::vector<std::vector<Candidate>>& candidates, const PairingRule& rule)
+    PairingSearch(const Covariance& P, const std::vector<std::vector<Candidate>>& candidates,
+                  const PairingRule& rule)
         : P_(P), candidates_(candidates), rule_(rule), gate_(rule.share), chosen_(candidates.size(), none) {
         for (std::size_t i = 0; i < candidates.size(); ++i) {
             if (!candidates[i].empty()) order_.push_back(i);
@@ -123,15 +126,21 @@ class PairingSearch {
     }
     static constexpr int none = -1;
 
-    // The candidate of each reading, or none: also for a reading that another landmark explains nearly as well.
+    // The candidate of each reading, or none: also for a reading that another landmark explains nearly as
+    // well.
     std::vector<int> find_pairings() {
-        pair_nearest();
-        if (rule_.is_joint && best_count_ < int(order_.size())) branch(0);
+        search_pairings();
         drop_ambiguous();
         return best_;
     }
+    // The most pairings, and of as many those of least NIS.
+    void search_pairings() {
+        pair_nearest();
+        if (rule_.is_joint) branch(0);
+    }
+    int count() const { return best_count_; }
+    double nis() const { return best_nis_; }
     bool is_capped() const { return nodes_ > rule_.most_nodes; }
-    long nodes() const { return nodes_; }
 
   private:
     const Covariance& P_;
@@ -148,25 +157,30 @@ class PairingSearch {
     long nodes_ = 0;
 
     bool is_taken(int landmark) const {
-        return std::any_of(paired_.begin(), paired_.end(), [&](const Candidate* c) { return c->landmark == landmark; });
+        return std::any_of(paired_.begin(), paired_.end(),
+                           [&](const Candidate* c) { return c->landmark == landmark; });
     }
-    // Whether the pairings so far stay compatible with one more, which is then among them.
-    bool add_pairing(const Candidate& candidate) {
+    // Whether the pairings so far and one more are compatible, or may be with as many rows more, as a gate
+    // widens with them; the pairing is then among them.
+    bool add_pairing(const Candidate& candidate, int more = 0) {
         if (is_taken(candidate.landmark)) return false;
         const std::size_t rows = std::size_t(innovation_.rows());
         with_.assign(2 * rows, 0);
         std::size_t column = 0;
         for (const Candidate* other : paired_) {
-            const Matrix2 S = innovation_block(P_, candidate.model, candidate.landmark, other->model, other->landmark);
+            const Matrix2 S =
+                innovation_block(P_, candidate.model, candidate.landmark, other->model, other->landmark);
             for (int s = 0; s < other->model.count; ++s, ++column) {
-                for (int r = 0; r < candidate.model.count; ++r) with_[std::size_t(r) * rows + column] = S[std::size_t(2 * r + s)];
+                for (int r = 0; r < candidate.model.count; ++r)
+                    with_[std::size_t(r) * rows + column] = S[std::size_t(2 * r + s)];
             }
         }
-        Matrix2 own = innovation_block(P_, candidate.model, candidate.landmark, candidate.model, candidate.landmark);
+        Matrix2 own =
+            innovation_block(P_, candidate.model, candidate.landmark, candidate.model, candidate.landmark);
         own[0] += candidate.model.noise[0], own[3] += candidate.model.noise[1];
         if (!innovation_.append(candidate.model, with_.data(), own)) return false;
         paired_.push_back(&candidate);
-        if (innovation_.nis() <= gate_.limit(innovation_.rows())) return true;
+        if (innovation_.nis() <= gate_.limit(innovation_.rows() + more)) return true;
         remove_pairing();
         return false;
     }
@@ -176,6 +190,7 @@ class PairingSearch {
     }
     void keep_if_better() {
         const int count = int(paired_.size());
+        if (count && innovation_.nis() > gate_.limit(innovation_.rows())) return;
         if (count < best_count_ || (count == best_count_ && innovation_.nis() >= best_nis_)) return;
         best_ = chosen_, best_count_ = count, best_nis_ = innovation_.nis();
     }
@@ -195,7 +210,8 @@ class PairingSearch {
         double cost = std::numeric_limits<double>::infinity();
         bool are_all = true;
         for (const std::size_t i : order_)
-            are_all = are_all && (i == reading || best_[i] == none || add_pairing(candidates_[i][std::size_t(best_[i])]));
+            are_all = are_all && (i == reading || best_[i] == none ||
+                                  add_pairing(candidates_[i][std::size_t(best_[i])]));
         if (are_all && add_pairing(candidates_[reading][std::size_t(candidate)])) cost = innovation_.cost();
         while (!paired_.empty()) remove_pairing();
         return cost;
@@ -217,11 +233,12 @@ class PairingSearch {
     void branch(std::size_t depth) {
         if (++nodes_ > rule_.most_nodes) return;
         const int left = int(order_.size() - depth), count = int(paired_.size());
-        if (count + left < best_count_ || (count + left == best_count_ && innovation_.nis() >= best_nis_)) return;
+        if (count + left < best_count_ || (count + left == best_count_ && innovation_.nis() >= best_nis_))
+            return;
         if (!left) return keep_if_better();
         const std::size_t i = order_[depth];
         for (std::size_t c = 0; c < candidates_[i].size(); ++c) {
-            if (!add_pairing(candidates_[i][c])) continue;
+            if (!add_pairing(candidates_[i][c], 2 * (left - 1))) continue;
             chosen_[i] = int(c);
             branch(depth + 1);
             chosen_[i] = none;

@@ -1,4 +1,4 @@
-"""SLAM of landmarks: an extended Kalman filter on pose and landmarks, and particles with maps of their own."""
+"""SLAM of landmarks: an extended Kalman filter on pose and landmarks, particles with maps of their own."""
 
 from cspace.localization.landmark_slam.answer import LandmarkSlam, LandmarkSlamStats
 from cspace.localization.landmark_slam.filters import EkfSlam, FastSlam

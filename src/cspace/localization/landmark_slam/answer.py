@@ -43,11 +43,11 @@ class LandmarkSlamStats:
 class LandmarkSlam:
     """A drive with the landmarks that it found; truthy if the robot is localised on them at the end.
 
-    times (n,) [s], those of the odometry and of the readings. poses (n, 3): x, y [m], θ [rad], in the frame of
-    the start; each from the readings up to its time. covariances (n, 3, 3) of ξ in T exp ξ, in base. landmarks: a map with
-    covariances. method: the name of what made it. status: "localised", or "lost" after ten rejections in a row
-    or without any reading. lost (n,): where that was so. readings: what became of each one, with NIS; measured
-    (k,): the row of each in `times`.
+    times (n,) [s], those of the odometry and of the readings. poses (n, 3): x, y [m], θ [rad], in the frame
+    of the start; each from the readings up to its time. covariances (n, 3, 3) of ξ in T exp ξ, in base.
+    landmarks: a map with covariances. method: the name of what made it. status: "localised", or "lost"
+    after ten rejections in a row or without any reading. lost (n,): where that was so. readings: what
+    became of each one, with NIS; measured (k,): the row of each in `times`.
     """
 
     times: Array

@@ -23,7 +23,8 @@ ASSOCIATIONS: Final = ("joint", "nearest")
 PAIR_SHARE: Final = 0.99
 """Share of χ² within which readings without names are paired, each and all at once (Neira & Tardós 2001)."""
 NEW_SHARE: Final = 0.9999
-"""Share of χ² beyond which a reading without a name makes a landmark; between the two shares it is ambiguous."""
+"""Share of χ² beyond which a reading without a name makes a landmark; between the two shares it is
+ambiguous."""
 CONFIRMED_AFTER: Final = 3
 """Updates that must see a landmark without a name before it counts."""
 DROPPED_AFTER: Final = 20
@@ -31,7 +32,8 @@ DROPPED_AFTER: Final = 20
 LOST_AFTER: Final = 10
 """Rejections in a row after which the filter counts as lost, and the covariance of its pose is inflated."""
 MOST_NODES: Final = 20_000
-"""Nodes of the search for joint compatibility, a few ten milliseconds; then its best pairings so far count."""
+"""Nodes of the search for joint compatibility, a few ten milliseconds; then its best pairings so far
+count."""
 RESAMPLE_BELOW: Final = 0.5
 """Effective number of particles over their number below which they are drawn anew."""
 MOST_PARTICLES: Final = 1_000_000
@@ -145,11 +147,11 @@ class EkfSlam(LandmarkFilter):
 
     start: the first pose (3,) or (3, 3), the origin unless given; start_covariance (3, 3) of ξ in T exp ξ,
     zero unless given. sensor: a RangeBearing. noise: of the odometry, a RandomWalk unless given.
-    linearization: "invariant" (Barrau & Bonnabel 2015), "first_estimate" (Huang, Mourikis & Roumeliotis 2010)
-    or "plain", which grows too sure of its heading. association: of readings without names, "joint"
-    compatibility (Neira & Tardós 2001) or the "nearest" compatible one in turn. gate: share of χ² beyond which
-    a reading with a name is rejected. Raises UnknownNameError for another name, InputError for a covariance
-    that is none.
+    linearization: "invariant" (Barrau & Bonnabel 2015), "first_estimate" (Huang, Mourikis & Roumeliotis
+    2010) or "plain", which grows too sure of its heading. association: of readings without names, "joint"
+    compatibility (Neira & Tardós 2001) or the "nearest" compatible one in turn. gate: share of χ² beyond
+    which a reading with a name is rejected. Raises UnknownNameError for another name, InputError for a
+    covariance that is none.
     """
 
     def __init__(
@@ -179,17 +181,18 @@ class EkfSlam(LandmarkFilter):
 
     @property
     def joint_covariance(self) -> Array:
-        """The covariance of x, y, θ and of the points of all landmarks in axes of the map, (3 + 2m, 3 + 2m)."""
+        """The covariance of x, y, θ and of the points of all landmarks in axes of the map, (3 + 2m, 3 +
+        2m)."""
         return np.asarray(self._core.joint_covariance)
 
 
 class FastSlam(LandmarkFilter):
     """SLAM of landmarks by particles, each with a pose and a Kalman filter per landmark.
 
-    n: particles. version 1 draws poses from the odometry (Montemerlo et al. 2002), version 2 from odometry and
-    readings (Montemerlo et al. 2003). rng: int, Generator or None; the same seed gives the same particles.
-    Other arguments as of EkfSlam; readings without names are paired by each particle on its own. Raises
-    InputError for another version or number.
+    n: particles. version 1 draws poses from the odometry (Montemerlo et al. 2002), version 2 from odometry
+    and readings (Montemerlo et al. 2003). rng: int, Generator or None; the same seed gives the same
+    particles. Other arguments as of EkfSlam; readings without names are paired by each particle on its own.
+    Raises InputError for another version or number.
     """
 
     def __init__(
@@ -230,7 +233,13 @@ class FastSlam(LandmarkFilter):
 
 def list_sensor(sensor: RangeBearing) -> list[float]:
     """A sensor as the core takes it."""
-    numbers = [sensor.range_sigma, sensor.bearing_sigma, sensor.range_bias, sensor.bearing_bias, *sensor.mount]
+    numbers = [
+        sensor.range_sigma,
+        sensor.bearing_sigma,
+        sensor.range_bias,
+        sensor.bearing_bias,
+        *sensor.mount,
+    ]
     most = sensor.most_range if np.isfinite(sensor.most_range) else np.finfo(float).max
     return [*numbers, float(most), 0.5 * sensor.field_of_view]
 

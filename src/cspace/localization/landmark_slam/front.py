@@ -117,7 +117,9 @@ def run_filter(
             parts.append(core.outcomes)
         poses[anchor], covariances[anchor], lost[anchor] = core.pose, core.covariance, core.is_lost
     fill_between(line, moves, poses, covariances)
-    return report_slam(slam, method, line, poses, covariances, lost, join_outcomes(parts), perf_counter() - begun)
+    return report_slam(
+        slam, method, line, poses, covariances, lost, join_outcomes(parts), perf_counter() - begun
+    )
 
 
 def read_rows(log: Log) -> Array:
@@ -131,7 +133,8 @@ def read_rows(log: Log) -> Array:
     known = log.readings.landmark != UNKNOWN
     if known.any() and not known.all():
         raise InputError(
-            f"{int((~known).sum())} of {len(known)} readings have no name; give all of them names, or −1 to all"
+            f"{int((~known).sum())} of {len(known)} readings have no name; give all of them"
+            " names, or −1 to all"
         )
     return LandmarkFilter._read_rows(log.readings)
 

@@ -45,7 +45,7 @@ class ReadingOutcomes:
     @property
     def used(self) -> Mask:
         """Which readings updated the filter, (k,)."""
-        return self.verdict == "used"
+        return np.asarray(self.verdict == "used")
 
 
 def read_outcomes(columns: tuple[Any, ...]) -> ReadingOutcomes:
