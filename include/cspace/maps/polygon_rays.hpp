@@ -56,9 +56,9 @@ inline void find_triangles(const PolygonWorld& world, Point p, std::vector<Index
     if (world.is_inside_bounds(p)) world.space.triangles_at(p, world.locator.near(p), triangles);
 }
 
-// The distance [m] to the first wall from a point in free triangles, in the direction of a unit vector; `most`
-// where it is farther, and 0 without triangles. A ray along a wall or through a corner may go past it or stop
-// there.
+// The distance [m] to the first wall from a point in free triangles, in the direction of a unit vector;
+// `most` where it is farther, and 0 without triangles. A ray along a wall or through a corner may go past it
+// or stop there.
 inline double cast_ray(const PolygonWorld& world, Point from, const std::vector<Index>& triangles,
                        Point direction, double most) {
     const Point span = world.outlines.high - world.outlines.low;
