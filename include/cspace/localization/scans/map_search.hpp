@@ -36,6 +36,8 @@ struct MapSearchRule {
     double margin = 0.25;                   // by which the score of a mode may be below that of the best
     int headings = 360;                     // all around
     double apart = 1, apart_heading = 0.5;  // two modes differ more in one of them [m], [rad]
+    // Blocks times headings up to which the first blocks are not made larger: 64 MB of bounds.
+    std::int64_t most_blocks = std::int64_t(1) << 25;
 };
 
 namespace map_search {
@@ -43,9 +45,6 @@ namespace map_search {
 // The smallest blocks have 2³ cells along a side; so have the first ones, which on large maps are larger.
 inline constexpr int finest = 3;
 static_assert(1 << finest == block_side);
-// Blocks times headings up to which the first level is not made coarser: 64 MB of bounds.
-inline constexpr std::int64_t most_blocks = std::int64_t(1) << 25;
-
 // For each cell the greatest score in the square of 2^level cells along a side of which it is the lowest and
 // leftmost one; and a margin around the grid.
 struct MaxImage {
@@ -294,7 +293,7 @@ class MapSearch {
         const auto blocks = [&](int k) {
             return std::int64_t((field_.rows >> k) + 1) * ((field_.columns >> k) + 1) * rule_.headings;
         };
-        while (blocks(level) > map_search::most_blocks) ++level;
+        while (blocks(level) > rule_.most_blocks) ++level;
         return level;
     }
     double heading(int k) const {
