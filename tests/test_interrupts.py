@@ -131,6 +131,35 @@ def cast_rays() -> Call:
 
 
 @call
+def search_pose() -> Call:
+    rng = np.random.default_rng(2)
+    field = cs.OccupancyGrid(rng.random((3000, 3000)) < 0.003, 0.05).likelihood_field(0.2)
+    points = rng.normal(size=(200, 2)) * 5
+    return lambda: cs.localization.search_pose(points, field, heading_step=0.002, least_score=0.0)
+
+
+@call
+def likelihood_field() -> Call:
+    grid = cs.OccupancyGrid(np.random.default_rng(2).random((12_000, 12_000)) < 1e-4, 0.05)
+    return lambda: grid.likelihood_field(0.2)
+
+
+@call
+def map_scans() -> Call:
+    turns = np.linspace(-np.pi, np.pi, 1000)
+    ranges = np.full((4000, 1000), 40.0, np.float32)
+    scans = cs.localization.Scans(np.arange(4000.0), ranges, turns)
+    return lambda: cs.maps.EvidenceGrid.from_scans(scans, np.zeros((4000, 3)))
+
+
+@call
+def cast_polygon_rays() -> Call:
+    world = cs.PolygonWorld([[(1, 1), (2, 1), (2, 2)]], (0, 0, 9, 9))
+    turns = np.linspace(0, 6, 4_000_000)
+    return lambda: cs.maps.cast_rays(world, np.full((len(turns), 2), 3.5), turns)
+
+
+@call
 def cover() -> Call:
     corners = np.random.default_rng(1).normal(size=(200, 3))
     hull = cs.Hull(corners)

@@ -40,6 +40,7 @@
 #include "cspace/maps/grid_outlines.hpp"
 #include "cspace/maps/likelihood_field.hpp"
 #include "cspace/maps/path_clearance.hpp"
+#include "cspace/maps/polygon_rays.hpp"
 #include "cspace/maps/rasterize.hpp"
 #include "cspace/math/banded.hpp"
 #include "cspace/math/float_packs.hpp"

@@ -11,7 +11,7 @@ using cspace::Table;
 
 static Table<ModeRow> search(cspace::maps::CellBytes scores, double resolution, Point origin, int outside,
                              std::span<const std::uint8_t> allowed, std::span<const Point> points,
-                             const std::array<double, 5>& rule) {
+                             const std::array<double, 6>& rule) {
     return search_map({scores, resolution, origin, outside}, allowed, points, rule);
 }
 

@@ -26,6 +26,8 @@ static void add(std::span<std::int32_t> sums, int columns, int row, int column,
 void bind_maps_sensing(nb::module_& m) {
     m.def("_cast_rays", cast_rays, "grid"_a, "points"_a, "angles"_a, "most"_a, WithoutLock(),
           "Ranges from rows of points at angles.");
+    m.def("_cast_rays", cast_polygon_rays, "world"_a, "points"_a, "angles"_a, "most"_a, WithoutLock(),
+          "The same among polygons.");
     m.def("_likelihood_field", likelihood_field, "grid"_a, "sigma"_a, "floor"_a, WithoutLock(),
           "Scores (rows, columns) by the distance to the nearest blocked cell.");
     m.def("_likelihood_field", likelihood_field_of_known, "blocked"_a, "known"_a, "resolution"_a, "sigma"_a,

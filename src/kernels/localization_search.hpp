@@ -7,3 +7,6 @@ CSPACE_NARROW_KERNEL(cspace::localization, void, sum_block_scores,
                      (const cspace::localization::BeamRows* beams, int count,
                       const cspace::localization::PlaneRows& planes, int rows, int columns,
                       std::uint16_t* sums))
+CSPACE_NARROW_KERNEL(cspace::localization, void, sum_cell_scores,
+                     (const std::uint8_t* scores, const std::int64_t* at, int beams, std::int64_t stride,
+                      std::uint16_t* sums))

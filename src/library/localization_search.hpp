@@ -21,9 +21,9 @@ struct FieldView {
 using ModeRow = std::array<double, 4>;  // x, y [m], θ [rad], score 0 … 1
 
 // The best separate poses of points of base (scans/map_search.hpp). allowed: a byte per cell, 0 where no base
-// may be, or none at all. rule: most, least score, headings, and how far two of them are apart [m, rad].
-// Throws std::invalid_argument for an empty scan or field.
+// may be, or none at all. rule: most, least score, margin, headings, and how far two of them are apart [m,
+// rad]. Throws std::invalid_argument for an empty scan or field.
 Table<ModeRow> search_map(const FieldView& field, std::span<const std::uint8_t> allowed,
-                          std::span<const Point> points, const std::array<double, 5>& rule);
+                          std::span<const Point> points, const std::array<double, 6>& rule);
 
 }  // namespace cspace::localization

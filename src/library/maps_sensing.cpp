@@ -6,10 +6,12 @@
 
 #include "cspace/maps/evidence.hpp"
 #include "cspace/maps/likelihood_field.hpp"
+#include "cspace/maps/polygon_rays.hpp"
 #include "cspace/maps/rays.hpp"
 #include "cspace/math/interrupts.hpp"
 #include "cspace/math/threads.hpp"
 #include "maps_grid_state.hpp"
+#include "maps_polygon_state.hpp"
 
 namespace cspace::maps {
 
@@ -24,6 +26,24 @@ Table<double> cast_rays(const GridWorld& world, std::span<const Point> from, std
         poll.step();
         const Point direction{std::cos(angles[k]), std::sin(angles[k])};
         ranges.values.push_back(cast_ray(bits, frame, from[k], direction, most));
+    }
+    return ranges;
+}
+
+Table<double> cast_polygon_rays(const PolygonCore& world, std::span<const Point> from,
+                                std::span<const double> angles, double most) {
+    if (from.size() != angles.size()) throw std::invalid_argument("as many points as angles are needed");
+    Table<double> ranges;
+    ranges.values.reserve(from.size());
+    InterruptPoll poll(16);
+    const PolygonWorld& polygons = world.state().world;
+    std::vector<Index> triangles;
+    for (std::size_t k = 0; k < from.size(); ++k) {
+        poll.step();
+        const bool is_same = k > 0 && from[k].x == from[k - 1].x && from[k].y == from[k - 1].y;
+        if (!is_same) find_triangles(polygons, from[k], triangles);
+        const Point direction{std::cos(angles[k]), std::sin(angles[k])};
+        ranges.values.push_back(cast_ray(polygons, from[k], triangles, direction, most));
     }
     return ranges;
 }

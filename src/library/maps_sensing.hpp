@@ -6,6 +6,7 @@
 #include <span>
 
 #include "maps_grid.hpp"
+#include "maps_polygon_world.hpp"
 #include "table.hpp"
 
 namespace cspace::maps {
@@ -13,6 +14,10 @@ namespace cspace::maps {
 // How far rays from points in directions go on a grid until they enter a blocked cell; at most `most`.
 Table<double> cast_rays(const GridWorld& world, std::span<const Point> from, std::span<const double> angles,
                         double most);
+
+// The same until they meet a wall of polygons.
+Table<double> cast_polygon_rays(const PolygonCore& world, std::span<const Point> from,
+                                std::span<const double> angles, double most);
 
 // Scores of the cells of a grid (rows, columns), of a sigma [m] and a floor (maps/likelihood_field.hpp).
 Table<std::uint8_t> likelihood_field(const GridWorld& world, double sigma, double floor);

@@ -26,13 +26,14 @@ def all_scores(points, field, headings):
     return sums, turns
 
 
-def best_poses(points, field, headings, most, least, apart, free):
+def best_poses(points, field, headings, most, least, margin, apart, free):
     """The best separate poses: all poses in order of their scores, each against those taken."""
     sums, turns = all_scores(points, field, headings)
     sums = np.where(free, sums, -1)
     taken = []
     for at in np.lexsort((np.arange(sums.size), -sums.ravel())):
         score = sums.flat[at] / (255 * len(points))
+        least = max(least, taken[0][3] - margin if taken else 0)
         if score < least - 1e-12 or len(taken) == most:
             break
         k, row, column = np.unravel_index(at, sums.shape)
@@ -60,9 +61,12 @@ def test_the_search_is_that_of_all_poses(seed):
     free = rng.random(shape) < rng.choice([0.2, 1.0])
     headings, least = int(rng.integers(1, 40)), rng.choice([0.0, 0.3])
     apart = (rng.uniform(0, 8) * resolution, rng.uniform(0, 1.0))
-    wanted = best_poses(points, field, headings, 4, least, apart, free)
+    margin = rng.choice([0.1, 1.0])
+    wanted = best_poses(points, field, headings, 4, least, margin, apart, free)
     step = 2 * np.pi / headings * (1 + 1e-12)
-    found = search_pose(points, field, most=4, least_score=least, heading_step=step, apart=apart, free=free)
+    found = search_pose(
+        points, field, most=4, least_score=least, margin=margin, heading_step=step, apart=apart, free=free
+    )
     np.testing.assert_allclose(found.poses, wanted[:, :3], atol=1e-12)
     np.testing.assert_allclose(found.scores, wanted[:, 3], atol=1e-12)
     assert bool(found) == (len(wanted) > 0)

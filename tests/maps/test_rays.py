@@ -66,3 +66,61 @@ def test_what_is_no_ray_is_refused():
 
 def test_the_old_name_stays():
     assert cs.navigation.cast_rays is maps.cast_rays
+
+
+def first_wall(point, direction, walls):
+    """How far a ray goes to the first of segments (n, 2, 2), by its intersection with every line."""
+    a, along = walls[:, 0], walls[:, 1] - walls[:, 0]
+    slant = direction[0] * along[:, 1] - direction[1] * along[:, 0]
+    t = ((a - point)[:, 0] * along[:, 1] - (a - point)[:, 1] * along[:, 0]) / slant
+    s = ((a - point)[:, 0] * direction[1] - (a - point)[:, 1] * direction[0]) / slant
+    return t[(t > 0) & (s >= 0) & (s <= 1)].min()
+
+
+def random_world(rng):
+    """Polygons that may overlap, in bounds of 10 × 8 m."""
+    obstacles = []
+    for _ in range(rng.integers(0, 12)):
+        turns = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 7)))
+        if np.diff(turns).min() > 0.1:
+            reach = rng.uniform(0.3, 1.2)
+            ring = rng.uniform(1, 7, 2) + reach * np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+            obstacles.append(ring)
+    return cs.PolygonWorld(obstacles, bounds=(0, 0, 10, 8))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_rays_among_polygons_end_at_the_first_wall(seed):
+    rng = np.random.default_rng(seed)
+    world = random_world(rng)
+    walls = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in world.walls])
+    points = rng.uniform(0, 1, (200, 2)) * (10, 8)
+    angles = rng.uniform(-7, 7, 200)
+    got = maps.cast_rays(world, points, angles)
+    free = world.is_free(points)
+    assert (got[~free] == 0).all()
+    for p, angle, distance in zip(points[free], angles[free], got[free], strict=True):
+        wanted = first_wall(p, np.array([np.cos(angle), np.sin(angle)]), walls)
+        assert distance == pytest.approx(wanted, abs=1e-9)
+    np.testing.assert_array_equal(maps.cast_rays(world, points, angles, 0.7), np.minimum(got, 0.7))
+
+
+def test_rays_from_walls_and_outside():
+    world = cs.PolygonWorld([[(2, 2), (4, 2), (4, 4), (2, 4)]], bounds=(0, 0, 6, 6))
+    assert maps.cast_rays(world, (1.0, 3.0), 0.0) == 1.0
+    assert maps.cast_rays(world, (2.0, 3.0), 0.0) == 0.0  # from the wall into it
+    assert maps.cast_rays(world, (2.0, 3.0), np.pi) == 2.0  # and away from it
+    assert maps.cast_rays(world, (3.0, 3.0), 0.0) == 0.0  # inside
+    assert maps.cast_rays(world, (7.0, 3.0), 0.0) == 0.0  # outside
+    np.testing.assert_allclose(maps.cast_rays(world, (1.0, 1.0), [0, np.pi / 2]), 5.0)
+
+
+def test_grids_and_their_polygons_stop_the_same_rays():
+    rng = np.random.default_rng(5)
+    grid = cs.OccupancyGrid(rng.random((20, 30)) < 0.1, 0.5)
+    world = cs.PolygonWorld.from_grid(grid)
+    points = rng.uniform(0, 1, (500, 2)) * (15, 10)
+    angles = rng.uniform(-4, 4, 500)
+    free = grid.is_free(points)
+    mine, theirs = (maps.cast_rays(each, points[free], angles[free]) for each in (grid, world))
+    np.testing.assert_allclose(mine, theirs, atol=1e-9)

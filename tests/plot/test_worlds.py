@@ -49,6 +49,22 @@ def test_obstacles_are_dark_and_free_space_is_white(world):
         assert shown[shown.shape[0] - place[1], place[0]].max() < 140
 
 
+def test_evidence_is_dark_where_it_is_certain():
+    grid = cs.maps.EvidenceGrid.from_probability([[0.0, np.nan], [0.6, 1.0]], 1.0, (2.0, 0.0))
+    _, ax = plt.subplots()
+    cs.plot.world(grid, ax=ax)
+    shown = pixels(ax)
+
+    def tone(x, y):
+        column, row = ax.transData.transform((x, y)).astype(int)
+        return int(shown[shown.shape[0] - row, column].max())
+
+    free, unknown, likely, sure = tone(2.5, 0.5), tone(3.5, 0.5), tone(2.5, 1.5), tone(3.5, 1.5)
+    assert free > 250 > unknown > likely > sure
+    assert sure < 140
+    plt.close("all")
+
+
 def test_what_a_radius_shuts_is_neither_obstacle_nor_free(world):
     for planner in ("any_angle", "a_star"):
         _, ax = plt.subplots()

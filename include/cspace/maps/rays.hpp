@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "cspace/maps/bit_grid.hpp"
@@ -36,6 +37,32 @@ struct Axis {
     void go() { cell += step, beside = cell; }
 };
 
+// A ray that runs along no border, from a free cell: it is in one cell at a time.
+inline double walk_slanted(const BitGrid& grid, Axis x, Axis y, double limit, double none) {
+    const std::uint64_t* line = grid.row(y.cell);
+    const auto is_blocked = [](const std::uint64_t* row, int column) {
+        return row[unsigned(column + 1) >> 6] >> (unsigned(column + 1) & 63) & 1;
+    };
+    double tx = x.next(), ty = y.next();
+    for (;;) {
+        const double t = std::min(tx, ty);
+        if (!(t < limit)) return none;
+        bool is_pinched = false;
+        if (tx == ty) {
+            is_pinched = grid.blocked(y.cell + y.step, x.cell) && is_blocked(line, x.cell + x.step);
+            x.cell += x.step, y.cell += y.step;
+            tx = x.next(), ty = y.next();
+            line = grid.row(y.cell);
+        } else if (tx < ty) {
+            x.cell += x.step, tx = x.next();
+        } else {
+            y.cell += y.step, ty = y.next();
+            line = grid.row(y.cell);
+        }
+        if (is_pinched || is_blocked(line, x.cell)) return t;
+    }
+}
+
 }  // namespace rays
 
 // The distance [m] to the first blocked cell from a point in the grid, in the direction of a unit vector;
@@ -55,6 +82,10 @@ inline double cast_ray(const BitGrid& grid, const GridFrame& frame, Point from, 
         return true;
     };
     if (stopped()) return 0;
+    if (x.step != 0 && y.step != 0) {
+        const double t = rays::walk_slanted(grid, x, y, limit, -1);
+        return t < 0 ? most : frame.resolution * t;
+    }
     for (;;) {
         const double tx = x.next(), ty = y.next(), t = std::min(tx, ty);
         if (!(t < limit)) return most;

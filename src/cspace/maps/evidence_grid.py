@@ -129,7 +129,7 @@ class EvidenceGrid:
     def from_probability(
         cls, probability: ArrayLike, resolution: float = 1.0, origin: ArrayLike = (0.0, 0.0)
     ) -> EvidenceGrid:
-        """A grid of probabilities (rows, columns) from 0 to 1, where NaN and ½ mean unknown; origin (2,) [m]."""
+        """A grid of probabilities (rows, columns) from 0 to 1, NaN and ½ where unknown; origin (2,) [m]."""
         given = np.asarray(probability, dtype=np.float64)
         if given.ndim != 2 or not given.size:
             raise InputError(f"probability has shape {given.shape}; expected (rows, columns), at least one")
@@ -239,10 +239,9 @@ class EvidenceGrid:
 
     def __repr__(self) -> str:
         rows, columns = self.shape
-        return (
-            f"<EvidenceGrid {rows} × {columns} cells of {self.resolution:g} m, {self.known.mean():.1%} known, "
-            f"origin ({self.origin[0]:g}, {self.origin[1]:g})>"
-        )
+        cells = f"{rows} × {columns} cells of {self.resolution:g} m"
+        x, y = self.origin
+        return f"<EvidenceGrid {cells}, {self.known.mean():.1%} known, origin ({x:g}, {y:g})>"
 
 
 @dataclass(frozen=True)
@@ -340,8 +339,8 @@ def _add_scans(
     farthest = max(map(abs, (low_row, low_column, high_row, high_column)))
     if wide * high > MAP_CELLS or farthest > FARTHEST_ROW:
         raise InputError(
-            f"the scans reach over {high * grid.resolution:.4g} × {wide * grid.resolution:.4g} m, {wide * high:.3g}"
-            f" cells; the maximum is {MAP_CELLS}: take a coarser resolution, or a smaller max_range"
+            f"the scans reach over {wide * grid.resolution:.4g} × {high * grid.resolution:.4g} m,"
+            f" {wide * high:.3g} cells; the maximum is {MAP_CELLS}: take coarser cells or a smaller max_range"
         )
     with guard_memory("resolution", grid.resolution, 0.5 * wide * high * (count + 1), "take a coarser one"):
         sums = np.zeros((int(high), int(wide)), np.int32)

@@ -39,10 +39,31 @@ INTERVAL: Final = 80
 
 
 def world(world: Any, *, ax: Any | None = None) -> list[Any]:
-    """Draw a PolygonWorld or an OccupancyGrid: obstacles dark, free space white. Returns the artists."""
+    """Draw a PolygonWorld, an OccupancyGrid or an EvidenceGrid: obstacles dark, free space white. Unknown
+    cells of an EvidenceGrid are grey, and the others the darker the likelier they are occupied. Returns the
+    artists."""
     if not hasattr(world, "kind"):
-        raise _wrong(world, "world", "a PolygonWorld or an OccupancyGrid")
+        raise _wrong(world, "world", "a PolygonWorld, an OccupancyGrid or an EvidenceGrid")
+    if world.kind == "evidence":
+        return _evidence(flat_axes(ax), world)
     return _ground(flat_axes(ax), world, world)
+
+
+def _evidence(axes: Any, grid: Any) -> list[Any]:
+    """The probabilities of cells between the colours of free space and of obstacles."""
+    axes.tick_params(labelsize=8, colors=colors.INK)
+    p = grid.probability[..., None]
+    shade = (1 - p) * np.array(FREE) + p * np.array(_rgb(colors.WALL))
+    shade[~grid.known] = SHUT
+    drawn = draw_image(axes, grid, shade, zorder=0)
+    axes.set_aspect("equal")
+    return drawn
+
+
+def _rgb(color: Any) -> tuple[float, float, float]:
+    from matplotlib.colors import to_rgb
+
+    return to_rgb(color)
 
 
 def _ground(axes: Any, world: Any, asked: Any) -> list[Any]:

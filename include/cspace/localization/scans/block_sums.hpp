@@ -1,8 +1,10 @@
-// Upper bounds for whole blocks of cells: sums over the beams of a scan of scores that were reduced to five
-// bits, eight at a time in bytes. Lanes are neighbouring blocks of a row.
+// Sums of scores over the beams of a scan, for many poses at once. For whole blocks of cells these are upper
+// bounds, of scores reduced to five bits, eight at a time in bytes; lanes are neighbouring blocks of a row.
+// For the cells of one block lanes are its columns.
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 
 #include "cspace/math/isa.hpp"
 
@@ -24,6 +26,9 @@ struct PlaneRows {
     std::int32_t count;
     const std::uint8_t* outside;
 };
+
+inline constexpr int block_side = 8;         // cells of a block whose poses are scored at once
+inline constexpr int most_cell_beams = 257;  // whose scores a sum of 16 bits holds
 
 }  // namespace cspace::localization
 
@@ -53,6 +58,39 @@ CSPACE_INLINE void sum_blocks(const BeamRows* beams, int count, const PlaneRows&
             }
         }
     }
+}
+
+namespace block_sums {
+
+#if CSPACE_VECTOR_EXTENSIONS
+typedef std::uint8_t Bytes __attribute__((vector_size(block_side)));
+typedef std::uint16_t Sums __attribute__((vector_size(2 * block_side)));
+
+CSPACE_INLINE void add_bytes(Sums& sums, const std::uint8_t* from) {
+    Bytes bytes;
+    std::memcpy(&bytes, from, sizeof bytes);
+    sums += __builtin_convertvector(bytes, Sums);
+}
+#else
+struct Sums {
+    std::uint16_t lanes[block_side];
+};
+CSPACE_INLINE void add_bytes(Sums& sums, const std::uint8_t* from) {
+    for (int k = 0; k < block_side; ++k) sums.lanes[k] = std::uint16_t(sums.lanes[k] + from[k]);
+}
+#endif
+
+}  // namespace block_sums
+
+// sums[row · block_side + column] = Σ scores[at[beam] + row · stride + column] over the beams.
+CSPACE_INLINE void sum_cells(const std::uint8_t* scores, const std::int64_t* at, int beams,
+                             std::int64_t stride, std::uint16_t* sums) {
+    block_sums::Sums total[block_side] = {};
+    for (int k = 0; k < beams; ++k) {
+        const std::uint8_t* from = scores + at[k];
+        for (int row = 0; row < block_side; ++row, from += stride) block_sums::add_bytes(total[row], from);
+    }
+    std::memcpy(sums, total, sizeof total);
 }
 
 }  // namespace cspace::localization::inline CSPACE_ISA

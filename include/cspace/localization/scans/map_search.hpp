@@ -3,8 +3,9 @@
 //
 // A pose is the centre of a cell and one of evenly spaced headings. Its score is the sum of the scores of the
 // cells in which the points of the scan then lie. The greatest score within a block of cells bounds that of
-// all poses in it: first of all large blocks at all headings, then, greatest bound first, of their quarters,
-// down to single cells. So the result is that of trying all poses.
+// all poses in it: first all large blocks at all headings are bounded. Then, greatest bound first, blocks are
+// split into quarters, and the poses of the smallest blocks scored. So the result is that of trying all
+// poses.
 #pragma once
 
 #include <algorithm>
@@ -32,27 +33,30 @@ struct PoseMode {
 struct MapSearchRule {
     int most = 3;                           // modes
     double least_score = 0.5;               // of a mode
+    double margin = 0.25;                   // by which the score of a mode may be below that of the best
     int headings = 360;                     // all around
     double apart = 1, apart_heading = 0.5;  // two modes differ more in one of them [m], [rad]
+    // Blocks times headings up to which the first blocks are not made larger: 64 MB of bounds.
+    std::int64_t most_blocks = std::int64_t(1) << 25;
 };
 
 namespace map_search {
 
-inline constexpr int coarsest = 3;  // the first blocks have 2³ cells along a side, on large maps more
-// Blocks times headings up to which the first level is not made coarser: 64 MB of bounds.
-inline constexpr std::int64_t most_blocks = std::int64_t(1) << 25;
-
+// The smallest blocks have 2³ cells along a side; so have the first ones, which on large maps are larger.
+inline constexpr int finest = 3;
+static_assert(1 << finest == block_side);
 // For each cell the greatest score in the square of 2^level cells along a side of which it is the lowest and
 // leftmost one; and a margin around the grid.
 struct MaxImage {
     int margin = 0, stride = 0, rows = 0;
     std::vector<std::uint8_t> values;
 
-    int clamp_row(int row) const { return std::clamp(row + margin, 0, rows - 1); }
-    int clamp_column(int column) const { return std::clamp(column + margin, 0, stride - 1); }
-    std::uint8_t at(int row, int column) const {
-        return values[std::size_t(clamp_row(row)) * std::size_t(stride) + std::size_t(clamp_column(column))];
+    // Where a square of so many cells along a side begins: that nearest one inside whose values are the same.
+    std::int64_t place(int row, int column, int side = 1) const {
+        const int up = std::clamp(row + margin, 0, rows - side);
+        return std::int64_t(up) * stride + std::clamp(column + margin, 0, stride - side);
     }
+    std::uint8_t at(int row, int column) const { return values[std::size_t(place(row, column))]; }
 };
 
 // The scores themselves, with a margin.
@@ -184,7 +188,8 @@ struct Offset {
     std::int32_t row, column;
 };
 
-// A block of poses: all with one heading whose bases lie in a square of 2^level cells along a side.
+// A block of poses: all with one heading whose bases lie in a square of 2^level cells along a side. Of level
+// 0: the best pose of a smallest block, but for those too near to modes found.
 struct Block {
     std::int32_t score;  // no pose in it has a greater one
     std::int32_t level, heading, row, column;
@@ -201,22 +206,37 @@ struct Block {
 
 }  // namespace map_search
 
-// SumBlocks is sum_blocks or a kernel that does the same.
-template <class SumBlocks>
+// The sums as headers; the library has kernels that do the same.
+struct HeaderSums {
+    static void blocks(const BeamRows* beams, int count, const PlaneRows& planes, int rows, int columns,
+                       std::uint16_t* sums) {
+        sum_blocks(beams, count, planes, rows, columns, sums);
+    }
+    static void cells(const std::uint8_t* scores, const std::int64_t* at, int beams, std::int64_t stride,
+                      std::uint16_t* sums) {
+        sum_cells(scores, at, beams, stride, sums);
+    }
+};
+
+template <class BeamSums = HeaderSums>
 class MapSearch {
   public:
     // allowed: a byte per cell, 0 where no base may be; or none.
     MapSearch(const maps::ByteField& field, std::span<const std::uint8_t> allowed,
-              std::span<const Point> points, const MapSearchRule& rule, const SumBlocks& sum_blocks)
+              std::span<const Point> points, const MapSearchRule& rule)
         : field_(field),
           points_(points),
           rule_(rule),
-          sum_blocks_(sum_blocks),
+          whole_(255.0 * double(points.size())),
           level_(choose_level()),
-          allowed_(allowed, field.rows, field.columns, level_) {
+          allowed_(allowed, field.rows, field.columns, level_),
+          at_(points.size()) {
         images_.push_back(map_search::make_image(field, 1 << level_));
-        for (int k = 0; k < level_; ++k) images_.push_back(map_search::widen(images_.back(), 1 << k));
-        least_ = int(std::ceil(rule.least_score * 255 * double(points.size()) - rounding));
+        for (int k = 0; k < level_; ++k) {
+            images_.push_back(map_search::widen(images_.back(), 1 << k));
+            if (k > 0 && k < map_search::finest) images_[std::size_t(k)] = {};
+        }
+        least_ = int(std::ceil(rule.least_score * whole_ - rounding));
     }
 
     // The best pose, then the best of those apart from it, and so on. Among equal scores the one of the first
@@ -224,24 +244,24 @@ class MapSearch {
     std::vector<PoseMode> find() {
         find_offsets();
         bound_blocks();
-        std::vector<PoseMode> modes;
-        int limit = 255 * int(points_.size()) + 1;
-        while (int(modes.size()) < rule_.most) {
+        int limit = int(whole_) + 1;
+        while (int(modes_.size()) < rule_.most) {
             while (queue_.empty() || queue_.top().score < limit)
                 if (!add_blocks(limit)) break;
             if (queue_.empty()) break;
             const Block block = queue_.top();
             queue_.pop();
             poll_.step();
-            if (is_within_mode(block, modes)) continue;
-            if (block.level == 0)
-                modes.push_back(mode_of(block));
-            else
+            if (block.level > map_search::finest && !is_near_mode(block))
                 split(block);
+            else if (block.level == map_search::finest && !is_near_mode(block))
+                score_poses(block);
+            else if (block.level == 0)
+                take(block);
         }
-        return modes;
+        return modes_;
     }
-    std::int64_t bounds() const { return bounds_; }  // that were computed one by one
+    std::int64_t scored() const { return scored_; }  // blocks whose poses were scored
 
   private:
     using Block = map_search::Block;
@@ -252,7 +272,7 @@ class MapSearch {
     const maps::ByteField& field_;
     const std::span<const Point> points_;
     const MapSearchRule rule_;
-    const SumBlocks& sum_blocks_;
+    const double whole_;  // the greatest sum of scores
     const int level_;
     const map_search::AllowedBlocks allowed_;
     std::vector<map_search::MaxImage> images_;  // by level
@@ -264,14 +284,16 @@ class MapSearch {
     std::priority_queue<Block> queue_;
     std::int64_t batch_ = 4096;  // blocks that are put into the queue at once
     InterruptPoll poll_{32};
-    std::int64_t bounds_ = 0;
+    std::int64_t scored_ = 0;
+    std::vector<PoseMode> modes_;
+    std::vector<std::int64_t> at_;  // of each point: where the cells of a block are in the image
 
     int choose_level() const {
-        int level = map_search::coarsest;
+        int level = map_search::finest;
         const auto blocks = [&](int k) {
             return std::int64_t((field_.rows >> k) + 1) * ((field_.columns >> k) + 1) * rule_.headings;
         };
-        while (blocks(level) > map_search::most_blocks) ++level;
+        while (blocks(level) > rule_.most_blocks) ++level;
         return level;
     }
     double heading(int k) const {
@@ -311,7 +333,7 @@ class MapSearch {
             const std::span<const Offset> at = offsets(k);
             for (std::size_t i = 0; i < count; ++i) beams[i] = image.rows_of(at[i].row, at[i].column);
             std::uint16_t* sums = sums_.data() + std::size_t(k) * size;
-            sum_blocks_(beams.data(), int(beams.size()), image.planes(), rows_, width_, sums);
+            BeamSums::blocks(beams.data(), int(beams.size()), image.planes(), rows_, width_, sums);
             for (int row = 0; row < rows_; ++row, sums += width_)
                 for (int column = 0; column < columns_; ++column) {
                     sums[column] = std::uint16_t(sums[column] - fill);
@@ -348,31 +370,59 @@ class MapSearch {
     void split(const Block& block) {
         const int level = block.level - 1, half = 1 << level;
         const map_search::MaxImage& image = images_[std::size_t(level)];
-        std::int32_t sums[4] = {};
-        for (const Offset at : offsets(block.heading)) {
-            const int row = block.row + at.row, column = block.column + at.column;
-            const auto low = std::size_t(image.clamp_row(row)) * std::size_t(image.stride);
-            const auto high = std::size_t(image.clamp_row(row + half)) * std::size_t(image.stride);
-            const auto left = std::size_t(image.clamp_column(column));
-            const auto right = std::size_t(image.clamp_column(column + half));
-            sums[0] += image.values[low + left], sums[1] += image.values[low + right];
-            sums[2] += image.values[high + left], sums[3] += image.values[high + right];
-        }
-        bounds_ += 4;
         for (int k = 0; k < 4; ++k) {
             const int row = block.row + (k / 2) * half, column = block.column + (k % 2) * half;
-            if (row < field_.rows && column < field_.columns)
-                add({std::min(sums[k], block.score), level, block.heading, row, column});
+            if (row >= field_.rows || column >= field_.columns || !allowed_.has(level, row, column)) continue;
+            std::int32_t sum = 0;
+            for (const Offset at : offsets(block.heading)) sum += image.at(row + at.row, column + at.column);
+            add({std::min(sum, block.score), level, block.heading, row, column});
         }
+    }
+    // The best pose of a smallest block that is not too near to a mode.
+    void score_poses(const Block& block) {
+        ++scored_;
+        std::int32_t sums[block_side * block_side] = {};
+        sum_poses(block, sums);
+        Block best{least_ - 1, 0, block.heading, 0, 0};
+        const int rows = std::min(block_side, field_.rows - block.row);
+        const int columns = std::min(block_side, field_.columns - block.column);
+        for (int i = 0; i < rows; ++i)
+            for (int j = 0; j < columns; ++j) {
+                const Block pose{sums[i * block_side + j], 0, block.heading, block.row + i, block.column + j};
+                if (pose.score > best.score && allowed_.has(0, pose.row, pose.column) && !is_near_mode(pose))
+                    best = pose;
+            }
+        add(best);
+    }
+    void sum_poses(const Block& block, std::int32_t* sums) {
+        const map_search::MaxImage& image = images_[0];
+        const std::span<const Offset> offsets = this->offsets(block.heading);
+        for (std::size_t k = 0; k < at_.size(); ++k)
+            at_[k] = image.place(block.row + offsets[k].row, block.column + offsets[k].column, block_side);
+        for (std::size_t first = 0; first < at_.size(); first += most_cell_beams) {
+            const std::size_t count = std::min(at_.size() - first, std::size_t(most_cell_beams));
+            std::uint16_t part[block_side * block_side];
+            BeamSums::cells(image.values.data(), at_.data() + first, int(count), image.stride, part);
+            for (int k = 0; k < block_side * block_side; ++k) sums[k] += part[k];
+        }
+    }
+    // The best pose that is left is a mode, unless one was found near it since it was scored.
+    void take(const Block& pose) {
+        if (modes_.empty())
+            least_ = std::max(least_, int(std::ceil(pose.score - rule_.margin * whole_ - rounding)));
+        if (!is_near_mode(pose)) modes_.push_back(mode_of(pose));
+        constexpr int aligned = ~(block_side - 1);
+        score_poses(
+            {pose.score, map_search::finest, pose.heading, pose.row & aligned, pose.column & aligned});
     }
     PoseMode mode_of(const Block& block) const {
         const Point at = field_.frame.center({block.row, block.column});
-        return {at.x, at.y, heading(block.heading), block.score / (255.0 * double(points_.size()))};
+        return {at.x, at.y, heading(block.heading), block.score / whole_};
     }
     // Whether all poses of a block are too near to one found.
-    bool is_within_mode(const Block& block, const std::vector<PoseMode>& modes) const {
+    bool is_near_mode(const Block& block) const {
         const int last = (1 << block.level) - 1;
-        return std::any_of(modes.begin(), modes.end(), [&](const PoseMode& mode) {
+        return std::any_of(modes_.begin(), modes_.end(), [&](const PoseMode& mode) {
             if (std::abs(short_way(heading(block.heading) - mode.theta)) > rule_.apart_heading) return false;
             double far = 0;
             for (int k = 0; k < 4; ++k)

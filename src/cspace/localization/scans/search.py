@@ -10,7 +10,15 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, guard_memory, one_array, one_number, positive_number, whole_number
+from cspace.arrays import (
+    Array,
+    bounded_number,
+    guard_memory,
+    one_array,
+    one_number,
+    positive_number,
+    whole_number,
+)
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import ByteField
 from cspace.tables import count_things, one_line
@@ -54,6 +62,7 @@ def search_pose(
     *,
     most: int = 3,
     least_score: float = 0.5,
+    margin: float = 0.25,
     heading_step: float | None = None,
     apart: tuple[float, float] = (1.0, 0.5),
     free: ArrayLike | None = None,
@@ -65,10 +74,11 @@ def search_pose(
     best one, then the best of those apart from it, and so on. Branch and bound finds it.
 
     scan_points (m, 2): where beams ended, in base [m], as of `scans.points(k)`; 60 to 200 of them. field:
-    as of `grid.likelihood_field()`. most: how many poses. least_score: of each, from 0 to 1. heading_step
-    [rad]: between headings, by default at most 0.02, and so small that points at nine tenths of the scan
-    move by two cells at most. apart: poses that differ by no more than this distance [m] and this angle
-    [rad] are one. free: truth values (rows, columns), the cells in which base may be; by default all.
+    as of `grid.likelihood_field()`. most: how many poses. least_score: of each, from 0 to 1. margin: by how
+    much the score of a pose may be below that of the best; 1 for all. heading_step [rad]: between
+    headings, by default at most 0.02, and so small that points at nine tenths of the scan move by two
+    cells at most. apart: poses that differ by no more than this distance [m] and this angle [rad] are one.
+    free: truth values (rows, columns), the cells in which base may be; by default all.
 
     Raises InputTypeError and InputError for other values, and for a scan without points. Ctrl-C ends the
     search. Olson 2009; Hess, Kohler, Rapp and Andor 2016.
@@ -86,7 +96,8 @@ def search_pose(
     lengths = one_array(apart, "apart", (2,), "a distance [m] and an angle [rad]")
     if (lengths < 0).any():
         raise InputError(f"apart is {tuple(lengths)}; a distance and an angle are zero or more")
-    rule = (float(count), least, float(headings), *lengths.tolist())
+    below = bounded_number(margin, "margin", 0.0, "a difference of scores is zero or more")
+    rule = (float(count), least, min(below, 1.0), float(headings), *lengths.tolist())
     allowed = _read_cells(free, field)
     with guard_memory("field", field, 1.5 * field.scores.size, "give a part of the map"):
         rows = _core._search_map(
