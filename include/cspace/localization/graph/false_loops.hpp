@@ -98,25 +98,28 @@ class FalseLoopSolver {
         constexpr double widths[] = {30, 10, 3, 1};
         State state = start;
         const std::vector<int> times = find_times();
-        std::vector<int> ends = find_batches(times, most_batches);
         std::vector<double> weights(graph_.factors(), 1.0);
-        int begin = 0;
-        for (int end : ends) {
-            reckon_after(begin, state);
-            for (double share : widths) {
-                for (int step = 0; step < most_steps; ++step) {
-                    measure_squares(graph_, state, options_.residual, squares_);
-                    for (std::size_t k = 0; k < weights.size(); ++k) {
-                        const double own = times[k] > begin ? share * width : width;
-                        weights[k] = times[k] > end ? 0.0
-                                     : trusted_[k]  ? 1.0
-                                                    : evaluate_kernel(RobustKernel::dcs, squares_[k], own).weight;
-                    }
-                    if (!(step_with(weights, state, least) > least_step)) break;
+        // The measurements up to `end`, those after `begin` with kernels of this share of the width.
+        const auto settle_until = [&](int begin, int end, double share) {
+            for (int step = 0; step < most_steps; ++step) {
+                measure_squares(graph_, state, options_.residual, squares_);
+                for (std::size_t k = 0; k < weights.size(); ++k) {
+                    const double own = times[k] > begin ? share * width : width;
+                    weights[k] = times[k] > end ? 0.0
+                                 : trusted_[k]  ? 1.0
+                                                : evaluate_kernel(RobustKernel::dcs, squares_[k], own).weight;
                 }
+                if (!(step_with(weights, state, least) > least_step)) break;
             }
+        };
+        int begin = 0;
+        for (int end : find_batches(times, most_batches)) {
+            reckon_after(begin, state);
+            for (double share : widths) settle_until(begin, end, share);
             begin = end;
         }
+        // Once more for all, for true measurements that came too early.
+        for (double share : widths) settle_until(-1, begin, share);
         return scale_covariances(state, width);
     }
 
@@ -335,19 +338,18 @@ class FalseLoopSolver {
         return optimizer_.take_step(state);
     }
 
-    // χ² per degree of freedom of these measurements, between the bounds of a scale; towards 1 where few doubted
-    // measurements count, which say little.
+    // χ² per degree of freedom of these measurements, between the bounds of a scale; towards 1 where few more
+    // numbers were measured than are unknown, which say little.
     double find_scale(const std::vector<char>& is_used) const {
-        constexpr double least = 0.1;   // errors have heavier tails than the quantile knows
-        constexpr double belief = 0.05;  // in 1, as a share of the numbers of all doubted measurements
-        double sum = 0, doubted = 0, numbers = -double(unknowns_);
+        constexpr double least = 0.1;    // errors have heavier tails than the quantile knows
+        constexpr double belief = 0.05;  // in 1, in numbers per unknown one
+        double sum = 0, numbers = -double(unknowns_);
         for (std::size_t k = 0; k < is_used.size(); ++k) {
-            const double own = k < graph_.edges.size() ? Space::freedom : Space::dimension;
-            if (!trusted_[k]) doubted += own;
-            if (is_used[k]) sum += squares_[k], numbers += own;
+            if (is_used[k]) sum += squares_[k], numbers += k < graph_.edges.size() ? Space::freedom : Space::dimension;
         }
         if (!(numbers > 0)) return 1;
-        return std::clamp((sum + belief * doubted) / (numbers + belief * doubted), least, 1.0);
+        const double believed = belief * double(unknowns_);
+        return std::clamp((sum + believed) / (numbers + believed), least, 1.0);
     }
 
     // Solves with the measurements within their limits, until these stay the same. is_kept: those that count

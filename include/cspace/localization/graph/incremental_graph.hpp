@@ -54,7 +54,11 @@ class IncrementalGraph {
     bool step() {
         activate_queue();
         if (tree_.is_whole() && far_.empty() && !has_residual_) return true;
-        return finish_step();
+        for (int round = 0; round < most_rounds; ++round) {
+            if (!finish_step()) return false;
+            if (!(farthest_ > very_far * options_.relinearize)) break;
+        }
+        return true;
     }
     // Eliminates what was put off.
     bool finish_step() {
@@ -123,6 +127,9 @@ class IncrementalGraph {
 
   private:
     static constexpr int none = -1;
+    // A correction so many times beyond the threshold is not the last one: the step is repeated.
+    static constexpr double very_far = 10;
+    static constexpr int most_rounds = 10;
     struct Measurement {
         bool is_edge;
         int index;
@@ -258,7 +265,7 @@ class IncrementalGraph {
         for (int v : far_) {
             const Variable& at = variables_[std::size_t(v)];
             is_far_[std::size_t(v)] = 0;
-            if (!is_beyond(v)) continue;
+            if (!(largest_entry(v) > options_.relinearize)) continue;
             if (at.is_pose)
                 linear_.poses[std::size_t(at.row)] = estimate_.poses[std::size_t(at.row)];
             else
@@ -270,10 +277,12 @@ class IncrementalGraph {
         std::sort(stale_.begin(), stale_.end());
         stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
     }
-    bool is_beyond(int v) const {
+    double largest_entry(int v) const {
         const double* const d = tree_.solution(v);
         const int size = variables_[std::size_t(v)].is_pose ? Space::freedom : Space::dimension;
-        return std::any_of(d, d + size, [&](double x) { return std::fabs(x) > options_.relinearize; });
+        double largest = 0;
+        for (int k = 0; k < size; ++k) largest = std::max(largest, std::fabs(d[k]));
+        return largest;
     }
     // An interrupt leaves the factors to come stale.
     void linearize_stale() {
@@ -299,6 +308,7 @@ class IncrementalGraph {
                            model.gb.data());
     }
     void read_changes() {
+        farthest_ = 0;
         for (int v : tree_.changed()) {
             const Variable& at = variables_[std::size_t(v)];
             const auto row = std::size_t(at.row);
@@ -308,7 +318,9 @@ class IncrementalGraph {
                 for (std::size_t i = 0; i < Space::dimension; ++i)
                     estimate_.landmarks[row][i] = linear_.landmarks[row][i] + tree_.solution(v)[i];
             }
-            if (is_far_[std::size_t(v)] || !is_beyond(v)) continue;
+            const double moved = largest_entry(v);
+            farthest_ = std::max(farthest_, moved);
+            if (is_far_[std::size_t(v)] || !(moved > options_.relinearize)) continue;
             is_far_[std::size_t(v)] = 1;
             far_.push_back(v);
         }
@@ -331,6 +343,7 @@ class IncrementalGraph {
     Waiting waiting_for_pose_, waiting_for_landmark_;
     std::vector<int> stale_, touched_;  // factors to linearise, and variables to eliminate
     std::vector<int> far_;
+    double farthest_ = 0;  // correction of the last step
     std::vector<char> is_far_;
     bool has_residual_ = false;  // whether a measurement that waits for its elimination has an error
     int newest_ = none;
