@@ -95,7 +95,7 @@ class FalseLoopSolver {
         constexpr int most_steps = 4;          // per width
         constexpr double least_step = 1e-2;    // [m or rad]
         constexpr double least = 1e-2;         // weight: wide kernels would keep false measurements
-        constexpr double widths[] = {30, 10, 3, 1};
+        constexpr double widths[] = {30, 10, 3, 1}, narrow = 3;
         State state = start;
         const std::vector<int> times = find_times();
         std::vector<double> weights(graph_.factors(), 1.0);
@@ -115,11 +115,17 @@ class FalseLoopSolver {
         int begin = 0;
         for (int end : find_batches(times, most_batches)) {
             reckon_after(begin, state);
-            for (double share : widths) settle_until(begin, end, share);
+            const bool is_near = has_fitting(times, begin, end, state, width);
+            for (double share : widths) {
+                if (share <= narrow || !is_near) settle_until(begin, end, share);
+            }
             begin = end;
         }
         // Once more for all, for true measurements that came too early.
-        for (double share : widths) settle_until(-1, begin, share);
+        const bool is_near = has_fitting(times, -1, begin, state, width);
+        for (double share : widths) {
+            if (share <= narrow || !is_near) settle_until(-1, begin, share);
+        }
         return scale_covariances(state, width);
     }
 
@@ -292,6 +298,19 @@ class FalseLoopSolver {
         const int last = int(graph_.start.poses.size());
         if (ends.empty() || ends.back() < last) ends.push_back(last);
         return ends;
+    }
+    // Whether more than a few doubted measurements of a time fit a state as it is: wide kernels would only keep
+    // false ones, which fill the factor.
+    bool has_fitting(const std::vector<int>& times, int begin, int end, const State& state, double width) {
+        constexpr double least = 0.1;  // of them
+        measure_squares(graph_, state, options_.residual, squares_);
+        double fitting = 0, all = 0;
+        for (std::size_t k = 0; k < times.size(); ++k) {
+            if (trusted_[k] || times[k] <= begin || times[k] > end) continue;
+            all += 1;
+            fitting += evaluate_kernel(RobustKernel::dcs, squares_[k], width).weight >= 0.5;
+        }
+        return fitting >= least * all;
     }
     // Moves the poses after one along trusted measurements.
     void reckon_after(int time, State& state) const {
