@@ -73,7 +73,7 @@ def false_table(measured: list[Results]) -> str:
         ]
         for found in measured
     ]
-    heading = ["false loops, `robust=\"dcs\"`", "", "error [m], median (worst)", "true loops lost, worst"]
+    heading = ['false loops, `robust="dcs"`', "", "error [m], median (worst)", "true loops lost, worst"]
     return table([*heading, "false loops kept, worst", "time [s]"], body)
 
 
@@ -98,7 +98,11 @@ def batch_row(results: Results, spatial: bool) -> Row:
 
 
 def growing_row(results: Results) -> Row:
-    what, must, aim = "incremental M3500, total / slowest step / χ²", "≤ 1.2 s / 15 ms / 0.2 %", "0.5 s / 8 ms"
+    what, must, aim = (
+        "incremental M3500, total / slowest step / χ²",
+        "≤ 1.2 s / 15 ms / 0.2 %",
+        "0.5 s / 8 ms",
+    )
     measured = results["incremental_graphs"]
     if not measured:
         return row(what, must, aim, "", None)

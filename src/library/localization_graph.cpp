@@ -155,9 +155,10 @@ class SolverOf : public GraphSolver {
         }
         if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
         // One scale for all, of the answer that knows most.
-        const double scale = std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
-                                 return solver.count_kept(a) < solver.count_kept(b);
-                             })->scale;
+        const double scale =
+            std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
+                return solver.count_kept(a) < solver.count_kept(b);
+            })->scale;
         const RobustAnswer<Space> best = solver.drop_pulling(
             *std::min_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
                 return solver.truncated_cost(a, scale) < solver.truncated_cost(b, scale);
@@ -170,8 +171,8 @@ class SolverOf : public GraphSolver {
         weights_ = {};
         return best.status;
     }
-    // Whether two answers agree, and keep more than a few of the doubted measurements; where loops start out far
-    // they do not.
+    // Whether two answers agree, and keep more than a few of the doubted measurements; where loops start out
+    // far they do not.
     static bool is_clear(const FalseLoopSolver<Space, KernelFronts>& solver,
                          const std::vector<RobustAnswer<Space>>& answers) {
         constexpr double least_kept = 0.1, most_different = 0.01;  // as shares of the doubted ones

@@ -87,14 +87,14 @@ class FalseLoopSolver {
         return settle(state, find_kept(weights));
     }
 
-    // The same in the order of time: measurements come in batches by the last of their poses, and the poses to
-    // come follow by dead reckoning. Drift is small that way where it is large at the end of dead reckoning; new
-    // measurements begin with wider kernels.
+    // The same in the order of time: measurements come in batches by the last of their poses, and the poses
+    // to come follow by dead reckoning. Drift is small that way where it is large at the end of dead
+    // reckoning; new measurements begin with wider kernels.
     RobustAnswer<Space> scale_in_time(const State& start, double width) {
         constexpr std::size_t most_batches = 40;
-        constexpr int most_steps = 4;          // per width
-        constexpr double least_step = 1e-2;    // [m or rad]
-        constexpr double least = 1e-2;         // weight: wide kernels would keep false measurements
+        constexpr int most_steps = 4;        // per width
+        constexpr double least_step = 1e-2;  // [m or rad]
+        constexpr double least = 1e-2;       // weight: wide kernels would keep false measurements
         constexpr double widths[] = {30, 10, 3, 1}, narrow = 3;
         State state = start;
         const std::vector<int> times = find_times();
@@ -161,8 +161,8 @@ class FalseLoopSolver {
         return cost;
     }
 
-    // Drops edges that only fit because they pull: without them χ² would fall by more than their limit. The worst
-    // one goes, and the rest is solved again, until none is left.
+    // Drops edges that only fit because they pull: without them χ² would fall by more than their limit. The
+    // worst one goes, and the rest is solved again, until none is left.
     RobustAnswer<Space> drop_pulling(RobustAnswer<Space> answer) {
         constexpr int most_rounds = 30;
         optimizer_.weights().fixed.clear();
@@ -183,7 +183,8 @@ class FalseLoopSolver {
     // How many doubted measurements an answer keeps, and how many there are.
     std::size_t count_kept(const RobustAnswer<Space>& answer) const {
         std::size_t kept = 0;
-        for (std::size_t k = 0; k < trusted_.size(); ++k) kept += std::size_t(!trusted_[k] && answer.is_used[k]);
+        for (std::size_t k = 0; k < trusted_.size(); ++k)
+            kept += std::size_t(!trusted_[k] && answer.is_used[k]);
         return kept;
     }
     // On how many doubted measurements two answers differ.
@@ -192,9 +193,7 @@ class FalseLoopSolver {
         for (std::size_t k = 0; k < trusted_.size(); ++k) count += std::size_t(a.is_used[k] != b.is_used[k]);
         return count;
     }
-    std::size_t count_doubted() const {
-        return std::size_t(std::count(trusted_.begin(), trusted_.end(), 0));
-    }
+    std::size_t count_doubted() const { return std::size_t(std::count(trusted_.begin(), trusted_.end(), 0)); }
 
   private:
     // The doubted edge in use without which χ² falls most beyond its limit; −1: none.
@@ -212,8 +211,8 @@ class FalseLoopSolver {
         }
         return worst;
     }
-    // What χ² loses without an edge: eᵀWe, and gᵀ(Σ⁻¹ − A)⁻¹g of its poses, where Σ is their covariance and A, g
-    // the edge's part of the equations.
+    // What χ² loses without an edge: eᵀWe, and gᵀ(Σ⁻¹ − A)⁻¹g of its poses, where Σ is their covariance and
+    // A, g the edge's part of the equations.
     double measure_pull(const State& state, std::size_t k) {
         constexpr std::size_t n = Space::freedom;
         const auto& numbers = optimizer_.equations().numbers();
@@ -225,8 +224,7 @@ class FalseLoopSolver {
         std::array<double, n * n> block;
         const auto put = [&](int i, int j, std::size_t row, std::size_t column) {
             if (i < 0 || j < 0 || !solver.inverse_block(i, j, block.data())) return;
-            for (std::size_t r = 0; r < n; ++r)
-                std::copy_n(block.data() + r * n, n, &S[row + r][column]);
+            for (std::size_t r = 0; r < n; ++r) std::copy_n(block.data() + r * n, n, &S[row + r][column]);
         };
         put(a, a, 0, 0), put(a, b, 0, n), put(b, a, n, 0), put(b, b, n, n);
         for (std::size_t r = 0; r < n; ++r) {
@@ -299,8 +297,8 @@ class FalseLoopSolver {
         if (ends.empty() || ends.back() < last) ends.push_back(last);
         return ends;
     }
-    // Whether more than a few doubted measurements of a time fit a state as it is: wide kernels would only keep
-    // false ones, which fill the factor.
+    // Whether more than a few doubted measurements of a time fit a state as it is: wide kernels would only
+    // keep false ones, which fill the factor.
     bool has_fitting(const std::vector<int>& times, int begin, int end, const State& state, double width) {
         constexpr double least = 0.1;  // of them
         measure_squares(graph_, state, options_.residual, squares_);
@@ -364,7 +362,8 @@ class FalseLoopSolver {
         constexpr double belief = 0.05;  // in 1, in numbers per unknown one
         double sum = 0, numbers = -double(unknowns_);
         for (std::size_t k = 0; k < is_used.size(); ++k) {
-            if (is_used[k]) sum += squares_[k], numbers += k < graph_.edges.size() ? Space::freedom : Space::dimension;
+            if (is_used[k])
+                sum += squares_[k], numbers += k < graph_.edges.size() ? Space::freedom : Space::dimension;
         }
         if (!(numbers > 0)) return 1;
         const double believed = belief * double(unknowns_);
