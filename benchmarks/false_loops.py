@@ -1,9 +1,9 @@
 """Pose graphs with false loops, random and in agreeing groups: errors to the clean answer, and what was lost.
 
 Usage: python benchmarks/false_loops.py [--seeds 3] [--shares 0.5 0.8] [--write]. Writes
-benchmarks/results/false_loops.json. A false loop joins two random poses with the motion of a true one; those of
-a group agree: they repeat one false place along ten to twenty poses. All start from the odometry. "walk" is a
-random walk on streets with honest information.
+benchmarks/results/false_loops.json. A false loop joins two random poses with the motion of a true one; those
+of a group agree: they repeat one false place along ten to twenty poses. All start from the odometry. "walk" is
+a random walk on streets with honest information.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pose_graphs import read_arrays
 
 import cspace as cs
+from pose_graphs import read_arrays
 
 RESULTS = Path(__file__).resolve().parent / "results"
 GRAPHS = {"intel": "intel.g2o", "M3500": "manhattanOlson3500_g2o.g2o", "CSAIL": "CSAIL.g2o", "walk": ""}

@@ -1,8 +1,9 @@
 """Pose graphs that grow, edge by edge in the order of the file, beside gtsam's iSAM2.
 
 Usage: python benchmarks/incremental_graphs.py [--rounds 3] [--write]. Writes
-benchmarks/results/incremental_graphs.json. Processor time of the calls from Python, one thread; gtsam takes the
-edges of each new pose in one update, and its estimate is computed after each. χ² is judged in plain numpy.
+benchmarks/results/incremental_graphs.json. Processor time of the calls from Python, one thread; gtsam takes
+the edges of each new pose in one update, and its estimate is computed after each. χ² is judged in plain
+numpy.
 """
 
 from __future__ import annotations
@@ -14,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pose_graphs import judge_chi2, read_arrays
 
 import cspace as cs
+from pose_graphs import judge_chi2, read_arrays
 
 RESULTS = Path(__file__).resolve().parent / "results"
 GRAPHS = ("manhattanOlson3500_g2o.g2o", "intel.g2o")

@@ -1,7 +1,7 @@
 """The parts of the page on localisation, one module per topic, and their lines of what must hold.
 
-A topic is a file <topic>_tables.py beside this one, with MEASURED (the names of its results), section(results)
-and ROWS; topics without a file are left out.
+A topic is a file <topic>_tables.py beside this one, with MEASURED (the names of its results),
+section(results) and ROWS; topics without a file are left out.
 """
 
 from __future__ import annotations

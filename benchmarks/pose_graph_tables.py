@@ -87,7 +87,8 @@ def factors(measured: Results, spatial: bool) -> dict[str, float]:
 
 
 def batch_row(results: Results, spatial: bool) -> Row:
-    what = f"pose graphs in {'space' if spatial else 'the plane'}, against gtsam's better method, the worst graph"
+    where = "space" if spatial else "the plane"
+    what = f"pose graphs in {where}, against gtsam's better method, the worst graph"
     must, aim = (1.5, 3.0) if spatial else (4.0, 8.0)
     if not results["pose_graphs"]:
         return row(what, f"≥ {must:g}×", f"≥ {aim:g}×", "", None)

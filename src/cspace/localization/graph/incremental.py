@@ -13,7 +13,7 @@ from cspace._core import IncrementalSolver, are_clearly_positive
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.localization.graph.answer import GraphAnswer, turn_to_map
-from cspace.localization.graph.checks import Ids, Mask, check_points, read_information, read_poses
+from cspace.localization.graph.checks import Ids, check_points, read_information, read_poses
 from cspace.localization.graph.pose_graph import PoseGraph
 from cspace.tables import count_things, one_line
 
@@ -168,7 +168,7 @@ class IncrementalGraph:
 
     @property
     def stats(self) -> dict[str, int]:
-        """steps: additions so far; eliminated: variables that they eliminated, again or for the first time."""
+        """steps: additions so far; eliminated: variables that they eliminated, counted each time."""
         return {"steps": self._calls, "eliminated": 0 if self._solver is None else self._solver.eliminated}
 
     def covariance(self, pose: int, other: int | None = None, *, frame: str = "base") -> Array:
@@ -250,9 +250,8 @@ class IncrementalGraph:
         if at is None:
             at = np.eye(4) if is_spatial else np.zeros(3)
         elif (at.ndim == 3) != is_spatial:
-            raise InputError(
-                f"pose has shape {at.shape[1:]} and the measurement is of {'space' if is_spatial else 'the plane'}"
-            )
+            kind = "space" if is_spatial else "the plane"
+            raise InputError(f"pose has shape {at.shape} and the measurement is of {kind}")
         solver = IncrementalSolver(is_spatial, self._relinearize, self._substitute)
         solver.hold_pose(first if self._fixed is None else self._fixed, np.ascontiguousarray(at))
         self._solver = solver
