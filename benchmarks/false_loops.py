@@ -1,9 +1,9 @@
 """Pose graphs with false loops, random and in agreeing groups: errors to the clean answer, and what was lost.
 
 Usage: python benchmarks/false_loops.py [--seeds 3] [--shares 0.5 0.8] [--write]. Writes
-benchmarks/results/false_loops.json. A false loop joins two random poses with the motion of a true one; those
-of a group agree: they repeat one false place along ten to twenty poses. All start from the odometry. "walk" is
-a random walk on streets with honest information.
+benchmarks/results/false_loops.json. A false loop joins two random poses with the motion of a true one; groups
+agree: they repeat one false place along ten to twenty poses. All start from the odometry. "walk" is a random
+walk on streets with honest information.
 """
 
 from __future__ import annotations

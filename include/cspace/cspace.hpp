@@ -33,7 +33,6 @@
 #include "cspace/localization/graph/certificate.hpp"
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/graph/incremental_graph.hpp"
-#include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
 #include "cspace/maps/byte_field.hpp"
 #include "cspace/maps/grid_outlines.hpp"
