@@ -111,9 +111,10 @@ class DualCertificate {
 
     // The optimum next to a state; its cost.
     double settle(GraphState<Space>& state, ResidualKind residual) const {
+        constexpr double small = 1e-9, smaller = 1e-14;  // the multipliers are made of what is left
         GraphOptions options;
         options.residual = residual;
-        options.least_step = 1e-9, options.least_decrease = 1e-14;  // of what the multipliers are made
+        options.least_step = small, options.least_decrease = smaller;
         GraphOptimizer<Space, Fronts> optimizer(graph_, options);
         optimizer.use_factors(is_used_);
         optimizer.optimize(state);

@@ -20,10 +20,13 @@
 
 namespace cspace::localization {
 
+// As in iSAM2: corrections up to the one are still linear, and changes up to the other do not matter.
+inline constexpr double largest_correction = 0.1, largest_unpassed = 1e-3;  // [m or rad]
+
 struct IncrementalOptions {
     double relinearize =
-        0.1;  // largest entry of a correction [m or rad] that leaves a linearisation as it is
-    double substitute = 1e-3;  // changes of corrections up to it are not passed on to the subtrees below
+        largest_correction;  // largest entry of a correction that leaves a linearisation as it is
+    double substitute = largest_unpassed;  // changes of corrections up to it are not passed on below
 };
 
 template <class Space, class Fronts>
