@@ -52,6 +52,21 @@ SOURCES = {
         *("include/cspace/ik/tracking", "include/cspace/trajectory", "src/cspace/trajectory"),
         *("src/cspace/cartesian", "src/cspace/plan_motion", "src/bindings/ik_tracking.cpp"),
     ],
+    "pose_graphs": [
+        *("include/cspace/math/sparse", "include/cspace/localization/graph", "src/cspace/localization/graph"),
+        *("src/kernels/math_fronts.cpp", "src/library/localization_graph.cpp"),
+        "src/library/localization_incremental.cpp",
+    ],
+    "incremental_graphs": [
+        *("include/cspace/math/sparse", "include/cspace/localization/graph", "src/cspace/localization/graph"),
+        *("src/kernels/math_fronts.cpp", "src/library/localization_graph.cpp"),
+        "src/library/localization_incremental.cpp",
+    ],
+    "false_loops": [
+        *("include/cspace/math/sparse", "include/cspace/localization/graph", "src/cspace/localization/graph"),
+        *("src/kernels/math_fronts.cpp", "src/library/localization_graph.cpp"),
+        "src/library/localization_incremental.cpp",
+    ],
     "": [
         *("include/cspace/math", "include/cspace/kinematics", "include/cspace/ik", "src/kernels"),
         *("src/library", "src/bindings", "src/cspace/ik", "src/cspace/kinematics"),

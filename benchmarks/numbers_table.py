@@ -8,6 +8,7 @@ from typing import Any
 import arms
 import dynamics_tables
 import further_tables
+import localization_tables
 import navigation_numbers
 import planning_tables
 import simulation_tables
@@ -310,5 +311,6 @@ def table(results: Results) -> list[Row]:
             *dynamics_tables.ROWS,
             *trajectory_tables.ROWS,
             *simulation_tables.ROWS,
+            *localization_tables.ROWS,
         ]
     ]

@@ -21,6 +21,7 @@ import arms  # noqa: E402
 import completeness_table  # noqa: E402
 import dynamics_tables  # noqa: E402
 import further_tables  # noqa: E402
+import localization_tables  # noqa: E402
 import navigation_tables  # noqa: E402
 import numbers_table  # noqa: E402
 import planning_tables  # noqa: E402
@@ -56,6 +57,7 @@ def measured_names() -> list[str]:
         "trajectory",
         "path_timing",
         "cartesian",
+        *localization_tables.MEASURED,
     ]
 
 
@@ -335,6 +337,12 @@ Processor time, from Python. Motions from state to state and splines are random,
 turns on the same problems.
 
 {trajectory_tables.section(results)}
+
+## Localisation and SLAM
+
+Processor time on one thread, from arrays in memory; χ² is computed again in plain numpy.
+
+{localization_tables.section(results)}
 
 ## Import
 

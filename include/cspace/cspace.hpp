@@ -32,7 +32,6 @@
 #include "cspace/localization/graph/certificate.hpp"
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/graph/incremental_graph.hpp"
-#include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
 #include "cspace/localization/landmarks/fast_slam.hpp"
 #include "cspace/localization/scans/map_search.hpp"

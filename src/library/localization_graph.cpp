@@ -66,7 +66,6 @@ PoseGraph<Space> read_graph(const GraphArrays& arrays) {
 // Dynamic covariance scaling is tried with these shares of its width: the information of files may be a
 // hundredth of the true one, and an honest one lets loops start out far.
 constexpr double scaling_widths[] = {1.0, 0.3, 3.0};
-constexpr double clear_share = 0.1;  // of the doubted measurements: an answer that keeps fewer is doubtful
 
 template <class Space>
 class SolverOf : public GraphSolver {
@@ -152,22 +151,18 @@ class SolverOf : public GraphSolver {
         if (rule.false_loops != FalseLoops::gnc) {
             for (double share : scaling_widths)
                 keep_answer(solver.scale_covariances(start, share * rule.width));
-            // Where loops start out far, or are many, the answers keep few of them, or not the same.
-            const bool is_clear = std::all_of(answers.begin(), answers.end(), [&](const auto& each) {
-                return each.is_used == answers[0].is_used &&
-                       double(solver.count_kept(each)) >= clear_share * double(solver.count_doubted());
-            });
-            if (!is_clear) keep_answer(solver.scale_in_time(start, rule.width));
+            if (!is_clear(solver, answers)) keep_answer(solver.scale_in_time(start, rule.width));
         }
         if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
         // One scale for all, of the answer that knows most.
-        const double scale = std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
-                                 return solver.count_kept(a) < solver.count_kept(b);
-                             })->scale;
-        const RobustAnswer<Space>& best =
+        const double scale =
+            std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
+                return solver.count_kept(a) < solver.count_kept(b);
+            })->scale;
+        const RobustAnswer<Space> best = solver.drop_pulling(
             *std::min_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
                 return solver.truncated_cost(a, scale) < solver.truncated_cost(b, scale);
-            });
+            }));
         state_ = best.state, is_used_ = best.is_used;
         limit_scale_ = best.scale;
         stats_ = solver.optimizer().stats();
@@ -175,6 +170,21 @@ class SolverOf : public GraphSolver {
             best.status == GraphStatus::singular ? variable_of(solver.optimizer().failed_block()) : -1;
         weights_ = {};
         return best.status;
+    }
+    // Whether two answers agree, and keep more than a few of the doubted measurements; where loops start out
+    // far they do not.
+    static bool is_clear(const FalseLoopSolver<Space, KernelFronts>& solver,
+                         const std::vector<RobustAnswer<Space>>& answers) {
+        constexpr double least_kept = 0.1, most_different = 0.01;  // as shares of the doubted ones
+        const double doubted = double(solver.count_doubted());
+        for (std::size_t a = 0; a < answers.size(); ++a) {
+            if (double(solver.count_kept(answers[a])) < least_kept * doubted) continue;
+            for (std::size_t b = 0; b < a; ++b) {
+                if (double(solver.count_differences(answers[a], answers[b])) <= most_different * doubted)
+                    return true;
+            }
+        }
+        return false;
     }
     int variable_of(int block) const {
         const BlockNumbers numbers = number_blocks(graph_, 1, 1);

@@ -1,4 +1,4 @@
-"""Certificates of the global optimum: for optima, for no other minima, and with the reason where there is none."""
+"""Certificates of the global optimum: for optima, for no other minima, and the reason where there is none."""
 
 from __future__ import annotations
 
@@ -53,7 +53,8 @@ def test_optima_are_certified(spatial, landmarks):
         graph = make_isotropic(random_graph(rng, 20, spatial=spatial, landmarks=landmarks), rng)
         answer = graph.optimize()
         certificate = answer.certificate()
-        assert certificate and certificate.certified, certificate.reason
+        assert certificate, certificate.reason
+        assert certificate.certified
         assert certificate.bound <= answer.chi2 * (1 + 1e-9)
         assert certificate.gap <= 0.05 * answer.chi2
 
@@ -107,7 +108,8 @@ def test_reasons():
     rng = np.random.default_rng(53)
     graph = random_graph(rng, 10)
     certificate = graph.optimize().certificate()
-    assert not certificate and "information of edge 0 is not isotropic" in certificate.reason
+    assert not certificate
+    assert "information of edge 0 is not isotropic" in certificate.reason
     graph = make_isotropic(graph, rng)
     assert "residual" in graph.optimize(residual="g2o").certificate().reason
     assert "kernel" in graph.optimize(kernel="huber").certificate().reason

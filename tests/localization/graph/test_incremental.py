@@ -46,11 +46,13 @@ def test_batch_optimum(spatial, landmarks):
         grown = feed(graph)
         answer = grown.optimize()
         batch = graph.optimize(start="given")
-        assert answer and batch
+        assert answer
+        assert batch
         assert grown.chi2 == pytest.approx(batch.chi2, rel=1e-8)
         assert np.allclose(grown.poses, batch.poses, atol=1e-5)
         assert np.allclose(grown.landmarks, batch.landmarks, atol=1e-5)
-        assert grown.ids.tolist() == list(range(25)) and grown.waiting == 0
+        assert grown.ids.tolist() == list(range(25))
+        assert grown.waiting == 0
 
 
 @SPACES
@@ -99,7 +101,8 @@ def test_bearings_wait_until_they_cross():
     grown = cs.IncrementalGraph()
     grown.add(0, 1, [1.0, 0, 0], np.eye(3))
     grown.add_sighting(0, 7, [np.nan, np.pi / 4], np.eye(2), ranged=True)
-    assert grown.waiting == 1 and len(grown.landmarks) == 0
+    assert grown.waiting == 1
+    assert len(grown.landmarks) == 0
     grown.add_sighting(1, 7, [np.nan, 0.75 * np.pi], np.eye(2), ranged=True)
     assert grown.waiting == 0
     assert np.allclose(grown.landmarks, [[0.5, 0.5]])
@@ -110,7 +113,8 @@ def test_parts_wait_until_they_are_joined():
     grown.add(10, 11, [1.0, 0, 0], np.eye(3))
     grown.add(20, 21, [1.0, 0, 0], np.eye(3))
     grown.add_sighting(21, 0, [0.0, 1.0], np.eye(2))
-    assert grown.waiting == 2 and grown.ids.tolist() == [10, 11]
+    assert grown.waiting == 2
+    assert grown.ids.tolist() == [10, 11]
     assert "2 waiting" in repr(grown)
     with pytest.raises(InputError, match="no pose 20"):
         grown.pose(20)

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -86,34 +87,44 @@ class FalseLoopSolver {
         return settle(state, find_kept(weights));
     }
 
-    // The same in the order of time: measurements come in batches by the last of their poses, and the poses to
-    // come follow by dead reckoning. Drift is small that way where it is large at the end of dead reckoning; new
-    // measurements begin with wider kernels.
+    // The same in the order of time: measurements come in batches by the last of their poses, and the poses
+    // to come follow by dead reckoning. Drift is small that way where it is large at the end of dead
+    // reckoning; new measurements begin with wider kernels.
     RobustAnswer<Space> scale_in_time(const State& start, double width) {
         constexpr std::size_t most_batches = 40;
-        constexpr int most_steps = 4;          // per width
-        constexpr double least_step = 1e-2;    // [m or rad]
-        constexpr double widths[] = {30, 10, 3, 1};
+        constexpr int most_steps = 4;        // per width
+        constexpr double least_step = 1e-2;  // [m or rad]
+        constexpr double least = 1e-2;       // weight: wide kernels would keep false measurements
+        constexpr double widths[] = {30, 10, 3, 1}, narrow = 3;
         State state = start;
         const std::vector<int> times = find_times();
-        std::vector<int> ends = find_batches(times, most_batches);
         std::vector<double> weights(graph_.factors(), 1.0);
-        int begin = 0;
-        for (int end : ends) {
-            reckon_after(begin, state);
-            for (double share : widths) {
-                for (int step = 0; step < most_steps; ++step) {
-                    measure_squares(graph_, state, options_.residual, squares_);
-                    for (std::size_t k = 0; k < weights.size(); ++k) {
-                        const double own = times[k] > begin ? share * width : width;
-                        weights[k] = times[k] > end ? 0.0
-                                     : trusted_[k]  ? 1.0
-                                                    : evaluate_kernel(RobustKernel::dcs, squares_[k], own).weight;
-                    }
-                    if (!(step_with(weights, state) > least_step)) break;
+        // The measurements up to `end`, those after `begin` with kernels of this share of the width.
+        const auto settle_until = [&](int begin, int end, double share) {
+            for (int step = 0; step < most_steps; ++step) {
+                measure_squares(graph_, state, options_.residual, squares_);
+                for (std::size_t k = 0; k < weights.size(); ++k) {
+                    const double own = times[k] > begin ? share * width : width;
+                    weights[k] = times[k] > end ? 0.0
+                                 : trusted_[k]  ? 1.0
+                                                : evaluate_kernel(RobustKernel::dcs, squares_[k], own).weight;
                 }
+                if (!(step_with(weights, state, least) > least_step)) break;
+            }
+        };
+        int begin = 0;
+        for (int end : find_batches(times, most_batches)) {
+            reckon_after(begin, state);
+            const bool is_near = has_fitting(times, begin, end, state, width);
+            for (double share : widths) {
+                if (share <= narrow || !is_near) settle_until(begin, end, share);
             }
             begin = end;
+        }
+        // Once more for all, for true measurements that came too early.
+        const bool is_near = has_fitting(times, -1, begin, state, width);
+        for (double share : widths) {
+            if (share <= narrow || !is_near) settle_until(-1, begin, share);
         }
         return scale_covariances(state, width);
     }
@@ -150,17 +161,118 @@ class FalseLoopSolver {
         return cost;
     }
 
+    // Drops edges that only fit because they pull: without them χ² would fall by more than their limit. The
+    // worst one goes, and the rest is solved again, until none is left.
+    RobustAnswer<Space> drop_pulling(RobustAnswer<Space> answer) {
+        constexpr int most_rounds = 30;
+        optimizer_.weights().fixed.clear();
+        std::vector<char> kept = answer.is_used;
+        for (int round = 0; round < most_rounds; ++round) {
+            optimizer_.use_factors(kept);
+            const std::ptrdiff_t worst = find_pulling(answer);
+            if (worst < 0) break;
+            kept[std::size_t(worst)] = 0;
+            optimizer_.use_factors(kept);
+            answer.status = optimizer_.optimize(answer.state);
+            answer.is_used = is_used_ = kept;
+        }
+        measure_squares(graph_, answer.state, options_.residual, answer.squares);
+        return answer;
+    }
+
     // How many doubted measurements an answer keeps, and how many there are.
     std::size_t count_kept(const RobustAnswer<Space>& answer) const {
         std::size_t kept = 0;
-        for (std::size_t k = 0; k < trusted_.size(); ++k) kept += std::size_t(!trusted_[k] && answer.is_used[k]);
+        for (std::size_t k = 0; k < trusted_.size(); ++k)
+            kept += std::size_t(!trusted_[k] && answer.is_used[k]);
         return kept;
     }
-    std::size_t count_doubted() const {
-        return std::size_t(std::count(trusted_.begin(), trusted_.end(), 0));
+    // On how many doubted measurements two answers differ.
+    std::size_t count_differences(const RobustAnswer<Space>& a, const RobustAnswer<Space>& b) const {
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < trusted_.size(); ++k) count += std::size_t(a.is_used[k] != b.is_used[k]);
+        return count;
     }
+    std::size_t count_doubted() const { return std::size_t(std::count(trusted_.begin(), trusted_.end(), 0)); }
 
   private:
+    // The doubted edge in use without which χ² falls most beyond its limit; −1: none.
+    std::ptrdiff_t find_pulling(const RobustAnswer<Space>& answer) {
+        auto& equations = optimizer_.equations();
+        equations.linearize(answer.state, options_.residual, {}, squares_);
+        if (!equations.solver().factor_matrix(equations.values().data())) return -1;
+        equations.solver().invert_pattern();
+        std::ptrdiff_t worst = -1;
+        double most = 1;  // of the limit
+        for (std::size_t k = 0; k < graph_.edges.size(); ++k) {
+            if (trusted_[k] || !equations.is_used(k)) continue;
+            const double share = measure_pull(answer.state, k) / (answer.scale * limits_[k]);
+            if (share > most) worst = std::ptrdiff_t(k), most = share;
+        }
+        return worst;
+    }
+    // What χ² loses without an edge: eᵀWe, and gᵀ(Σ⁻¹ − A)⁻¹g of its poses, where Σ is their covariance and
+    // A, g the edge's part of the equations.
+    double measure_pull(const State& state, std::size_t k) {
+        constexpr std::size_t n = Space::freedom;
+        const auto& numbers = optimizer_.equations().numbers();
+        const auto& solver = optimizer_.equations().solver();
+        const auto model = linearize_edge(graph_.edges[k], state, options_.residual);
+        const int a = numbers.pose[std::size_t(graph_.edges[k].from)];
+        const int b = numbers.pose[std::size_t(graph_.edges[k].to)];
+        double S[2 * n][2 * n] = {}, A[2 * n][2 * n] = {}, g[2 * n] = {};
+        std::array<double, n * n> block;
+        const auto put = [&](int i, int j, std::size_t row, std::size_t column) {
+            if (i < 0 || j < 0 || !solver.inverse_block(i, j, block.data())) return;
+            for (std::size_t r = 0; r < n; ++r) std::copy_n(block.data() + r * n, n, &S[row + r][column]);
+        };
+        put(a, a, 0, 0), put(a, b, 0, n), put(b, a, n, 0), put(b, b, n, n);
+        for (std::size_t r = 0; r < n; ++r) {
+            g[r] = model.ga[r], g[n + r] = model.gb[r];
+            for (std::size_t c = 0; c < n; ++c) {
+                A[r][c] = model.aa[r * n + c], A[n + r][n + c] = model.bb[r * n + c];
+                A[r][n + c] = A[n + c][r] = model.ab[r * n + c];
+            }
+        }
+        // y of (I − ΣA) y = Σg.
+        std::vector<double> M(4 * n * n), y(2 * n);
+        for (std::size_t r = 0; r < 2 * n; ++r) {
+            for (std::size_t c = 0; c < 2 * n; ++c) {
+                double sum = r == c;
+                for (std::size_t i = 0; i < 2 * n; ++i) sum -= S[r][i] * A[i][c];
+                M[r * 2 * n + c] = sum;
+                y[r] += S[r][c] * g[c];
+            }
+        }
+        if (!solve_general(M, y)) return 0;
+        double pull = model.square;
+        for (std::size_t r = 0; r < 2 * n; ++r) pull += g[r] * y[r];
+        return pull;
+    }
+    // Gauss elimination with row pivots; false for singular matrices.
+    static bool solve_general(std::vector<double>& M, std::vector<double>& y) {
+        constexpr double singular = 1e-12;
+        const std::size_t n = y.size();
+        for (std::size_t c = 0; c < n; ++c) {
+            std::size_t pivot = c;
+            for (std::size_t r = c + 1; r < n; ++r) {
+                if (std::fabs(M[r * n + c]) > std::fabs(M[pivot * n + c])) pivot = r;
+            }
+            if (!(std::fabs(M[pivot * n + c]) > singular)) return false;
+            for (std::size_t k = 0; k < n; ++k) std::swap(M[c * n + k], M[pivot * n + k]);
+            std::swap(y[c], y[pivot]);
+            for (std::size_t r = c + 1; r < n; ++r) {
+                const double factor = M[r * n + c] / M[c * n + c];
+                for (std::size_t k = c; k < n; ++k) M[r * n + k] -= factor * M[c * n + k];
+                y[r] -= factor * y[c];
+            }
+        }
+        for (std::size_t c = n; c-- > 0;) {
+            for (std::size_t k = c + 1; k < n; ++k) y[c] -= M[c * n + k] * y[k];
+            y[c] /= M[c * n + c];
+        }
+        return true;
+    }
     // The last pose of each measurement.
     std::vector<int> find_times() const {
         std::vector<int> times;
@@ -184,6 +296,19 @@ class FalseLoopSolver {
         const int last = int(graph_.start.poses.size());
         if (ends.empty() || ends.back() < last) ends.push_back(last);
         return ends;
+    }
+    // Whether more than a few doubted measurements of a time fit a state as it is: wide kernels would only
+    // keep false ones, which fill the factor.
+    bool has_fitting(const std::vector<int>& times, int begin, int end, const State& state, double width) {
+        constexpr double least = 0.1;  // of them
+        measure_squares(graph_, state, options_.residual, squares_);
+        double fitting = 0, all = 0;
+        for (std::size_t k = 0; k < times.size(); ++k) {
+            if (trusted_[k] || times[k] <= begin || times[k] > end) continue;
+            all += 1;
+            fitting += evaluate_kernel(RobustKernel::dcs, squares_[k], width).weight >= 0.5;
+        }
+        return fitting >= least * all;
     }
     // Moves the poses after one along trusted measurements.
     void reckon_after(int time, State& state) const {
@@ -211,14 +336,14 @@ class FalseLoopSolver {
     static constexpr double least_weight = 1e-6;
 
     // A step of Gauss–Newton with these weights; its largest entry.
-    double step_with(const std::vector<double>& weights, State& state) {
+    double step_with(const std::vector<double>& weights, State& state, double least = least_weight) {
         constexpr double waste =
             1.1;  // measurements in use against those needed, before the pattern is found anew
         std::size_t used = 0, needed = 0;
         bool is_covered = !is_used_.empty();
         std::vector<char> wanted(weights.size());
         for (std::size_t k = 0; k < weights.size(); ++k) {
-            wanted[k] = weights[k] >= least_weight;
+            wanted[k] = weights[k] >= least;
             needed += std::size_t(wanted[k]);
             if (is_covered) used += std::size_t(is_used_[k]), is_covered = is_used_[k] || !wanted[k];
         }
@@ -230,19 +355,19 @@ class FalseLoopSolver {
         return optimizer_.take_step(state);
     }
 
-    // χ² per degree of freedom of these measurements, between the bounds of a scale; towards 1 where few doubted
-    // measurements count, which say little.
+    // χ² per degree of freedom of these measurements, between the bounds of a scale; towards 1 where few more
+    // numbers were measured than are unknown, which say little.
     double find_scale(const std::vector<char>& is_used) const {
-        constexpr double least = 0.1;   // errors have heavier tails than the quantile knows
-        constexpr double belief = 0.05;  // in 1, as a share of the numbers of all doubted measurements
-        double sum = 0, doubted = 0, numbers = -double(unknowns_);
+        constexpr double least = 0.1;    // errors have heavier tails than the quantile knows
+        constexpr double belief = 0.05;  // in 1, in numbers per unknown one
+        double sum = 0, numbers = -double(unknowns_);
         for (std::size_t k = 0; k < is_used.size(); ++k) {
-            const double own = k < graph_.edges.size() ? Space::freedom : Space::dimension;
-            if (!trusted_[k]) doubted += own;
-            if (is_used[k]) sum += squares_[k], numbers += own;
+            if (is_used[k])
+                sum += squares_[k], numbers += k < graph_.edges.size() ? Space::freedom : Space::dimension;
         }
         if (!(numbers > 0)) return 1;
-        return std::clamp((sum + belief * doubted) / (numbers + belief * doubted), least, 1.0);
+        const double believed = belief * double(unknowns_);
+        return std::clamp((sum + believed) / (numbers + believed), least, 1.0);
     }
 
     // Solves with the measurements within their limits, until these stay the same. is_kept: those that count

@@ -20,9 +20,13 @@
 
 namespace cspace::localization {
 
+// As in iSAM2: corrections up to the one are still linear, and changes up to the other do not matter.
+inline constexpr double largest_correction = 0.1, largest_unpassed = 1e-3;  // [m or rad]
+
 struct IncrementalOptions {
-    double relinearize = 0.1;  // largest entry of a correction [m or rad] that leaves a linearisation as it is
-    double substitute = 1e-3;  // changes of corrections up to it are not passed on to the subtrees below
+    double relinearize =
+        largest_correction;  // largest entry of a correction that leaves a linearisation as it is
+    double substitute = largest_unpassed;  // changes of corrections up to it are not passed on below
 };
 
 template <class Space, class Fronts>
@@ -54,7 +58,11 @@ class IncrementalGraph {
     bool step() {
         activate_queue();
         if (tree_.is_whole() && far_.empty() && !has_residual_) return true;
-        return finish_step();
+        for (int round = 0; round < most_rounds; ++round) {
+            if (!finish_step()) return false;
+            if (!(farthest_ > very_far * options_.relinearize)) break;
+        }
+        return true;
     }
     // Eliminates what was put off.
     bool finish_step() {
@@ -75,7 +83,8 @@ class IncrementalGraph {
         linear_ = state;
         estimate_ = state;
         for (int v = 0; v < tree_.variables(); ++v)
-            std::fill_n(tree_.solution(v), variables_[std::size_t(v)].is_pose ? Space::freedom : Space::dimension, 0.0);
+            std::fill_n(tree_.solution(v),
+                        variables_[std::size_t(v)].is_pose ? Space::freedom : Space::dimension, 0.0);
         stale_.clear();
         for (int f = 0; f < int(factors_.size()); ++f) stale_.push_back(f);
         tree_.spoil();
@@ -105,9 +114,10 @@ class IncrementalGraph {
         for (const Measurement& at : factors_) {
             poll.step();
             const auto k = std::size_t(at.index);
-            cost += at.is_edge
-                        ? weigh_residual(evaluate_edge(edges_[k], estimate_, ResidualKind::twist).e, edges_[k].W)
-                        : weigh_residual(evaluate_sighting(sightings_[k], estimate_).e, sightings_[k].W);
+            cost +=
+                at.is_edge
+                    ? weigh_residual(evaluate_edge(edges_[k], estimate_, ResidualKind::twist).e, edges_[k].W)
+                    : weigh_residual(evaluate_sighting(sightings_[k], estimate_).e, sightings_[k].W);
         }
         return cost;
     }
@@ -123,6 +133,9 @@ class IncrementalGraph {
 
   private:
     static constexpr int none = -1;
+    // A correction so many times beyond the threshold is not the last one: the step is repeated.
+    static constexpr double very_far = 10;
+    static constexpr int most_rounds = 10;
     struct Measurement {
         bool is_edge;
         int index;
@@ -195,7 +208,8 @@ class IncrementalGraph {
             create_pose(to, Space::compose(estimate_.poses[std::size_t(edge.from)], edge.z), false);
         } else if (edge.from < 0) {
             edge.from = int(pose_ids_.size());
-            create_pose(from, Space::compose(estimate_.poses[std::size_t(edge.to)], Space::inverse(edge.z)), false);
+            create_pose(from, Space::compose(estimate_.poses[std::size_t(edge.to)], Space::inverse(edge.z)),
+                        false);
         } else {
             has_residual_ = true;
         }
@@ -217,9 +231,11 @@ class IncrementalGraph {
             return;
         }
         is_sighting_active_[std::size_t(at.index)] = has_residual_ = true;
-        add_factor(at, pose_variables_[std::size_t(seen.pose)], landmark_variables_[std::size_t(seen.landmark)]);
+        add_factor(at, pose_variables_[std::size_t(seen.pose)],
+                   landmark_variables_[std::size_t(seen.landmark)]);
     }
-    // A landmark that a sighting just began to wait for: where that has it, or where two lines of sight cross.
+    // A landmark that a sighting just began to wait for: where that has it, or where two lines of sight
+    // cross.
     void place_landmark(std::int64_t id) {
         const auto& waiting = waiting_for_landmark_[id];
         const Sighting<Space>& last = sightings_[std::size_t(waiting.back().index)];
@@ -258,7 +274,7 @@ class IncrementalGraph {
         for (int v : far_) {
             const Variable& at = variables_[std::size_t(v)];
             is_far_[std::size_t(v)] = 0;
-            if (!is_beyond(v)) continue;
+            if (!(largest_entry(v) > options_.relinearize)) continue;
             if (at.is_pose)
                 linear_.poses[std::size_t(at.row)] = estimate_.poses[std::size_t(at.row)];
             else
@@ -270,10 +286,12 @@ class IncrementalGraph {
         std::sort(stale_.begin(), stale_.end());
         stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
     }
-    bool is_beyond(int v) const {
+    double largest_entry(int v) const {
         const double* const d = tree_.solution(v);
         const int size = variables_[std::size_t(v)].is_pose ? Space::freedom : Space::dimension;
-        return std::any_of(d, d + size, [&](double x) { return std::fabs(x) > options_.relinearize; });
+        double largest = 0;
+        for (int k = 0; k < size; ++k) largest = std::max(largest, std::fabs(d[k]));
+        return largest;
     }
     // An interrupt leaves the factors to come stale.
     void linearize_stale() {
@@ -299,6 +317,7 @@ class IncrementalGraph {
                            model.gb.data());
     }
     void read_changes() {
+        farthest_ = 0;
         for (int v : tree_.changed()) {
             const Variable& at = variables_[std::size_t(v)];
             const auto row = std::size_t(at.row);
@@ -308,7 +327,9 @@ class IncrementalGraph {
                 for (std::size_t i = 0; i < Space::dimension; ++i)
                     estimate_.landmarks[row][i] = linear_.landmarks[row][i] + tree_.solution(v)[i];
             }
-            if (is_far_[std::size_t(v)] || !is_beyond(v)) continue;
+            const double moved = largest_entry(v);
+            farthest_ = std::max(farthest_, moved);
+            if (is_far_[std::size_t(v)] || !(moved > options_.relinearize)) continue;
             is_far_[std::size_t(v)] = 1;
             far_.push_back(v);
         }
@@ -331,6 +352,7 @@ class IncrementalGraph {
     Waiting waiting_for_pose_, waiting_for_landmark_;
     std::vector<int> stale_, touched_;  // factors to linearise, and variables to eliminate
     std::vector<int> far_;
+    double farthest_ = 0;  // correction of the last step
     std::vector<char> is_far_;
     bool has_residual_ = false;  // whether a measurement that waits for its elimination has an error
     int newest_ = none;

@@ -63,6 +63,9 @@ class SparseCholesky {
     int row_of(int block) const { return factor_.starts[std::size_t(factor_.place[std::size_t(block)])]; }
     std::size_t value_count() const { return value_count_; }
     std::size_t factor_count() const { return panels_.back(); }
+    std::size_t stack_count() const {
+        return stack_peak_;
+    }  // numbers beside the factor, while it is computed
 
     // The slot of the block (i, j), which must be in the pattern.
     BlockSlot slot_of(int i, int j) const {

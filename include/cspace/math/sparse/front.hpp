@@ -32,18 +32,21 @@ CSPACE_INLINE void subtract_block(double* C, std::ptrdiff_t stride_c, const doub
                                   std::ptrdiff_t stride, int count) {
     FrontPack sum[columns][packs];
     for (int c = 0; c < columns; ++c) {
-        for (int i = 0; i < packs; ++i) sum[c][i] = load_pack(C + c * stride_c + front_lanes * i);
+        for (int i = 0; i < packs; ++i) sum[c][i] = fill<FrontPack>(0.0);
     }
     for (int k = 0; k < count; ++k, A += stride, B += stride) {
         FrontPack a[packs];
         for (int i = 0; i < packs; ++i) a[i] = load_pack(A + front_lanes * i);
         for (int c = 0; c < columns; ++c) {
-            const FrontPack b = fill<FrontPack>(-B[c]);
+            const FrontPack b = fill<FrontPack>(B[c]);
             for (int i = 0; i < packs; ++i) sum[c][i] = mul_add(a[i], b, sum[c][i]);
         }
     }
     for (int c = 0; c < columns; ++c) {
-        for (int i = 0; i < packs; ++i) store_pack(C + c * stride_c + front_lanes * i, sum[c][i]);
+        for (int i = 0; i < packs; ++i) {
+            double* const to = C + c * stride_c + front_lanes * i;
+            store_pack(to, load_pack(to) - sum[c][i]);
+        }
     }
 }
 

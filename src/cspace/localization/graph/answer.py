@@ -154,8 +154,8 @@ class GraphAnswer(Renamed):
         with self._lock:
             is_proved, bound, least = self._solver.certify()
         if not is_proved:
-            reason = "not certified: the dual matrix is not positive semidefinite, so that there may be a better optimum"
-            return Certificate(False, 0.0, self.chi2, reason)
+            reason = "the dual matrix is not positive semidefinite, so that there may be a better optimum"
+            return Certificate(False, 0.0, self.chi2, f"not certified: {reason}")
         is_found = abs(self.chi2 - least) <= SAME_CHI2 * max(least, 1.0)
         if not is_found:
             reason = f"not certified: the global optimum is next to a state of chi2 {least:.9g}"

@@ -13,7 +13,7 @@ from cspace._core import IncrementalSolver, are_clearly_positive
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.localization.graph.answer import GraphAnswer, turn_to_map
-from cspace.localization.graph.checks import Ids, Mask, check_points, read_information, read_poses
+from cspace.localization.graph.checks import Ids, check_points, read_information, read_poses
 from cspace.localization.graph.pose_graph import PoseGraph
 from cspace.tables import count_things, one_line
 
@@ -102,7 +102,9 @@ class IncrementalGraph:
         points = np.atleast_2d(as_floats(point, "point", finite=False))
         d = points.shape[-1]
         if points.shape != (len(first), d) or d not in (2, 3):
-            raise InputError(f"point has shape {points.shape}, expected ({len(first)}, 2) or ({len(first)}, 3)")
+            raise InputError(
+                f"point has shape {points.shape}, expected ({len(first)}, 2) or ({len(first)}, 3)"
+            )
         is_ranged = np.broadcast_to(np.asarray(ranged, dtype=bool), (len(first),))
         check_points(points, is_ranged, "point")
         measured = ~np.isnan(points)
@@ -166,7 +168,7 @@ class IncrementalGraph:
 
     @property
     def stats(self) -> dict[str, int]:
-        """steps: additions so far; eliminated: variables that they eliminated, again or for the first time."""
+        """steps: additions so far; eliminated: variables that they eliminated, counted each time."""
         return {"steps": self._calls, "eliminated": 0 if self._solver is None else self._solver.eliminated}
 
     def covariance(self, pose: int, other: int | None = None, *, frame: str = "base") -> Array:
@@ -198,7 +200,9 @@ class IncrementalGraph:
             lists = self._solver.arrays()
         edges, motions, information, sightings, points, point_information, has_bearing = map(np.array, lists)
         shape, size, d = ((4, 4), 6, 3) if self.is_spatial else ((3,), 3, 2)
-        rows, landmark_rows = (np.argsort(np.argsort(self._names(kind))) for kind in ("pose_ids", "landmark_ids"))
+        rows, landmark_rows = (
+            np.argsort(np.argsort(self._names(kind))) for kind in ("pose_ids", "landmark_ids")
+        )
         seen = np.asarray(sightings, int).reshape(-1, 2)
         point_information = point_information.reshape(-1, d, d)
         missing = point_information[:, range(d), range(d)] == 0
@@ -227,7 +231,8 @@ class IncrementalGraph:
                 np.argsort(np.argsort(self._names(kind))) for kind in ("pose_ids", "landmark_ids")
             )
             solver.restart(
-                np.ascontiguousarray(answer.poses[rows]), np.ascontiguousarray(answer.landmarks[landmark_rows])
+                np.ascontiguousarray(answer.poses[rows]),
+                np.ascontiguousarray(answer.landmarks[landmark_rows]),
             )
         return answer
 
@@ -245,9 +250,8 @@ class IncrementalGraph:
         if at is None:
             at = np.eye(4) if is_spatial else np.zeros(3)
         elif (at.ndim == 3) != is_spatial:
-            raise InputError(
-                f"pose has shape {at.shape[1:]} and the measurement is of {'space' if is_spatial else 'the plane'}"
-            )
+            kind = "space" if is_spatial else "the plane"
+            raise InputError(f"pose has shape {at.shape} and the measurement is of {kind}")
         solver = IncrementalSolver(is_spatial, self._relinearize, self._substitute)
         solver.hold_pose(first if self._fixed is None else self._fixed, np.ascontiguousarray(at))
         self._solver = solver
@@ -277,7 +281,9 @@ class IncrementalGraph:
         if self._solver is not None:
             row = self._solver.find_pose(name) if kind == "pose" else self._solver.find_landmark(name)
         if self._solver is None or row < 0:
-            raise InputError(f"the graph has no {kind} {name}, or nothing connects it with the fixed pose yet")
+            raise InputError(
+                f"the graph has no {kind} {name}, or nothing connects it with the fixed pose yet"
+            )
         return self._solver, row
 
     def _read_covariance(self, kind: str, names: list[Any], size: int) -> Array:
