@@ -33,6 +33,8 @@
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
+#include "cspace/localization/scans/laser_slam.hpp"
+#include "cspace/localization/scans/line_icp.hpp"
 #include "cspace/maps/byte_field.hpp"
 #include "cspace/maps/grid_outlines.hpp"
 #include "cspace/maps/path_clearance.hpp"

@@ -87,6 +87,19 @@ void bind_localization_scans(nb::module_& m) {
                 origin.y);
         },
         "points"_a, "resolution"_a, "sigma"_a, "The scores and the origin of a field of bells about points.");
+    m.def(
+        "thin_scans",
+        [](std::span<const Point> points, std::span<const std::int32_t> first, int most) {
+            std::vector<std::int32_t> begins(first.begin(), first.end());
+            std::vector<Point> kept;
+            {
+                const nb::gil_scoped_release released;
+                kept = thin_scans(points, begins, most);
+            }
+            return nb::make_tuple(cspace::Table<Point>{std::move(kept)},
+                                  cspace::Table<std::int32_t>{std::move(begins)});
+        },
+        "points"_a, "first"_a, "most"_a, "At most so many points of each scan, and where each scan begins.");
     nb::class_<LaserSlamRun>(m, "LaserSlamRun", "Laser SLAM on a pose graph, as far as it is done.")
         .def(nb::new_([](std::span<const Point> points, std::span<const std::int32_t> first,
                          std::span<const PoseRow> steps, double resolution, double sigma, bool finds_loops) {

@@ -65,7 +65,7 @@ ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point
                              double reach, double turn, bool refines) {
     static thread_local CorrelativeSearch<CorrelationKernels> search;  // keeps its memory
     const SearchPeak peak =
-        search.find_peak(field, points, PlanarSpace::read_pose(guess.data()), {reach, turn});
+        search.find_peak(field, points, PlanarSpace::read_pose(guess.data()), {reach, turn}, {}, 0, true);
     ScanMatchResult result{peak.is_found, peak.is_ambiguous, guess, peak.covariance, peak.score, peak.second};
     if (!peak.is_found) return result;
     const PlanarSpace::Pose pose = refines ? refine_pose(field, points, peak.pose) : peak.pose;
@@ -83,6 +83,21 @@ ScanMatchResult match_point_lines(const maps::ByteField& field, std::span<const 
 
 maps::ByteField make_field_of_points(std::span<const Point> points, double resolution, double sigma) {
     return make_point_field(points, resolution, sigma);
+}
+
+std::vector<Point> thin_scans(std::span<const Point> points, std::vector<std::int32_t>& first, int most) {
+    std::vector<Point> all, kept;
+    std::size_t begin = 0;
+    for (std::size_t k = 1; k < first.size(); ++k) {
+        const auto end = std::size_t(first[k]);
+        if (end < begin || end > points.size())
+            throw std::invalid_argument("the arrays of the scans do not fit together");
+        thin_points(points.subspan(begin, end - begin), std::size_t(std::clamp(most, 1, most_beams)), kept);
+        all.insert(all.end(), kept.begin(), kept.end());
+        first[k] = std::int32_t(all.size()), begin = end;
+        poll_interrupts();
+    }
+    return all;
 }
 
 std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points, std::span<const std::int32_t> first,

@@ -31,6 +31,10 @@ ScanMatchResult match_point_lines(const maps::ByteField& field, std::span<const 
 // A field of bells about points, exp(−d²/2σ²).
 maps::ByteField make_field_of_points(std::span<const Point> points, double resolution, double sigma);
 
+// The points of scans, at most so many of each, evenly spread along the walls; first: where each scan begins, which is
+// brought up to date.
+std::vector<Point> thin_scans(std::span<const Point> points, std::vector<std::int32_t>& first, int most);
+
 // A relative pose between two scans.
 struct ScanRelation {
     std::int32_t from, to;

@@ -38,15 +38,18 @@ struct SearchPeak {
     bool is_ambiguous = false;  // another peak scores nearly as much
     PlanarSpace::Pose pose;
     double score = 0;   // 0 to 1
-    double second = 0;  // the best score outside of the peak
+    double second = 0;  // the best score outside of the peak, as far as it was asked for
     PlanarSpace::Square covariance{};  // of the twist in base
 };
 
 namespace search {
 
-// Beams do not err independently: walls bend, and neighbours hit the same ones. The score counts as that of so
-// many beams.
+// Beams do not err independently: walls bend, and neighbours hit the same ones. Beside the prior the score counts as
+// that of so many beams.
 inline constexpr double independent_beams = 25;
+// In the covariance it counts as that of so many: the bells of the field are several times as wide as the scatter of
+// the beams.
+inline constexpr double covariance_beams = 250;
 inline constexpr double ambiguous_share = 0.95;  // of the best score
 inline constexpr double apart = 0.3;             // [m]: nearer peaks are one
 inline constexpr double apart_turn = 0.1;        // [rad]
@@ -62,9 +65,11 @@ class CorrelativeSearch {
   public:
     using Pose = PlanarSpace::Pose;
 
-    // points: in base, at most most_beams. least_score: of a pose that is found.
+    // points: in base, at most most_beams. least_score: of a pose that is found. finds_second: also where a second
+    // peak is far below the first.
     SearchPeak find_peak(const maps::ByteField& field, std::span<const Point> points, const Pose& guess,
-                         const SearchWindow& window, const SearchPrior& prior = {}, double least_score = 0) {
+                         const SearchWindow& window, const SearchPrior& prior = {}, double least_score = 0,
+                         bool finds_second = false) {
         SearchPeak peak;
         if (points.empty()) return peak;
         points_ = points.first(std::min(points.size(), std::size_t(most_beams)));
@@ -76,7 +81,7 @@ class CorrelativeSearch {
         const bool is_found = is_whole ? search_whole(field) : search_blocks(field);
         if (!is_found) return peak;
         find_component();
-        find_second(is_whole);
+        find_second(is_whole, finds_second);
         peak.is_found = true;
         peak.pose = pose_of(best_);
         peak.score = best_.sum / full_;
@@ -259,20 +264,18 @@ class CorrelativeSearch {
     template <class Visit>
     void score_block(const Block& made, const Visit& visit) const {
         constexpr int block = PaddedField::block;
-        int sums[block][block] = {};
+        std::uint16_t sums[block * window_lanes];
         const std::int32_t* const starts =
             all_starts_.data() + std::size_t(made.angle + most_angle_) * points_.size();
         const int shift = (made.row + most_shift_) * padded_.stride + made.column + most_shift_;
-        for (std::size_t k = 0; k < points_.size(); ++k) {
-            const std::uint8_t* from = padded_.bytes.data() + starts[k] + shift;
-            for (int row = 0; row < block; ++row, from += padded_.stride)
-                for (int column = 0; column < block; ++column) sums[row][column] += from[column];
-        }
+        Kernels::sum_windows(padded_.bytes.data() + shift, starts, int(points_.size()), padded_.stride, block,
+                             block, sums);
         for (int i = 0; i < block; ++i) {
             for (int j = 0; j < block; ++j) {
                 const int row = made.row + i, column = made.column + j;
                 if (row > most_shift_ || column > most_shift_) continue;
-                visit(Cell{sums[i][j] - loss_of(made.angle, row, column), sums[i][j], made.angle, row, column});
+                const int sum = sums[i * window_lanes + j];
+                visit(Cell{sum - loss_of(made.angle, row, column), sum, made.angle, row, column});
             }
         }
     }
@@ -313,16 +316,18 @@ class CorrelativeSearch {
         return angle >= low_[0] && angle <= top_[0] && row >= low_[1] && row <= top_[1] &&
                column >= low_[2] && column <= top_[2];
     }
-    void find_second(bool is_whole) {
+    void find_second(bool is_whole, bool is_exact) {
         second_ = 0;
         const auto admit = [&](const Cell& cell) {
             if (cell.score > second_ && !is_in_peak(cell.angle, cell.row, cell.column)) second_ = cell.score;
         };
         if (is_whole) {
+            if (!is_exact) second_ = std::max(0, int(search::ambiguous_share * best_.score) - 1);
             visit_surface([&] { return second_ + 1; }, admit);
             return;
         }
         for (const Cell& cell : scored_) admit(cell);
+        if (!is_exact) return;
         InterruptPoll poll(1 << 5);
         for (std::size_t k = next_block_; k < blocks_.size() && blocks_[k].bound > second_; ++k) {
             const Block& made = blocks_[k];
@@ -346,7 +351,7 @@ class CorrelativeSearch {
 
     // The second moment of the surface about its best cell, each weighted by the likelihood that its score stands for.
     PlanarSpace::Square measure_covariance() {
-        const double scale = search::independent_beams / full_;
+        const double scale = search::covariance_beams / full_;
         const int least = std::max(1, int(best_.score + search::least_log_weight / scale));
         std::array<double, 6> sums{};  // xx, xy, yy, xt, yt, tt
         std::array<double, 3> means{};

@@ -16,6 +16,7 @@
 #include "cspace/localization/scans/correlative_search.hpp"
 #include "cspace/localization/scans/loop_consistency.hpp"
 #include "cspace/localization/scans/refine_pose.hpp"
+#include "cspace/localization/scans/thin_points.hpp"
 
 namespace cspace::localization {
 
@@ -47,8 +48,9 @@ inline constexpr double turn_rest = 0.12, turn_share = 0.4;
 inline constexpr double prior_rest = 0.05, prior_share = 0.15;
 // Deviation of an odometry step that no scan confirms.
 inline constexpr double blind_share = 0.15;
-// Loops: the scans of a submap of a submap about the candidate, and how far along the drive it must be.
+// Loops: the scans to either side of a candidate, and how far along the drive it must be.
 inline constexpr int loop_scans = 12;
+inline constexpr std::size_t loop_beams = 90;
 inline constexpr int loop_gap = 60;       // scans of submaps: nearer ones repeat the matches of the drive
 inline constexpr int pass_gap = 30;       // between two passes of one place
 inline constexpr double loop_step = 0.3;  // [m or rad] from one search of loops to the next
@@ -126,13 +128,19 @@ class LaserSlam {
         Box box{{guess.x, guess.y}, {guess.x, guess.y}};
         double far = 0;
         for (const Point p : points) box.include(place_point(guess, p)), far = std::max(far, norm(p));
-        const double margin = window.reach + window.turn * far + (stamp_.radius() + 1) * options_.resolution;
-        box.low = box.low - Point{margin, margin}, box.high = box.high + Point{margin, margin};
-        clear_field(field_, box, options_.resolution);
+        const double margin = window.reach + window.turn * far + options_.resolution;
+        placed_.clear();
         for (std::size_t k = begin; k < end; ++k) {
             const Pose& pose = poses_[std::size_t(kept_[k])];
-            for (const Point p : scan(kept_[k])) stamp_.stamp_point(field_, place_point(pose, p));
+            for (const Point p : scan(kept_[k])) placed_.push_back(place_point(pose, p));
         }
+        const Box marks = placed_.empty() ? box : bounds_of(placed_);
+        const double bell = (stamp_.radius() + 1) * options_.resolution;
+        const Point low = box.low - Point{margin, margin}, high = box.high + Point{margin, margin};
+        box.low = {std::max(low.x, marks.low.x - bell), std::max(low.y, marks.low.y - bell)};
+        box.high = {std::min(high.x, marks.high.x + bell), std::min(high.y, marks.high.y + bell)};
+        clear_field(field_, box, options_.resolution);
+        for (const Point p : placed_) stamp_.stamp_point(field_, p);
         poll_interrupts();
     }
 
@@ -202,8 +210,7 @@ class LaserSlam {
     void search_loops(int k) {
         if (kept_.back() != k || since_search_ < slam::loop_step) return;
         since_search_ = 0;
-        thin_.clear();
-        for (std::size_t i = 0; i < scan(k).size(); i += 2) thin_.push_back(scan(k)[i]);
+        thin_points(scan(k), slam::loop_beams, thin_);
         const SearchWindow window{slam::loop_reach, slam::loop_turn};
         for (std::size_t c : find_candidates(k)) {
             ++tried_;
@@ -215,7 +222,7 @@ class LaserSlam {
             const SearchPeak peak =
                 search_.find_peak(field_, thin_, guess, window, {}, slam::least_loop_score);
             if (!peak.is_found) continue;
-            const Pose pose = refine_pose(field_, thin_, peak.pose);
+            const Pose pose = refine_pose(field_, scan(k), peak.pose);
             const int from = kept_[c];
             add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance, peak.score,
                       peak.second},
@@ -281,7 +288,7 @@ class LaserSlam {
     std::vector<int> kept_;
     std::vector<ScanEdge> edges_, loops_;
     std::vector<char> is_ambiguous_, is_used_;
-    std::vector<Point> thin_;
+    std::vector<Point> thin_, placed_;
     LoopConsistency chain_;
     AgreementGraph agreement_;
     double moved_ = 0, turned_ = 0, since_search_ = 0;
