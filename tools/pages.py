@@ -35,6 +35,7 @@ COURSE += (
     "cars",
     "mobile",
     "localization",
+    "monte-carlo",
     "pose-graphs",
 )
 COURSE += ("plot", "cli", "cpp")

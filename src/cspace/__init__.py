@@ -37,7 +37,16 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.localization import PoseGraph, localize, read_log
+    from cspace.localization import (
+        IncrementalGraph,
+        LaserScanner,
+        ParticleFilter,
+        PoseGraph,
+        ate,
+        localize,
+        read_log,
+        rpe,
+    )
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
     from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
@@ -65,14 +74,18 @@ logging.getLogger("cspace").addHandler(logging.NullHandler())
 
 __all__ = [
     "CspaceError",
+    "IncrementalGraph",
+    "LaserScanner",
     "Limits",
     "Mechanism",
     "OccupancyGrid",
+    "ParticleFilter",
     "PolygonWorld",
     "PoseGraph",
     "Robot",
     "Scene",
     "__version__",
+    "ate",
     "cartesian",
     "collision",
     "configuration_space",
@@ -94,6 +107,7 @@ __all__ = [
     "plan_many",
     "planning",
     "read_log",
+    "rpe",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
@@ -118,12 +132,15 @@ _LATER = {
     "HalfSpace": "cspace.shapes",
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
+    "IncrementalGraph": "cspace.localization",
+    "LaserScanner": "cspace.localization",
     "Limits": "cspace.model",
     "Mechanism": "cspace.mechanisms",
     "Mecanum": "cspace.mobile",
     "Mesh": "cspace.shapes",
     "OccupancyGrid": "cspace.maps",
     "Omni": "cspace.mobile",
+    "ParticleFilter": "cspace.localization",
     "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
     "PoseGraph": "cspace.localization",
@@ -136,6 +153,7 @@ _LATER = {
     "Tracked": "cspace.mobile",
     "Unicycle": "cspace.mobile",
     "__version__": "cspace._core",
+    "ate": "cspace.localization",
     "blend": "cspace.trajectory",
     "cartesian": "",
     "collision": "",
@@ -160,6 +178,7 @@ _LATER = {
     "plot": "",
     "read_log": "cspace.localization",
     "robots": "",
+    "rpe": "cspace.localization",
     "shapes": "",
     "spatial": "",
     "spline": "cspace.trajectory",

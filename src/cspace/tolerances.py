@@ -228,6 +228,10 @@ RUN_CELLS: Final = 1 << 28
 """Most cells of a grid that is searched over runs: its corners are numbered in rows as long as the next power
 of two, which fits into 31 bits then."""
 
+WIDEST_SIGMA: Final = 200
+"""Largest standard deviation of a likelihood field, in cells: its table by squared distance then has half a
+million entries, and bytes no longer tell the distances of neighbouring cells apart."""
+
 FARTHEST_CELL: Final = 1e12
 """Farthest cell from zero, in cells: there float64 still resolves a ten thousandth of a cell."""
 ON_WALL: Final = 1e-12
@@ -685,6 +689,18 @@ of Thrun takes the first turn as zero."""
 LOG_BYTES: Final = 1 << 30
 """Largest log that is read, after decompression: a day of a laser scanner; the numbers take as much again."""
 
+LARGEST_LOGGED: Final = 1e18
+"""Largest number of a log: beyond it squares overflow, and nothing measures so much; stamps in nanoseconds
+are below."""
+
+PRINTED_ROTATION: Final = 1e-3
+"""By how much a printed matrix may miss a rotation and still be projected on one: files print four digits and
+more."""
+
+ALIGNMENT_ROUNDING: Final = 1e-14
+"""Spread of points relative to their largest coordinate that is rounding, so that it determines no
+rotation."""
+
 LEVEL_TILT: Final = 1e-3
 """Tilt [rad] up to which a pose of space counts as planar: rounding of quaternions printed with four
 digits."""
@@ -720,5 +736,9 @@ of Gauss-Newton is smaller by far."""
 GRAPH_DECREASE: Final = 1e-9
 """Decrease of χ² that the last step of a pose graph predicts, relative to χ²: thousandths of what is asked of
 its digits."""
+
+SAME_CHI2: Final = 1e-6
+"""Difference of two values of χ², relative, within which they are of one optimum: steps that end the search
+leave 1e-9."""
 
 __all__ = [name for name in globals() if name.isupper()]

@@ -57,6 +57,22 @@ def test_robotlaser_has_its_angles(tmp_path):
     np.testing.assert_allclose(log.scans.T_base_laser[:2, 2], [0.1, 0.0])
 
 
+@pytest.mark.parametrize(("count", "step", "half"), [(180, 1.0, 90), (181, 1.0, 90), (360, 0.5, 90),
+                                                     (361, 0.5, 90), (401, 0.25, 50)])  # fmt: skip
+def test_the_modes_of_a_sick_laser(tmp_path, count, step, half):
+    """Steps of a degree, a half and a quarter, whether the scan has its last beam or not."""
+    ranges = " ".join(["1.5"] * count)
+    log = read_log(write(tmp_path, f"FLASER {count} {ranges} 0 0 0 0 0 0 1 host 1\n" * 2))
+    np.testing.assert_allclose(np.degrees(log.scans.angles), -half + step * np.arange(count), atol=1e-9)
+
+
+def test_ranges_below_zero_are_no_returns(tmp_path):
+    """Drivers print −1 or 0 for nothing; what exceeds a float is beyond every range."""
+    log = read_log(write(tmp_path, "FLASER 5 -1 0 nan 1e60 2.0 0 0 0 0 0 0 1 host 1\n"))
+    assert log.scans.returns.tolist() == [[False, False, False, False, True]]
+    assert any("2 ranges are not above zero" in note for note in log.notes)
+
+
 def test_a_clock_is_mended_with_the_fewest_changes():
     times = np.array([0.0, 1.0, 9.0, 2.0, 3.0, 2.5, 4.0])
     mended, notes = mend_clock(times)
@@ -112,6 +128,11 @@ def test_a_trajectory_of_tum(tmp_path):
         ("ODOM 0 nan 0 0 0 0 1 h 1\n", "must be finite"),
         ("ODOM 0 x 0 0 0 0 1 h 1\n", "'x' is no number"),
         ("FLASER 3 1 2 3 0 0 0\n", "the line is cut"),
+        ("FLASER 3.5 1 2 3 0 0 0 0 0 0 1 h 1\n", "must be a whole number"),
+        ("PARAM robot_front_laser_max 0 0 h 0\n", "must be above zero"),
+        (ODOM.format(x=0, t=1) + "ODOM 0 0 0 0 0 0 2\n", ":2: ODOM has 7 values"),
+        (ODOM.format(x=0, t="1e300"), "must not exceed 1e+18"),
+        ("ODOMETRY 0 1.5 1 0 0 1 0 0 1 0 1\n", "an id must be a whole number"),
         (FLASER.format(x=0, t=1) + "FLASER 2 1 2 0 0 0 0 0 0 2 h 2\n", ":2: the scan has 2 beams"),
         ("ODOMETRY 0 1 1 0 0\n", "5 values; 11 expected"),
         ("ODOMETRY 0 1 1 0 0 1 0 0 1 0 1\nODOMETRY 7 8 1 0 0 1 0 0 1 0 1\n", ":2: pose 7"),

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from cspace import tolerances
 from cspace.arrays import Array
 from cspace.errors import LogError
 from cspace.localization.log import Log, Scans
@@ -39,14 +40,17 @@ class Messages:
     skipped: Counter[str] = field(default_factory=Counter)
     resets: int = 0  # repetitions with a time that is not their own
     after_scan: bool = False  # no ODOM since the last scan
+    negative: int = 0  # ranges that are not above zero
+    lengths: dict[str, int] = field(default_factory=dict)  # values of the first message of each kind
 
 
 def read_carmen(lines: Lines) -> Log:
     """A log of CARMEN; LogError for an unknown message, a line that is cut, or scans of changing size.
 
-    FLASER has no angles: beam k of n lies at −90° + k 180°/n. In a corrected log an ODOM without a time
-    repeats the corrected pose of the scan before it, and the ODOM messages after it go on from there with
-    the raw increments: these are chained into the raw odometry, and the poses of the scans are the truth.
+    FLASER has no angles: beam k of n lies at −90° + k 180°/n, of 181 and 361 beams over n − 1. In a corrected
+    log an ODOM without a time repeats the corrected pose of the scan before it, and the ODOM messages after
+    it go on from there with the raw increments: these are chained into the raw odometry, and the poses of the
+    scans are the truth.
     """
     messages = Messages()
     for number, words in lines.rows():
@@ -58,7 +62,7 @@ def read_carmen(lines: Lines) -> Log:
             add_scan(messages, lines, number, words)
         elif words[0] == "PARAM":
             if words[1:2] == ["robot_front_laser_max"] and len(words) > 2:
-                messages.most = lines.numbers(number, words[2:3], "a range")[0]
+                messages.most = read_most(lines, number, words[2])
         else:
             raise lines.error(number, f"no message {words[0]!r} is known in logs of CARMEN")
     if not messages.odometry and not messages.scans:
@@ -68,7 +72,7 @@ def read_carmen(lines: Lines) -> Log:
 
 def add_odometry(messages: Messages, lines: Lines, number: int, words: list[str]) -> None:
     """ODOM x y θ tv rv acceleration time host logger-time."""
-    if len(words) < 8:
+    if len(words) < max(8, messages.lengths.setdefault("ODOM", len(words))):
         raise lines.error(number, f"ODOM has {len(words) - 1} values; 9 expected, the line is cut")
     x, y, theta = lines.numbers(number, words[1:4], "x, y and θ of ODOM")
     time = lines.numbers(number, words[7:8], "the time of ODOM")[0]
@@ -86,13 +90,14 @@ def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) ->
     if len(words) <= at:
         raise lines.error(number, f"{words[0]} has {len(words) - 1} values; the line is cut")
     head = lines.numbers(number, words[1 : at + 1], f"the head of {words[0]}")
-    count = int(head[-1])
+    count = lines.whole(number, words[at], "the number of ranges")
     ranges = words[at + 1 : at + 1 + count]
     tail = words[at + 1 + count :]
     if not is_plain and tail:
-        tail = tail[1 + int(lines.numbers(number, tail[:1], "the number of remissions")[0]) :]
+        tail = tail[1 + lines.whole(number, tail[0], "the number of remissions") :]
     place = 6 if is_plain else 11
-    if count < 1 or len(ranges) < count or len(tail) <= place:
+    least = max(place + 1, messages.lengths.setdefault(words[0], len(tail)))
+    if count < 1 or len(ranges) < count or len(tail) < least:
         raise lines.error(
             number, f"{words[0]} of {count} ranges has {len(words) - 1} values; the line is cut"
         )
@@ -103,20 +108,50 @@ def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) ->
     if messages.angles is None:
         messages.angles = beam_angles(head, count)
         if not is_plain:
-            messages.most = head[4]
-    try:
-        messages.ranges.append(np.array(ranges, dtype=np.float32))
-    except ValueError:
-        raise lines.error(number, f"a range of {words[0]} is no number") from None
+            messages.most = read_most(lines, number, words[5])
+    messages.ranges.append(read_ranges(messages, lines, number, ranges))
     messages.after_scan = True
     messages.scans.append(lines.numbers(number, [*tail[:6], tail[place], str(number)], "a pose"))
 
 
+def read_most(lines: Lines, number: int, word: str) -> float:
+    """The range of the laser, above zero."""
+    (most,) = lines.numbers(number, [word], "the range of the laser")
+    if most <= 0:
+        raise lines.error(number, f"the range of the laser is {most:g}; it must be above zero")
+    return most
+
+
+def read_ranges(
+    messages: Messages, lines: Lines, number: int, words: list[str]
+) -> np.ndarray[tuple[int], np.dtype[np.float32]]:
+    """The ranges of a scan; NaN for those that are not above zero, which are counted."""
+    try:
+        ranges = np.array(words, dtype=np.float64)
+    except ValueError:
+        raise lines.error(number, "a range of the scan is no number") from None
+    below = ranges <= 0
+    messages.negative += int(below.sum())
+    ranges[below] = np.nan
+    ranges[ranges > tolerances.LARGEST_LOGGED] = np.inf
+    return ranges.astype(np.float32)
+
+
 def beam_angles(head: list[float], count: int) -> Array:
-    """The angles of the beams (b,): from the head of ROBOTLASER1, or over half a turn."""
-    if len(head) == 1:
-        return np.asarray(-0.5 * np.pi + np.pi / count * np.arange(count))
-    return np.asarray(head[1] + head[3] * np.arange(count))
+    """The angles of the beams (b,): from the head of ROBOTLASER1, or those of a SICK laser.
+
+    FLASER has no angles. 181 and 361 beams include both ends of half a turn, 401 those of 100 degrees, and
+    other numbers of beams leave the last end out.
+    """
+    if len(head) > 1:
+        return np.asarray(head[1] + head[3] * np.arange(count))
+    span = WITH_BOTH_ENDS.get(count, np.pi)
+    return np.asarray(-0.5 * span + span / (count - (count in WITH_BOTH_ENDS)) * np.arange(count))
+
+
+WITH_BOTH_ENDS = {181: np.pi, 361: np.pi, 401: np.radians(100.0)}
+"""Numbers of beams at which a SICK laser measures both ends of its field of view, and that field [rad]:
+steps of a degree, a half and a quarter."""
 
 
 def assemble_log(messages: Messages) -> Log:
@@ -126,6 +161,8 @@ def assemble_log(messages: Messages) -> Log:
     is_corrected = 2 * messages.resets > len(scans)
     jumps = (rows[:, 4] == 1) & is_corrected  # in a raw log a robot at rest repeats its pose
     notes = [f"{count} {name} messages are not read" for name, count in sorted(messages.skipped.items())]
+    if messages.negative:
+        notes.append(f"{messages.negative} ranges are not above zero; they count as no return")
     order = np.argsort(np.concatenate([rows[~jumps, 5], scans[:, 7]]), kind="stable")
     stamps = np.concatenate([rows[~jumps, 3], scans[:, 6]])
     mended, clock = mend_clock(stamps[order])

@@ -49,7 +49,17 @@ class Lines:
             raise self.error(line, f"{shorten(bad, 40)!r} is no number; {what} expected") from None
         if not np.isfinite(found).all():
             raise self.error(line, f"{what} must be finite, and one of them is not")
+        largest = tolerances.LARGEST_LOGGED
+        if max(map(abs, found), default=0.0) > largest:
+            raise self.error(line, f"{what} must not exceed {largest:g}, and one of them does")
         return found
+
+    def whole(self, line: int, word: str, what: str) -> int:
+        """A word as a whole number from 0 on; LogError for others."""
+        (value,) = self.numbers(line, [word], what)
+        if value < 0 or value != int(value):
+            raise self.error(line, f"{what} must be a whole number from 0 on, and is {shorten(word, 40)}")
+        return int(value)
 
     def table(self, columns: int, what: str) -> Array:
         """All rows as numbers (n, columns); LogError for a row of another length."""
@@ -59,6 +69,12 @@ class Lines:
                 raise self.error(number, f"the line has {len(words)} columns; {columns} expected: {what}")
             rows.append(self.numbers(number, words, what))
         return np.array(rows, dtype=np.float64).reshape(-1, columns)
+
+    def refuse(self, is_bad: npt.NDArray[np.bool_], text: str) -> None:
+        """LogError for the first row of a table that is bad, with its line."""
+        bad = np.flatnonzero(is_bad)
+        if len(bad):
+            raise self.error([number for number, _ in self.rows()][int(bad[0])], text)
 
 
 def read_lines(path: str) -> Lines:

@@ -10,7 +10,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import LogError
 from cspace.localization.log import Landmarks, Log, Readings
-from cspace.localization.logs.lines import mend_clock, read_lines
+from cspace.localization.logs.lines import Lines, mend_clock, read_lines
 from cspace.mobile import Odometry, TimedPoses
 
 ROBOTS = 5
@@ -39,7 +39,7 @@ def read_mrclam(folder: Path, robot: int | None) -> Log:
     chosen = numbers[0] if robot is None else robot
     notes = [f"robot {chosen} of {', '.join(map(str, numbers))}"] if len(numbers) > 1 else []
     speeds = read_table(folder, f"Robot{chosen}_Odometry", 3, "time, forward velocity, angular velocity")
-    seen = read_table(folder, f"Robot{chosen}_Measurement", 4, "time, barcode, range, bearing")
+    seen = read_seen(folder, f"Robot{chosen}_Measurement")
     truth = read_table(folder, f"Robot{chosen}_Groundtruth", 4, "time, x, y, orientation")
     if not len(speeds):
         raise LogError(f"Robot{chosen}_Odometry.dat has no rows", path=str(folder))
@@ -64,7 +64,7 @@ def read_mrclam(folder: Path, robot: int | None) -> Log:
 
 def name_landmarks(folder: Path, seen: Array, zero: float) -> tuple[Readings, list[str]]:
     """Readings with the subjects of their barcodes, of landmarks alone, and notes of those left out."""
-    codes = read_table(folder, "Barcodes", 2, "subject, barcode")
+    codes = read_names(folder, "Barcodes", 2, "subject, barcode")
     subject_of = {int(code): int(subject) for subject, code in codes}
     subjects = np.array([subject_of.get(int(code), 0) for code in seen[:, 1]], dtype=np.int64)
     times, clock = mend_clock(seen[:, 0] - zero)
@@ -80,15 +80,41 @@ def name_landmarks(folder: Path, seen: Array, zero: float) -> tuple[Readings, li
 
 def read_landmarks(folder: Path) -> Landmarks:
     """The map with the standard deviations of its points."""
-    rows = read_table(folder, "Landmark_Groundtruth", 5, "subject, x, y and their standard deviations")
+    what = "subject, x, y and their standard deviations"
+    rows = read_names(folder, "Landmark_Groundtruth", 5, what)
     covariances = np.zeros((len(rows), 2, 2))
     covariances[:, 0, 0], covariances[:, 1, 1] = rows[:, 3] ** 2, rows[:, 4] ** 2
     return Landmarks(rows[:, 0].astype(np.int64), rows[:, 1:3], covariances)
 
 
+def read_seen(folder: Path, name: str) -> Array:
+    """Times, barcodes, ranges and bearings; LogError for a range below zero."""
+    lines = find_lines(folder, name)
+    seen = lines.table(4, "time, barcode, range, bearing")
+    lines.refuse(seen[:, 2] < 0, "the range is below zero")
+    return seen
+
+
+def read_names(folder: Path, name: str, columns: int, what: str) -> Array:
+    """A table whose first column names each row once, by a whole number; LogError otherwise."""
+    lines = find_lines(folder, name)
+    rows = lines.table(columns, what)
+    named = rows[:, 0]
+    lines.refuse((named < 0) | (named != np.round(named)), "the subject must be a whole number from 0 on")
+    is_second = np.ones(len(rows), dtype=np.bool_)
+    is_second[np.unique(named, return_index=True)[1]] = False
+    lines.refuse(is_second, "the subject was named by a line before; give each once")
+    return rows
+
+
 def read_table(folder: Path, name: str, columns: int, what: str) -> Array:
-    """The rows of a file of the folder, plain or compressed."""
+    """The rows of a file of the folder."""
+    return find_lines(folder, name).table(columns, what)
+
+
+def find_lines(folder: Path, name: str) -> Lines:
+    """The lines of a file of the folder, plain or compressed."""
     for ending in (".dat", ".dat.gz"):
         if (folder / (name + ending)).is_file():
-            return read_lines(str(folder / (name + ending))).table(columns, what)
+            return read_lines(str(folder / (name + ending)))
     raise LogError(f"there is no {name}.dat in the folder; it belongs to the data set", path=str(folder))

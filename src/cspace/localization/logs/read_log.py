@@ -10,6 +10,7 @@ from cspace.arrays import whole_number
 from cspace.errors import InputError, LogError, shorten
 from cspace.files import path_of
 from cspace.localization.log import Log
+from cspace.localization.logs import kitti
 from cspace.localization.logs.carmen import RECORDS, read_carmen
 from cspace.localization.logs.lines import Lines, is_number, read_lines
 from cspace.localization.logs.mrclam import FILE, is_mrclam, read_mrclam
@@ -20,7 +21,7 @@ GRAPHS = ("VERTEX", "EDGE", "FIX")
 
 
 def read_log(path: str | os.PathLike[str], *, robot: int | None = None) -> Log:
-    """The log of a robot: CARMEN, MRCLAM, Victoria Park or TUM, as the content says; files may be gzips.
+    """The log of a robot: CARMEN, MRCLAM, Victoria Park, TUM or KITTI, by its content; files may be gzips.
 
     path: a file, or for MRCLAM the folder, or a file of one robot in it. robot: which robot of an MRCLAM
     folder, the first unless given. A log is read whole or not at all; `log.notes` says what was dropped or
@@ -60,7 +61,9 @@ def read_by_content(lines: Lines) -> Log:
         raise lines.error(number, f"{words[0]} belongs to a pose graph, not to a log of a robot")
     if len(words) == COLUMNS and all(map(is_number, words)):
         return read_tum(lines)
+    if len(words) == kitti.COLUMNS and all(map(is_number, words)):
+        return kitti.read_kitti(lines)
     if not words[0]:
         raise LogError("the file has no lines", path=lines.path)
     shown: Any = shorten(" ".join(words), 40)
-    raise lines.error(number, f"{shown!r} begins no log of CARMEN, MRCLAM, Victoria Park or TUM")
+    raise lines.error(number, f"{shown!r} begins no log of CARMEN, MRCLAM, Victoria Park, TUM or KITTI")

@@ -26,7 +26,7 @@ def read_victoria(lines: Lines) -> Log:
         if len(words) != expected:
             raise lines.error(number, f"{words[0]} has {len(words) - 1} values; {expected - 1} expected")
         values = lines.numbers(number, words[1:], words[0])
-        first, second = int(values[0]), int(values[1])
+        first, second = (lines.whole(number, word, "an id") for word in words[1:3])
         if not increments and words[0] == "ODOMETRY":
             row_of[first] = 0
         if first not in row_of:
