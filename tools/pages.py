@@ -37,6 +37,7 @@ COURSE += (
     "localization",
     "monte-carlo",
     "pose-graphs",
+    "slam",
 )
 COURSE += ("plot", "cli", "cpp")
 """The pages of the rooms, in the order in which they build on each other."""

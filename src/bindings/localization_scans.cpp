@@ -24,9 +24,8 @@ ByteField read_field(const cspace::maps::CellBytes& scores, double resolution, c
 }
 // Found, ambiguous, pose, covariance, score, second.
 nb::tuple write_match(const ScanMatchResult& found) {
-    return nb::make_tuple(found.is_found, found.is_ambiguous,
-                          make_array<PoseRow>({{found.pose}}), make_array<SquareRow>({{found.covariance}}),
-                          found.score, found.second);
+    return nb::make_tuple(found.is_found, found.is_ambiguous, make_array<PoseRow>({{found.pose}}),
+                          make_array<SquareRow>({{found.covariance}}), found.score, found.second);
 }
 nb::tuple write_relations(const std::vector<ScanRelation>& relations) {
     cspace::Table<std::int32_t> ends{{}, 2};
@@ -55,8 +54,8 @@ void bind_localization_scans(nb::module_& m) {
             ScanMatchResult found;
             {
                 const nb::gil_scoped_release released;
-                found = match_points(read_field(scores, resolution, origin, outside), points, guess, reach, turn,
-                                     refines);
+                found = match_points(read_field(scores, resolution, origin, outside), points, guess, reach,
+                                     turn, refines);
             }
             return write_match(found);
         },
@@ -113,8 +112,10 @@ void bind_localization_scans(nb::module_& m) {
         .def_prop_ro("optimizations", &LaserSlamRun::optimizations)
         .def_prop_ro("poses", [](const LaserSlamRun& run) { return make_array<PoseRow>({run.poses()}); })
         .def_prop_ro("matched", [](const LaserSlamRun& run) { return make_array<PoseRow>({run.matched()}); })
-        .def_prop_ro("edges", [](const LaserSlamRun& run) { return write_relations(run.edges()); },
-                     "Ends, poses, covariances, scores with second scores, and verdicts.")
-        .def_prop_ro("loops", [](const LaserSlamRun& run) { return write_relations(run.loops()); },
-                     "The same of all loops that were found.");
+        .def_prop_ro(
+            "edges", [](const LaserSlamRun& run) { return write_relations(run.edges()); },
+            "Ends, poses, covariances, scores with second scores, and verdicts.")
+        .def_prop_ro(
+            "loops", [](const LaserSlamRun& run) { return write_relations(run.loops()); },
+            "The same of all loops that were found.");
 }

@@ -12,8 +12,8 @@ namespace cspace::localization {
 namespace {
 
 struct CorrelationKernels {
-    static int sum_windows(const std::uint8_t* scores, const std::int32_t* at, int beams, int stride, int rows,
-                           int columns, std::uint16_t* sums) {
+    static int sum_windows(const std::uint8_t* scores, const std::int32_t* at, int beams, int stride,
+                           int rows, int columns, std::uint16_t* sums) {
         return kernels::sum_score_windows(scores, at, beams, stride, rows, columns, sums);
     }
 };
@@ -61,8 +61,8 @@ class RunOfKernels : public LaserSlamRun {
 
 }  // namespace
 
-ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point> points, const PoseRow& guess,
-                             double reach, double turn, bool refines) {
+ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point> points,
+                             const PoseRow& guess, double reach, double turn, bool refines) {
     static thread_local CorrelativeSearch<CorrelationKernels> search;  // keeps its memory
     const SearchPeak peak =
         search.find_peak(field, points, PlanarSpace::read_pose(guess.data()), {reach, turn}, {}, 0, true);
@@ -77,8 +77,12 @@ ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point
 ScanMatchResult match_point_lines(const maps::ByteField& field, std::span<const Point> reference,
                                   std::span<const Point> points, const PoseRow& guess, double reach) {
     const IcpResult found = match_lines(reference, points, PlanarSpace::read_pose(guess.data()), reach);
-    return {found.is_found, false, write_pose(found.pose), found.covariance,
-            found.is_found ? measure_score(field, points, found.pose) : 0, 0};
+    return {found.is_found,
+            false,
+            write_pose(found.pose),
+            found.covariance,
+            found.is_found ? measure_score(field, points, found.pose) : 0,
+            0};
 }
 
 maps::ByteField make_field_of_points(std::span<const Point> points, double resolution, double sigma) {
@@ -100,16 +104,17 @@ std::vector<Point> thin_scans(std::span<const Point> points, std::vector<std::in
     return all;
 }
 
-std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points, std::span<const std::int32_t> first,
+std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points,
+                                              std::span<const std::int32_t> first,
                                               std::span<const PoseRow> steps, const SlamRule& rule) {
     bool fits = !first.empty() && first.front() == 0 && std::size_t(first.back()) == points.size();
     for (std::size_t k = 1; k < first.size(); ++k) fits = fits && first[k] >= first[k - 1];
     if (!fits || steps.size() + 1 < first.size() - 1)
         throw std::invalid_argument("the arrays of the scans do not fit together");
-    return std::make_unique<RunOfKernels>(
-        std::vector<Point>(points.begin(), points.end()), std::vector<std::int32_t>(first.begin(), first.end()),
-        std::vector<PoseRow>(steps.begin(), steps.end()),
-        SlamOptions{rule.resolution, rule.sigma, rule.finds_loops});
+    return std::make_unique<RunOfKernels>(std::vector<Point>(points.begin(), points.end()),
+                                          std::vector<std::int32_t>(first.begin(), first.end()),
+                                          std::vector<PoseRow>(steps.begin(), steps.end()),
+                                          SlamOptions{rule.resolution, rule.sigma, rule.finds_loops});
 }
 
 }  // namespace cspace::localization

@@ -1,5 +1,5 @@
-// Laser SLAM on a pose graph: each scan is matched against the last ones, loops are found by matching against those
-// of earlier passes, and the graph is optimized whenever some were accepted.
+// Laser SLAM on a pose graph: each scan is matched against the last ones, loops are found by matching against
+// those of earlier passes, and the graph is optimized whenever some were accepted.
 //
 // Scan matching: Olson 2009. Consistent loops: Mangelson et al. 2018. Weights of loops while driving: dynamic
 // covariance scaling (Agarwal et al. 2013).
@@ -39,10 +39,11 @@ struct ScanEdge {
 
 namespace slam {
 
-inline constexpr int submap_scans = 30;  // that a new scan is matched against
+inline constexpr int submap_scans = 30;                        // that a new scan is matched against
 inline constexpr double least_move = 0.05, least_turn = 0.05;  // [m, rad] between the scans of a submap
 inline constexpr double least_score = 0.3;                     // of a match against the last scans
-// The window of a match, and the deviation of its prior: what odometry may be off at rest and per metre or radian.
+// The window of a match, and the deviation of its prior: what odometry may be off at rest and per metre or
+// radian.
 inline constexpr double window_rest = 0.15, window_share = 0.3;
 inline constexpr double turn_rest = 0.12, turn_share = 0.4;
 inline constexpr double prior_rest = 0.05, prior_share = 0.15;
@@ -54,13 +55,14 @@ inline constexpr std::size_t loop_beams = 90;
 inline constexpr int loop_gap = 60;       // scans of submaps: nearer ones repeat the matches of the drive
 inline constexpr int pass_gap = 30;       // between two passes of one place
 inline constexpr double loop_step = 0.3;  // [m or rad] from one search of loops to the next
-inline constexpr double loop_reach = 2.5, loop_turn = 0.45;  // the window [m, rad]
+inline constexpr double loop_reach = 2.5, loop_turn = 0.45;     // the window [m, rad]
 inline constexpr double least_radius = 1.0, most_radius = 3.0;  // of the search for candidates [m]
 inline constexpr double radius_deviations = 3;
 inline constexpr double least_loop_score = 0.65;
-inline constexpr double consistent_square = 21.1;  // the quantile of 99.99 % of χ² with three degrees of freedom
-inline constexpr int fewest_agreeing = 2;          // loops before any of them counts
-inline constexpr int optimize_gap = 10;            // scans between two optimizations
+inline constexpr double consistent_square =
+    21.1;                                  // the quantile of 99.99 % of χ² with three degrees of freedom
+inline constexpr int fewest_agreeing = 2;  // loops before any of them counts
+inline constexpr int optimize_gap = 10;    // scans between two optimizations
 inline constexpr int optimize_steps = 3;
 inline constexpr double loop_scaling = 9;  // φ of dynamic covariance scaling while driving
 
@@ -71,9 +73,10 @@ class LaserSlam {
   public:
     using Pose = PlanarSpace::Pose;
 
-    // points: in base, of all scans; first (n + 1): where those of each scan begin. steps (n − 1): the odometry between scans as twists.
-    LaserSlam(std::vector<Point> points, std::vector<std::int32_t> first, std::vector<PlanarSpace::Twist> steps,
-              const SlamOptions& options)
+    // points: in base, of all scans; first (n + 1): where those of each scan begin. steps (n − 1): the
+    // odometry between scans as twists.
+    LaserSlam(std::vector<Point> points, std::vector<std::int32_t> first,
+              std::vector<PlanarSpace::Twist> steps, const SlamOptions& options)
         : points_(std::move(points)),
           first_(std::move(first)),
           steps_(std::move(steps)),
@@ -156,9 +159,9 @@ class LaserSlam {
         const double weight = 1 / (2 * search::independent_beams);
         lay_field(scan(k), guess, window,
                   kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans)), kept_.size());
-        const SearchPeak peak = search_.find_peak(
-            field_, scan(k), guess, window, {weight / (place * place), weight / (heading * heading)},
-            slam::least_score);
+        const SearchPeak peak =
+            search_.find_peak(field_, scan(k), guess, window,
+                              {weight / (place * place), weight / (heading * heading)}, slam::least_score);
         ScanEdge edge{k - 1, k, {}, {}, 0, 0};
         Pose pose = guess;
         if (peak.is_found) {
@@ -224,8 +227,8 @@ class LaserSlam {
             if (!peak.is_found) continue;
             const Pose pose = refine_pose(field_, scan(k), peak.pose);
             const int from = kept_[c];
-            add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance, peak.score,
-                      peak.second},
+            add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance,
+                      peak.score, peak.second},
                      peak.is_ambiguous);
         }
         if (has_news_ && k - last_optimized_ >= slam::optimize_gap) optimize();
@@ -239,8 +242,7 @@ class LaserSlam {
         for (int other = 0; other < node; ++other) {
             const ScanEdge& there = loops_[std::size_t(other)];
             if (is_ambiguous_[std::size_t(other)]) continue;
-            const double error =
-                chain_.cycle_error(made, {there.from, there.to, there.z, there.covariance});
+            const double error = chain_.cycle_error(made, {there.from, there.to, there.z, there.covariance});
             if (error <= slam::consistent_square) agreement_.join(node, other);
         }
         has_news_ = true;

@@ -1,5 +1,5 @@
-// The part of a field that a scan can reach, with margins, so that no window leaves it; and the same pooled: the
-// greatest score that any translation of a block of 4 × 4 meets, for bounds of whole blocks.
+// The part of a field that a scan can reach, with margins, so that no window leaves it; and the same pooled:
+// the greatest score that any translation of a block of 4 × 4 meets, for bounds of whole blocks.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace cspace::localization {
 
 struct PaddedField {
-    static constexpr int block = 4;            // cells of a side that are pooled
-    static constexpr int grain = 2;            // cells: pooled scores serve all windows that begin within it
+    static constexpr int block = 4;  // cells of a side that are pooled
+    static constexpr int grain = 2;  // cells: pooled scores serve all windows that begin within it
     static constexpr std::size_t pooled_side = block + grain - 1;
     static constexpr std::size_t beyond = 64;  // bytes that lanes may read behind the last window
 
@@ -27,8 +27,8 @@ struct PaddedField {
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint8_t> pooled;  // by place in the block, then by block
 
-    // The cells within `reach` of a center. Windows of so many rows and columns, multiples of a block, may begin at any cell up
-    // to the last ones.
+    // The cells within `reach` of a center. Windows of so many rows and columns, multiples of a block, may
+    // begin at any cell up to the last ones.
     void copy_part(const maps::ByteField& field, Point center, double reach, int window_rows,
                    int window_columns) {
         resolution = field.frame.resolution;
@@ -45,8 +45,8 @@ struct PaddedField {
                   field.frame.origin.y + (bottom - window_rows) * resolution};
         bytes.assign(std::size_t(rows) * std::size_t(stride) + beyond, field.outside);
         for (int row = bottom; row < top; ++row) {
-            const std::uint8_t* from = field.scores.data() +
-                                       std::size_t(row) * std::size_t(field.columns) + std::size_t(left);
+            const std::uint8_t* from =
+                field.scores.data() + std::size_t(row) * std::size_t(field.columns) + std::size_t(left);
             std::copy_n(from, right - left,
                         bytes.data() + std::size_t(row - bottom + window_rows) * std::size_t(stride) +
                             std::size_t(window_columns));
@@ -79,7 +79,8 @@ struct PaddedField {
 
   private:
     static int round_up(int count) { return (count + block - 1) / block * block; }
-    // The greatest of the cells that windows of a block reach which begin at a row, or at the next one of the grain.
+    // The greatest of the cells that windows of a block reach which begin at a row, or at the next one of the
+    // grain.
     void pool_rows(std::size_t row, std::uint8_t* to) const {
         const auto width = std::size_t(stride);
         const std::size_t last = std::min(row + pooled_side, std::size_t(rows));

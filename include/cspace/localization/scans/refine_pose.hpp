@@ -43,11 +43,12 @@ inline double measure_score(const maps::ByteField& field, std::span<const Point>
 namespace refine {
 
 inline constexpr int most_steps = 12;
-inline constexpr double small_step = 1e-5;                     // [m, rad]: a hundredth of a millimetre
+inline constexpr double small_step = 1e-5;                      // [m, rad]: a hundredth of a millimetre
 inline constexpr double longest_step = 0.05, most_turn = 0.02;  // of one iteration [m], [rad]
 // Of the curvature, for directions that no point measures [1/m², 1/rad² per point].
 inline constexpr double damping = 0.1;
-inline constexpr double most_shift = 0.15, most_total_turn = 0.05;  // beyond them it has left its peak [m], [rad]
+inline constexpr double most_shift = 0.15,
+                        most_total_turn = 0.05;  // beyond them it has left its peak [m], [rad]
 
 }  // namespace refine
 
@@ -78,7 +79,8 @@ inline PlanarSpace::Pose refine_pose(const maps::ByteField& field, std::span<con
         twist[2] = v / f, twist[1] = u / d - e * twist[2];
         twist[0] = g[0] / H[0] - a * twist[1] - b * twist[2];
         const double length = std::hypot(twist[0], twist[1]);
-        const double scale = std::max({1.0, length / refine::longest_step, std::fabs(twist[2]) / refine::most_turn});
+        const double scale =
+            std::max({1.0, length / refine::longest_step, std::fabs(twist[2]) / refine::most_turn});
         for (double& x : twist) x /= scale;
         pose = PlanarSpace::move(pose, twist);
         if (length + std::fabs(twist[2]) < refine::small_step) break;

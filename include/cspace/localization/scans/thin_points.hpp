@@ -1,5 +1,5 @@
-// Fewer points of a scan, as evenly spread along the walls as possible: near walls give many points and far ones few,
-// and it is the far ones that measure the heading.
+// Fewer points of a scan, as evenly spread along the walls as possible: near walls give many points and far
+// ones few, and it is the far ones that measure the heading.
 #pragma once
 
 #include <algorithm>
