@@ -1,8 +1,8 @@
 """Laser SLAM on the public logs, and the time of a scan match.
 
-Usage: python benchmarks/laser_slam.py [--save FILE]. Prints a row per log: the error of each stage against the
-corrected poses of the log (RMSE after alignment, `cs.ate`) and the wall time on one core; with the odometry
-of the log as it is. The corrected poses are those of another program, not a truth. The data are found
+Usage: python benchmarks/laser_slam.py [--save FILE]. Prints a row per log: the error of each stage against
+the corrected poses of the log (RMSE after alignment, `cs.ate`) and the wall time on one core; from the raw
+odometry of the log. The corrected poses are those of another program, not a truth. The data are found
 through $CSPACE_DATA.
 """
 
@@ -37,7 +37,7 @@ def measure_log(name: str) -> dict[str, Any]:
 
 
 def measure_matches() -> dict[str, Any]:
-    """Milliseconds of a match within ±0.8 m and ±15° on the map of the other scans, and how many are right."""
+    """Milliseconds of a match within ±0.8 m and ±15° on the map of other scans, and how many are right."""
     log = cs.read_log(DATA / "intel-corrected.log.gz")
     poses = log.truth.at(log.scans.times)
     known = np.isfinite(poses[:, 0])

@@ -1,4 +1,4 @@
-"""A robot drives through a building that it does not know: scan matching and loops make the map and the way."""
+"""A robot drives through a building that it does not know: scan matching and loops make the map."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ def main(folder: Path) -> None:
     way = [(3.7, 3.7), (16.3, 3.7), (16.3, 16.3), (3.7, 16.3), (3.7, 3.7), (9, 3.7)]
     run = cs.navigation.follow(way, vehicle=cs.Unicycle())
     log = simulate(run, grid, LaserScanner(most_range=12.0), period=0.4, rng=7)
-    assert log.truth is not None and log.scans is not None
+    assert log.truth is not None
+    assert log.scans is not None
 
     # One scan against another: where it was taken, with a covariance.
     match = cs.match_scan(log.scans[1], log.scans[0])
@@ -34,7 +35,8 @@ def main(folder: Path) -> None:
 
     # The whole log.
     found = cs.slam(log)
-    assert isinstance(found, LaserSlam) and found
+    assert isinstance(found, LaserSlam)
+    assert found
     print(found)
     for name, stage in found.stages.items():
         print(f"{name:10} {cs.ate(stage, log.truth, align='se2').rmse:.3f} m")

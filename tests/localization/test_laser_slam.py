@@ -4,11 +4,11 @@ import time
 
 import numpy as np
 import pytest
+from tests.data import shared_data
 
 import cspace as cs
 from cspace.localization import LaserScanner, Log, Scans, simulate
 from cspace.mobile import Odometry, RandomWalk
-from tests.data import shared_data
 
 NOISE = RandomWalk(distance=2e-3, side=5e-4, turn=3e-3, drift=2e-3)
 
@@ -66,7 +66,8 @@ def error(poses, log, times):
 
 
 def test_a_building_is_mapped(log, found):
-    assert found and found.status == "mapped", found.reason
+    assert found, found.reason
+    assert found.status == "mapped"
     raw = error(found.stages["odometry"].poses, log, found.times)
     assert error(found.poses, log, found.times) < 0.06 < 0.5 < raw
     assert found.stats.accepted > 5
@@ -108,7 +109,8 @@ def test_half_a_log_and_its_reverse(log):
 
 def test_without_loops_the_drift_stays(log, found):
     open_ended = cs.slam(log, loops=False)
-    assert not open_ended.loops and open_ended.stats.accepted == 0
+    assert not open_ended.loops
+    assert open_ended.stats.accepted == 0
     assert error(open_ended.poses, log, open_ended.times) >= error(found.poses, log, found.times) - 0.02
 
 
@@ -120,7 +122,8 @@ def test_standing_still_moves_nothing():
         Odometry(times, np.zeros((59, 3))), scans=Scans(times, scans.ranges, scans.angles, scans.most)
     )
     s = cs.slam(still)
-    assert s and np.abs(s.poses).max() < 1e-3
+    assert s
+    assert np.abs(s.poses).max() < 1e-3
 
 
 def test_beams_one_after_the_other_are_moved_to_one_time():
@@ -135,26 +138,32 @@ def test_beams_one_after_the_other_are_moved_to_one_time():
     scans = Scans([0.0], ranges[None], bearings, time_increment=0.01)
     odometry = Odometry.from_twists([0.0, 2.0], [twist])
     points, first = cs.localization.scans.points.place_beams(scans, odometry, 20.0)
-    assert first.tolist() == [0, 90] and np.allclose(points, world, atol=1e-5)
+    assert first.tolist() == [0, 90]
+    assert np.allclose(points, world, atol=1e-5)
 
 
 def test_time_limits_are_kept(log):
     begin = time.perf_counter()
     s = cs.slam(log, time_limit=0.1)
     assert time.perf_counter() - begin < 1.5
-    assert not s and s.status == "time_limit" and len(s.times) == len(s.poses) >= 1
+    assert not s
+    assert s.status == "time_limit"
+    assert len(s.times) == len(s.poses) >= 1
 
 
 def test_progress_rises(log):
     shares = []
     cs.slam(log, progress=shares.append)
-    assert shares == sorted(shares) and shares[-1] == 1.0
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
 
 
 def test_one_scan_is_a_map(log):
     one = Log(log.odometry, scans=log.scans[5])
     s = cs.slam(one)
-    assert s and s.poses.tolist() == [[0, 0, 0]] and len(s.graph.edges) == 0
+    assert s
+    assert s.poses.tolist() == [[0, 0, 0]]
+    assert len(s.graph.edges) == 0
 
 
 def test_a_robot_that_sees_nothing_any_more_is_lost(log):
@@ -163,7 +172,9 @@ def test_a_robot_that_sees_nothing_any_more_is_lost(log):
     s = cs.slam(
         Log(log.odometry, scans=Scans(log.scans.times, ranges, log.scans.angles, log.scans.most)), loops=False
     )
-    assert not s and s.status == "lost" and s.stats.unmatched >= 40
+    assert not s
+    assert s.status == "lost"
+    assert s.stats.unmatched >= 40
 
 
 @pytest.mark.parametrize(
@@ -196,4 +207,5 @@ def test_bad_arguments_are_named(log):
 def test_public_logs_from_raw_odometry(name, most):
     log = cs.read_log(shared_data() / "localization" / "carmen" / f"{name}-corrected.log.gz")
     s = cs.slam(log)
-    assert s and cs.ate(s, log.truth, align="se2").rmse < most
+    assert s
+    assert cs.ate(s, log.truth, align="se2").rmse < most

@@ -1,5 +1,5 @@
-"""Laws of scan matching: equal to brute force, turned problems have turned answers, the truth is found, and what
-is ambiguous or does not overlap is said to be so."""
+"""Laws of scan matching: equal to brute force, turned problems have turned answers, the truth is found, and
+what is ambiguous or does not overlap is said to be so."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def place(pose, points):
 
 def brute(field, points, guess, reach, step, turns):
     """The best score, by looking every cell up for every translation and rotation."""
-    shifts = int(round(reach / field.resolution))
+    shifts = round(reach / field.resolution)
     padded = np.pad(field.scores.astype(int), 400, constant_values=field.outside)
     best = -1
     for angle in np.arange(-turns, turns + 1) * step:
@@ -67,7 +67,8 @@ def test_large_windows_are_searched_as_exactly_as_small_ones(seed):
         field.scores, 0.05, field.origin, 0, points, np.zeros(3), 1.0, 3.1, False
     )
     step = np.clip(0.05 / np.sqrt((points**2).sum(axis=1).mean()), 0.004, 0.0175)
-    assert found and second <= score
+    assert found
+    assert second <= score
     assert score == pytest.approx(brute(field, points, np.zeros(3), 1.0, step, int(np.ceil(3.1 / step))))
 
 
@@ -103,7 +104,8 @@ def test_the_motion_between_two_scans_is_found(seed, method):
     scan = place(cs.to_xytheta(np.linalg.inv(cs.pose_2d(xytheta=truth))), points_of(rng, 150))
     found = cs.match_scan(scan, world, method=method, window=(0.8, 0.26))
     assert found, found.reason
-    assert np.hypot(*(found.pose - truth)[:2]) < 0.02 and abs(found.pose[2] - truth[2]) < 0.01
+    assert np.hypot(*(found.pose - truth)[:2]) < 0.02
+    assert abs(found.pose[2] - truth[2]) < 0.01
     assert (np.linalg.eigvalsh(found.covariance) > 0).all()
 
 
@@ -118,16 +120,20 @@ def test_the_covariance_of_a_corridor_is_long():
 def test_two_equal_places_are_ambiguous():
     rng = np.random.default_rng(1)
     scan = points_of(rng, 80, 0.5)
-    twice = np.concatenate([scan + [0.6, 0], scan - [0.6, 0]])
+    twice = np.concatenate([[*scan, 0.6, 0], scan - [0.6, 0]])
     found = cs.match_scan(scan, twice)
-    assert not found and found.status == "ambiguous" and found.second > 0.95 * found.score
+    assert not found
+    assert found.status == "ambiguous"
+    assert found.second > 0.95 * found.score
     assert cs.match_scan(scan, twice, guess=(0.6, 0, 0), window=(0.3, 0.1))
 
 
 def test_far_scans_do_not_overlap():
     scan = points_of(np.random.default_rng(2))
     found = cs.match_scan(scan, scan + 50.0)
-    assert not found and found.status == "no overlap" and found.score < 0.3
+    assert not found
+    assert found.status == "no overlap"
+    assert found.score < 0.3
     assert cs.match_scan(scan, scan + 50.0, method="icp").status == "not converged"
 
 

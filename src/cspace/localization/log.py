@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, one_number, one_array, positive_number
+from cspace.arrays import Array, one_array, one_number, positive_number
 from cspace.errors import InputError
 from cspace.mobile import Odometry, TimedPoses
 from cspace.mobile.timed_poses import read_rows, read_times

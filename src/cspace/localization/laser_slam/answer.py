@@ -85,7 +85,7 @@ class LaserSlam:
 
     def __repr__(self) -> str:
         s = self.stats
-        text = f"{count_things(len(self), 'pose')}, {count_things(s.accepted, 'loop')}: {self.status}, {self.reason}"
+        text = f"{count_things(len(self), 'pose')}, {count_things(s.accepted, 'loop')}: {self.status}"
         return one_line("LaserSlam", text)
 
     @cached_property
