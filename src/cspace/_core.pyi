@@ -1105,6 +1105,7 @@ class ParticleCloud:
 
     def draw_normals(self, count: int) -> numpy.typing.NDArray[numpy.float64]:
         """Standard normal numbers (count, 3) of a step of their own."""
+
 def match_points(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float, turn: float, refines: bool) -> tuple:
     """
     Found, ambiguous, pose, covariance, score and second score of a correlative match.
@@ -1115,6 +1116,9 @@ def match_point_lines(scores: numpy.typing.NDArray[numpy.uint8], resolution: flo
 
 def make_field_of_points(points: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float) -> tuple:
     """The scores and the origin of a field of bells about points."""
+
+def thin_scans(points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], most: int) -> tuple:
+    """At most so many points of each scan, and where each scan begins."""
 
 class LaserSlamRun:
     """Laser SLAM on a pose graph, as far as it is done."""
@@ -1146,6 +1150,7 @@ class LaserSlamRun:
     @property
     def loops(self) -> tuple:
         """The same of all loops that were found."""
+
 class LandmarkFilter:
     """A filter on a pose and landmarks."""
 
