@@ -120,7 +120,7 @@ def test_the_covariance_of_a_corridor_is_long():
 def test_two_equal_places_are_ambiguous():
     rng = np.random.default_rng(1)
     scan = points_of(rng, 80, 0.5)
-    twice = np.concatenate([[*scan, 0.6, 0], scan - [0.6, 0]])
+    twice = np.concatenate([scan + np.array([0.6, 0.0]), scan - np.array([0.6, 0.0])])
     found = cs.match_scan(scan, twice)
     assert not found
     assert found.status == "ambiguous"
@@ -143,7 +143,7 @@ def test_far_scans_do_not_overlap():
         ({"scan": np.zeros((0, 2))}, "no points"),
         ({"scan": [[np.nan, 0.0]]}, "scan"),
         ({"window": (0.0, 0.1)}, "window"),
-        ({"window": (1.0, 4.0)}, "π"),
+        ({"window": (1.0, 4.0)}, "3.14"),
         ({"window": (1e9, 1.0)}, "window"),
         ({"method": "ipc"}, "icp"),
         ({"guess": [0, 0]}, "guess"),
