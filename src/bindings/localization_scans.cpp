@@ -9,18 +9,12 @@ namespace nb = nanobind;
 using namespace nb::literals;
 using namespace cspace::localization;
 using cspace::Point;
-using cspace::maps::ByteField;
 
 namespace {
 
-ByteField read_field(const cspace::maps::CellBytes& scores, double resolution, const Point& origin,
-                     int outside) {
-    ByteField field;
-    field.frame.resolution = resolution, field.frame.origin = origin;
-    field.rows = scores.rows, field.columns = scores.columns;
-    field.outside = std::uint8_t(outside);
-    field.scores.assign(scores.data, scores.data + std::size_t(scores.rows) * std::size_t(scores.columns));
-    return field;
+ScoreArray read_field(const cspace::maps::CellBytes& scores, double resolution, const Point& origin,
+                      int outside) {
+    return {scores.data, scores.rows, scores.columns, resolution, origin, outside};
 }
 // Found, ambiguous, pose, covariance, score, second.
 nb::tuple write_match(const ScanMatchResult& found) {
@@ -79,11 +73,10 @@ void bind_localization_scans(nb::module_& m) {
     m.def(
         "make_field_of_points",
         [](std::span<const Point> points, double resolution, double sigma) {
-            ByteField field = make_field_of_points(points, resolution, sigma);
-            const Point origin = field.frame.origin;
+            PointField field = make_field_of_points(points, resolution, sigma);
             return nb::make_tuple(
-                cspace::Table<std::uint8_t>{std::move(field.scores), std::size_t(field.columns)}, origin.x,
-                origin.y);
+                cspace::Table<std::uint8_t>{std::move(field.scores), std::size_t(field.columns)},
+                field.origin.x, field.origin.y);
         },
         "points"_a, "resolution"_a, "sigma"_a, "The scores and the origin of a field of bells about points.");
     m.def(

@@ -29,6 +29,15 @@ std::vector<PoseRow> write_poses(const std::vector<PlanarSpace::Pose>& poses) {
     return rows;
 }
 
+maps::ByteField read_field(const ScoreArray& given) {
+    maps::ByteField field;
+    field.frame.resolution = given.resolution, field.frame.origin = given.origin;
+    field.rows = given.rows, field.columns = given.columns;
+    field.outside = std::uint8_t(given.outside);
+    field.scores.assign(given.scores, given.scores + std::size_t(given.rows) * std::size_t(given.columns));
+    return field;
+}
+
 class RunOfKernels : public LaserSlamRun {
   public:
     RunOfKernels(std::vector<Point> points, std::vector<std::int32_t> first, std::vector<PoseRow> steps,
@@ -61,8 +70,9 @@ class RunOfKernels : public LaserSlamRun {
 
 }  // namespace
 
-ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point> points,
-                             const PoseRow& guess, double reach, double turn, bool refines) {
+ScanMatchResult match_points(const ScoreArray& given, std::span<const Point> points, const PoseRow& guess,
+                             double reach, double turn, bool refines) {
+    const maps::ByteField field = read_field(given);
     static thread_local CorrelativeSearch<CorrelationKernels> search;  // keeps its memory
     const SearchPeak peak =
         search.find_peak(field, points, PlanarSpace::read_pose(guess.data()), {reach, turn}, {}, 0, true);
@@ -74,8 +84,9 @@ ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point
     return result;
 }
 
-ScanMatchResult match_point_lines(const maps::ByteField& field, std::span<const Point> reference,
+ScanMatchResult match_point_lines(const ScoreArray& given, std::span<const Point> reference,
                                   std::span<const Point> points, const PoseRow& guess, double reach) {
+    const maps::ByteField field = read_field(given);
     const IcpResult found = match_lines(reference, points, PlanarSpace::read_pose(guess.data()), reach);
     return {found.is_found,
             false,
@@ -85,8 +96,9 @@ ScanMatchResult match_point_lines(const maps::ByteField& field, std::span<const 
             0};
 }
 
-maps::ByteField make_field_of_points(std::span<const Point> points, double resolution, double sigma) {
-    return make_point_field(points, resolution, sigma);
+PointField make_field_of_points(std::span<const Point> points, double resolution, double sigma) {
+    maps::ByteField field = make_point_field(points, resolution, sigma);
+    return {std::move(field.scores), field.columns, field.frame.origin};
 }
 
 std::vector<Point> thin_scans(std::span<const Point> points, std::vector<std::int32_t>& first, int most) {

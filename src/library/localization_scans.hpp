@@ -7,13 +7,26 @@
 #include <span>
 #include <vector>
 
-#include "cspace/maps/byte_field.hpp"
 #include "cspace/math/plane.hpp"
 
 namespace cspace::localization {
 
 using PoseRow = std::array<double, 3>;    // x, y [m], θ [rad]
 using SquareRow = std::array<double, 9>;  // a matrix 3 × 3
+
+// A field of scores: bytes (rows, columns) of cells, of which cell (0, 0) has its least corner at the origin.
+struct ScoreArray {
+    const std::uint8_t* scores;
+    int rows, columns;
+    double resolution;
+    Point origin;
+    int outside;
+};
+struct PointField {
+    std::vector<std::uint8_t> scores;
+    int columns;
+    Point origin;
+};
 
 struct ScanMatchResult {
     bool is_found, is_ambiguous;
@@ -24,13 +37,13 @@ struct ScanMatchResult {
 
 // The best pose of points of base on a field, within half sides of a window about a guess, refined between
 // the cells if asked.
-ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point> points,
-                             const PoseRow& guess, double reach, double turn, bool refines);
+ScanMatchResult match_points(const ScoreArray& field, std::span<const Point> points, const PoseRow& guess,
+                             double reach, double turn, bool refines);
 // The pose of points among reference points, by point-to-line ICP; pairs lie within `reach`.
-ScanMatchResult match_point_lines(const maps::ByteField& field, std::span<const Point> reference,
+ScanMatchResult match_point_lines(const ScoreArray& field, std::span<const Point> reference,
                                   std::span<const Point> points, const PoseRow& guess, double reach);
 // A field of bells about points, exp(−d²/2σ²).
-maps::ByteField make_field_of_points(std::span<const Point> points, double resolution, double sigma);
+PointField make_field_of_points(std::span<const Point> points, double resolution, double sigma);
 
 // The points of scans, at most so many of each, evenly spread along the walls; first: where each scan begins,
 // which is brought up to date.

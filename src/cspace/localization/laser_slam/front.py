@@ -56,9 +56,9 @@ def slam(
     """Trajectory and map of a log, without a map given.
 
     "graph" needs scans and odometry. The odometry is calibrated by its own scan matches. Every scan is
-    matched against the last thirty (Olson 2009); scans of earlier passes within the covariance of the
-    drive are tried as loops, and those that agree pairwise (Mangelson et al. 2018) enter a pose graph, which rejects
-    what contradicts it (Agarwal et al. 2013). "ekf" and "fastslam" need readings of landmarks, as
+    matched against the last thirty (Olson 2009). Scans of earlier passes within the covariance of the drive
+    are tried as loops, and those that agree pairwise (Mangelson et al. 2018) enter a pose graph, which
+    rejects what contradicts it (Agarwal et al. 2013). "ekf" and "fastslam" need readings of landmarks, as
     run_ekf_slam and run_fast_slam with their defaults.
 
     resolution: of the fields and of the map [m]. max_range [m]: farther beams are not used. loops: whether

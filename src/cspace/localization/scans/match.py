@@ -72,9 +72,8 @@ def match_scan(
 
     scan: Scans of one row, or points in base (m, 2) [m] in the order of the beams. field: a ByteField, such
     as that of EvidenceGrid.likelihood_field; or another scan, of which a field of bells exp(−d²/2σ²) is made
-    with `resolution` and `sigma` [m]. guess: (3,) or
-    (3, 3). window: half its sides [m] and [rad]. least_score: of
-    a match. Raises InputError for a scan without points, and UnknownNameError for another method.
+    with `resolution` and `sigma` [m]. guess: (3,) or (3, 3). window: half its sides [m] and [rad].
+    least_score: of a match. Raises InputError for a scan without points, and UnknownNameError for another method.
     """
     if method not in METHODS:
         raise suggest("method", method, METHODS)
