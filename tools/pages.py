@@ -38,6 +38,7 @@ COURSE += (
     "monte-carlo",
     "landmark-slam",
     "pose-graphs",
+    "slam",
 )
 COURSE += ("plot", "cli", "cpp")
 """The pages of the rooms, in the order in which they build on each other."""

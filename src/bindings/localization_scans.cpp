@@ -9,24 +9,17 @@ namespace nb = nanobind;
 using namespace nb::literals;
 using namespace cspace::localization;
 using cspace::Point;
-using cspace::maps::ByteField;
 
 namespace {
 
-ByteField read_field(const cspace::maps::CellBytes& scores, double resolution, const Point& origin,
-                     int outside) {
-    ByteField field;
-    field.frame.resolution = resolution, field.frame.origin = origin;
-    field.rows = scores.rows, field.columns = scores.columns;
-    field.outside = std::uint8_t(outside);
-    field.scores.assign(scores.data, scores.data + std::size_t(scores.rows) * std::size_t(scores.columns));
-    return field;
+ScoreArray read_field(const cspace::maps::CellBytes& scores, double resolution, const Point& origin,
+                      int outside) {
+    return {scores.data, scores.rows, scores.columns, resolution, origin, outside};
 }
 // Found, ambiguous, pose, covariance, score, second.
 nb::tuple write_match(const ScanMatchResult& found) {
-    return nb::make_tuple(found.is_found, found.is_ambiguous,
-                          make_array<PoseRow>({{found.pose}}), make_array<SquareRow>({{found.covariance}}),
-                          found.score, found.second);
+    return nb::make_tuple(found.is_found, found.is_ambiguous, make_array<PoseRow>({{found.pose}}),
+                          make_array<SquareRow>({{found.covariance}}), found.score, found.second);
 }
 nb::tuple write_relations(const std::vector<ScanRelation>& relations) {
     cspace::Table<std::int32_t> ends{{}, 2};
@@ -55,8 +48,8 @@ void bind_localization_scans(nb::module_& m) {
             ScanMatchResult found;
             {
                 const nb::gil_scoped_release released;
-                found = match_points(read_field(scores, resolution, origin, outside), points, guess, reach, turn,
-                                     refines);
+                found = match_points(read_field(scores, resolution, origin, outside), points, guess, reach,
+                                     turn, refines);
             }
             return write_match(found);
         },
@@ -80,13 +73,25 @@ void bind_localization_scans(nb::module_& m) {
     m.def(
         "make_field_of_points",
         [](std::span<const Point> points, double resolution, double sigma) {
-            ByteField field = make_field_of_points(points, resolution, sigma);
-            const Point origin = field.frame.origin;
+            PointField field = make_field_of_points(points, resolution, sigma);
             return nb::make_tuple(
-                cspace::Table<std::uint8_t>{std::move(field.scores), std::size_t(field.columns)}, origin.x,
-                origin.y);
+                cspace::Table<std::uint8_t>{std::move(field.scores), std::size_t(field.columns)},
+                field.origin.x, field.origin.y);
         },
         "points"_a, "resolution"_a, "sigma"_a, "The scores and the origin of a field of bells about points.");
+    m.def(
+        "thin_scans",
+        [](std::span<const Point> points, std::span<const std::int32_t> first, int most) {
+            std::vector<std::int32_t> begins(first.begin(), first.end());
+            std::vector<Point> kept;
+            {
+                const nb::gil_scoped_release released;
+                kept = thin_scans(points, begins, most);
+            }
+            return nb::make_tuple(cspace::Table<Point>{std::move(kept)},
+                                  cspace::Table<std::int32_t>{std::move(begins)});
+        },
+        "points"_a, "first"_a, "most"_a, "At most so many points of each scan, and where each scan begins.");
     nb::class_<LaserSlamRun>(m, "LaserSlamRun", "Laser SLAM on a pose graph, as far as it is done.")
         .def(nb::new_([](std::span<const Point> points, std::span<const std::int32_t> first,
                          std::span<const PoseRow> steps, double resolution, double sigma, bool finds_loops) {
@@ -100,8 +105,10 @@ void bind_localization_scans(nb::module_& m) {
         .def_prop_ro("optimizations", &LaserSlamRun::optimizations)
         .def_prop_ro("poses", [](const LaserSlamRun& run) { return make_array<PoseRow>({run.poses()}); })
         .def_prop_ro("matched", [](const LaserSlamRun& run) { return make_array<PoseRow>({run.matched()}); })
-        .def_prop_ro("edges", [](const LaserSlamRun& run) { return write_relations(run.edges()); },
-                     "Ends, poses, covariances, scores with second scores, and verdicts.")
-        .def_prop_ro("loops", [](const LaserSlamRun& run) { return write_relations(run.loops()); },
-                     "The same of all loops that were found.");
+        .def_prop_ro(
+            "edges", [](const LaserSlamRun& run) { return write_relations(run.edges()); },
+            "Ends, poses, covariances, scores with second scores, and verdicts.")
+        .def_prop_ro(
+            "loops", [](const LaserSlamRun& run) { return write_relations(run.loops()); },
+            "The same of all loops that were found.");
 }

@@ -44,8 +44,10 @@ if TYPE_CHECKING:
         PoseGraph,
         ate,
         localize,
+        match_scan,
         read_log,
         rpe,
+        slam,
     )
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
@@ -97,6 +99,7 @@ __all__ = [
     "localization",
     "localize",
     "maps",
+    "match_scan",
     "mechanisms",
     "mobile",
     "model",
@@ -108,6 +111,7 @@ __all__ = [
     "planning",
     "read_log",
     "rpe",
+    "slam",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
@@ -166,6 +170,7 @@ _LATER = {
     "localization": "",
     "localize": "cspace.localization",
     "maps": "",
+    "match_scan": "cspace.localization",
     "mechanisms": "",
     "mobile": "",
     "model": "",
@@ -180,6 +185,7 @@ _LATER = {
     "robots": "",
     "rpe": "cspace.localization",
     "shapes": "",
+    "slam": "cspace.localization",
     "spatial": "",
     "spline": "cspace.trajectory",
     "subproblems": "cspace.ik",

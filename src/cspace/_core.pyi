@@ -1117,6 +1117,9 @@ def match_point_lines(scores: numpy.typing.NDArray[numpy.uint8], resolution: flo
 def make_field_of_points(points: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float) -> tuple:
     """The scores and the origin of a field of bells about points."""
 
+def thin_scans(points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], most: int) -> tuple:
+    """At most so many points of each scan, and where each scan begins."""
+
 class LaserSlamRun:
     """Laser SLAM on a pose graph, as far as it is done."""
 

@@ -12,8 +12,8 @@ namespace cspace::localization {
 namespace {
 
 struct CorrelationKernels {
-    static int sum_windows(const std::uint8_t* scores, const std::int32_t* at, int beams, int stride, int rows,
-                           int columns, std::uint16_t* sums) {
+    static int sum_windows(const std::uint8_t* scores, const std::int32_t* at, int beams, int stride,
+                           int rows, int columns, std::uint16_t* sums) {
         return kernels::sum_score_windows(scores, at, beams, stride, rows, columns, sums);
     }
 };
@@ -27,6 +27,15 @@ std::vector<PoseRow> write_poses(const std::vector<PlanarSpace::Pose>& poses) {
     std::vector<PoseRow> rows;
     for (const auto& pose : poses) rows.push_back(write_pose(pose));
     return rows;
+}
+
+maps::ByteField read_field(const ScoreArray& given) {
+    maps::ByteField field;
+    field.frame.resolution = given.resolution, field.frame.origin = given.origin;
+    field.rows = given.rows, field.columns = given.columns;
+    field.outside = std::uint8_t(given.outside);
+    field.scores.assign(given.scores, given.scores + std::size_t(given.rows) * std::size_t(given.columns));
+    return field;
 }
 
 class RunOfKernels : public LaserSlamRun {
@@ -61,11 +70,12 @@ class RunOfKernels : public LaserSlamRun {
 
 }  // namespace
 
-ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point> points, const PoseRow& guess,
+ScanMatchResult match_points(const ScoreArray& given, std::span<const Point> points, const PoseRow& guess,
                              double reach, double turn, bool refines) {
+    const maps::ByteField field = read_field(given);
     static thread_local CorrelativeSearch<CorrelationKernels> search;  // keeps its memory
     const SearchPeak peak =
-        search.find_peak(field, points, PlanarSpace::read_pose(guess.data()), {reach, turn});
+        search.find_peak(field, points, PlanarSpace::read_pose(guess.data()), {reach, turn}, {}, 0, true);
     ScanMatchResult result{peak.is_found, peak.is_ambiguous, guess, peak.covariance, peak.score, peak.second};
     if (!peak.is_found) return result;
     const PlanarSpace::Pose pose = refines ? refine_pose(field, points, peak.pose) : peak.pose;
@@ -74,27 +84,49 @@ ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point
     return result;
 }
 
-ScanMatchResult match_point_lines(const maps::ByteField& field, std::span<const Point> reference,
+ScanMatchResult match_point_lines(const ScoreArray& given, std::span<const Point> reference,
                                   std::span<const Point> points, const PoseRow& guess, double reach) {
+    const maps::ByteField field = read_field(given);
     const IcpResult found = match_lines(reference, points, PlanarSpace::read_pose(guess.data()), reach);
-    return {found.is_found, false, write_pose(found.pose), found.covariance,
-            found.is_found ? measure_score(field, points, found.pose) : 0, 0};
+    return {found.is_found,
+            false,
+            write_pose(found.pose),
+            found.covariance,
+            found.is_found ? measure_score(field, points, found.pose) : 0,
+            0};
 }
 
-maps::ByteField make_field_of_points(std::span<const Point> points, double resolution, double sigma) {
-    return make_point_field(points, resolution, sigma);
+PointField make_field_of_points(std::span<const Point> points, double resolution, double sigma) {
+    maps::ByteField field = make_point_field(points, resolution, sigma);
+    return {std::move(field.scores), field.columns, field.frame.origin};
 }
 
-std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points, std::span<const std::int32_t> first,
+std::vector<Point> thin_scans(std::span<const Point> points, std::vector<std::int32_t>& first, int most) {
+    std::vector<Point> all, kept;
+    std::size_t begin = 0;
+    for (std::size_t k = 1; k < first.size(); ++k) {
+        const auto end = std::size_t(first[k]);
+        if (end < begin || end > points.size())
+            throw std::invalid_argument("the arrays of the scans do not fit together");
+        thin_points(points.subspan(begin, end - begin), std::size_t(std::clamp(most, 1, most_beams)), kept);
+        all.insert(all.end(), kept.begin(), kept.end());
+        first[k] = std::int32_t(all.size()), begin = end;
+        poll_interrupts();
+    }
+    return all;
+}
+
+std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points,
+                                              std::span<const std::int32_t> first,
                                               std::span<const PoseRow> steps, const SlamRule& rule) {
     bool fits = !first.empty() && first.front() == 0 && std::size_t(first.back()) == points.size();
     for (std::size_t k = 1; k < first.size(); ++k) fits = fits && first[k] >= first[k - 1];
     if (!fits || steps.size() + 1 < first.size() - 1)
         throw std::invalid_argument("the arrays of the scans do not fit together");
-    return std::make_unique<RunOfKernels>(
-        std::vector<Point>(points.begin(), points.end()), std::vector<std::int32_t>(first.begin(), first.end()),
-        std::vector<PoseRow>(steps.begin(), steps.end()),
-        SlamOptions{rule.resolution, rule.sigma, rule.finds_loops});
+    return std::make_unique<RunOfKernels>(std::vector<Point>(points.begin(), points.end()),
+                                          std::vector<std::int32_t>(first.begin(), first.end()),
+                                          std::vector<PoseRow>(steps.begin(), steps.end()),
+                                          SlamOptions{rule.resolution, rule.sigma, rule.finds_loops});
 }
 
 }  // namespace cspace::localization

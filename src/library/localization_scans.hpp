@@ -7,13 +7,26 @@
 #include <span>
 #include <vector>
 
-#include "cspace/maps/byte_field.hpp"
 #include "cspace/math/plane.hpp"
 
 namespace cspace::localization {
 
-using PoseRow = std::array<double, 3>;      // x, y [m], θ [rad]
-using SquareRow = std::array<double, 9>;    // a matrix 3 × 3
+using PoseRow = std::array<double, 3>;    // x, y [m], θ [rad]
+using SquareRow = std::array<double, 9>;  // a matrix 3 × 3
+
+// A field of scores: bytes (rows, columns) of cells, of which cell (0, 0) has its least corner at the origin.
+struct ScoreArray {
+    const std::uint8_t* scores;
+    int rows, columns;
+    double resolution;
+    Point origin;
+    int outside;
+};
+struct PointField {
+    std::vector<std::uint8_t> scores;
+    int columns;
+    Point origin;
+};
 
 struct ScanMatchResult {
     bool is_found, is_ambiguous;
@@ -22,14 +35,19 @@ struct ScanMatchResult {
     double score, second;
 };
 
-// The best pose of points of base on a field, within half sides of a window about a guess, refined between the cells if asked.
-ScanMatchResult match_points(const maps::ByteField& field, std::span<const Point> points, const PoseRow& guess,
+// The best pose of points of base on a field, within half sides of a window about a guess, refined between
+// the cells if asked.
+ScanMatchResult match_points(const ScoreArray& field, std::span<const Point> points, const PoseRow& guess,
                              double reach, double turn, bool refines);
 // The pose of points among reference points, by point-to-line ICP; pairs lie within `reach`.
-ScanMatchResult match_point_lines(const maps::ByteField& field, std::span<const Point> reference,
+ScanMatchResult match_point_lines(const ScoreArray& field, std::span<const Point> reference,
                                   std::span<const Point> points, const PoseRow& guess, double reach);
 // A field of bells about points, exp(−d²/2σ²).
-maps::ByteField make_field_of_points(std::span<const Point> points, double resolution, double sigma);
+PointField make_field_of_points(std::span<const Point> points, double resolution, double sigma);
+
+// The points of scans, at most so many of each, evenly spread along the walls; first: where each scan begins,
+// which is brought up to date.
+std::vector<Point> thin_scans(std::span<const Point> points, std::vector<std::int32_t>& first, int most);
 
 // A relative pose between two scans.
 struct ScanRelation {
@@ -60,7 +78,8 @@ class LaserSlamRun {
 
 // points of all scans in base, first (n + 1): where each scan begins; steps: twists between the scans.
 // Throws std::invalid_argument for arrays that do not fit together.
-std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points, std::span<const std::int32_t> first,
+std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points,
+                                              std::span<const std::int32_t> first,
                                               std::span<const PoseRow> steps, const SlamRule& rule);
 
 }  // namespace cspace::localization

@@ -13,6 +13,7 @@ from cspace.localization.landmark_slam import (
     run_ekf_slam,
     run_fast_slam,
 )
+from cspace.localization.laser_slam import LaserSlam, LaserSlamStats, LoopClosure, slam
 from cspace.localization.log import Fixes, Headings, Landmarks, Log, Readings, Scans
 from cspace.localization.logs import read_log, read_poses, write_poses
 from cspace.localization.particles import (
@@ -23,6 +24,7 @@ from cspace.localization.particles import (
     ParticleFilter,
     PoseMode,
 )
+from cspace.localization.scans.match import ScanMatch, match_scan
 from cspace.localization.scans.search import PoseModes, search_pose
 from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing
 from cspace.localization.simulate import simulate
@@ -44,9 +46,12 @@ __all__ = [
     "LandmarkSlamStats",
     "Landmarks",
     "LaserScanner",
+    "LaserSlam",
+    "LaserSlamStats",
     "Localization",
     "LocalizationStats",
     "Log",
+    "LoopClosure",
     "MapLocalization",
     "MapLocalizationStats",
     "Odometry",
@@ -59,11 +64,13 @@ __all__ = [
     "ReadingOutcomes",
     "Readings",
     "RejectedLoop",
+    "ScanMatch",
     "Scans",
     "TimedPoses",
     "ate",
     "calibrate_sensor",
     "localize",
+    "match_scan",
     "read_log",
     "read_poses",
     "rpe",
@@ -71,5 +78,6 @@ __all__ = [
     "run_fast_slam",
     "search_pose",
     "simulate",
+    "slam",
     "write_poses",
 ]

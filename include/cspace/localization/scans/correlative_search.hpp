@@ -1,9 +1,9 @@
-// Correlative scan matching (Olson 2009): the score of every translation and rotation in a window, and what its
-// surface tells: the best pose, its covariance, and whether another peak is as good.
+// Correlative scan matching (Olson 2009): the score of every translation and rotation in a window, and what
+// its surface tells: the best pose, its covariance, and whether another peak is as good.
 //
-// The score of a pose is the mean of the field at the ends of the beams. Small windows are scored whole. In large
-// ones blocks of 4 × 4 translations are bounded by the field pooled over such blocks, and scored in the order of
-// their bounds until none can be better: the same answer.
+// The score of a pose is the mean of the field at the ends of the beams. Small windows are scored whole. In
+// large ones blocks of 4 × 4 translations are bounded by the field pooled over such blocks, and scored in the
+// order of their bounds until none can be better: the same answer.
 #pragma once
 
 #include <algorithm>
@@ -37,21 +37,24 @@ struct SearchPeak {
     bool is_found = false;      // false: no pose scores as much as asked
     bool is_ambiguous = false;  // another peak scores nearly as much
     PlanarSpace::Pose pose;
-    double score = 0;   // 0 to 1
-    double second = 0;  // the best score outside of the peak
+    double score = 0;                  // 0 to 1
+    double second = 0;                 // the best score outside of the peak, as far as it was asked for
     PlanarSpace::Square covariance{};  // of the twist in base
 };
 
 namespace search {
 
-// Beams do not err independently: walls bend, and neighbours hit the same ones. The score counts as that of so
-// many beams.
+// Beams do not err independently: walls bend, and neighbours hit the same ones. Beside the prior the score
+// counts as that of so many beams.
 inline constexpr double independent_beams = 25;
-inline constexpr double ambiguous_share = 0.95;  // of the best score
-inline constexpr double apart = 0.3;             // [m]: nearer peaks are one
-inline constexpr double apart_turn = 0.1;        // [rad]
+// In the covariance it counts as that of so many: the bells of the field are several times as wide as the
+// scatter of the beams.
+inline constexpr double covariance_beams = 250;
+inline constexpr double ambiguous_share = 0.95;                            // of the best score
+inline constexpr double apart = 0.3;                                       // [m]: nearer peaks are one
+inline constexpr double apart_turn = 0.1;                                  // [rad]
 inline constexpr double least_turn_step = 0.004, most_turn_step = 0.0175;  // [rad]
-inline constexpr double most_whole = 1.5e5;  // cells of a window that is scored whole
+inline constexpr double most_whole = 1.5e5;                       // cells of a window that is scored whole
 inline constexpr double covered_reach = 0.4, covered_turn = 0.1;  // for the covariance in large windows
 inline constexpr double least_log_weight = -7;                    // of a cell that counts in the covariance
 
@@ -62,9 +65,11 @@ class CorrelativeSearch {
   public:
     using Pose = PlanarSpace::Pose;
 
-    // points: in base, at most most_beams. least_score: of a pose that is found.
+    // points: in base, at most most_beams. least_score: of a pose that is found. finds_second: also where a
+    // second peak is far below the first.
     SearchPeak find_peak(const maps::ByteField& field, std::span<const Point> points, const Pose& guess,
-                         const SearchWindow& window, const SearchPrior& prior = {}, double least_score = 0) {
+                         const SearchWindow& window, const SearchPrior& prior = {}, double least_score = 0,
+                         bool finds_second = false) {
         SearchPeak peak;
         if (points.empty()) return peak;
         points_ = points.first(std::min(points.size(), std::size_t(most_beams)));
@@ -76,7 +81,7 @@ class CorrelativeSearch {
         const bool is_found = is_whole ? search_whole(field) : search_blocks(field);
         if (!is_found) return peak;
         find_component();
-        find_second(is_whole);
+        find_second(is_whole, finds_second);
         peak.is_found = true;
         peak.pose = pose_of(best_);
         peak.score = best_.sum / full_;
@@ -120,8 +125,8 @@ class CorrelativeSearch {
     int loss_of(int angle, int row, int column) const {
         return int(shift_loss_ * (row * row + column * column) + turn_loss_ * angle * angle);
     }
-    // The order of cells: by score, then by nearness to the guess. What is still equal is told apart in the frame of
-    // the guess, so that turned problems have turned answers.
+    // The order of cells: by score, then by nearness to the guess. What is still equal is told apart in the
+    // frame of the guess, so that turned problems have turned answers.
     bool is_better(const Cell& a, const Cell& b) const {
         if (a.score != b.score) return a.score > b.score;
         const int near_a = a.row * a.row + a.column * a.column, near_b = b.row * b.row + b.column * b.column;
@@ -188,8 +193,7 @@ class CorrelativeSearch {
         for (int angle = 0; angle < angles(); ++angle) {
             const int turned = angle - most_angle_;
             if (greatest_[std::size_t(angle)] - loss_of(turned, 0, 0) < least()) continue;
-            const std::uint16_t* row_sums =
-                sums_.data() + std::size_t(angle) * std::size_t(side() * width);
+            const std::uint16_t* row_sums = sums_.data() + std::size_t(angle) * std::size_t(side() * width);
             for (int row = 0; row < side(); ++row, row_sums += width) {
                 const int needed = least() + loss_of(turned, row - most_shift_, 0);
                 for (int column = 0; column < side(); ++column) {
@@ -223,8 +227,8 @@ class CorrelativeSearch {
                 for (int column = 0; column < blocks; ++column) {
                     const Block made{sums_[std::size_t(row * width + column)], angle,
                                      row * block - most_shift_, column * block - most_shift_};
-                    const int bound = made.bound - loss_of(angle, nearest_zero(made.row),
-                                                           nearest_zero(made.column));
+                    const int bound =
+                        made.bound - loss_of(angle, nearest_zero(made.row), nearest_zero(made.column));
                     if (bound >= least_) blocks_.push_back({bound, angle, made.row, made.column});
                 }
             }
@@ -253,26 +257,22 @@ class CorrelativeSearch {
             if (cell.score >= search::ambiguous_share * best_.score) high_.push_back(cell);
         return true;
     }
-    static int nearest_zero(int first) {
-        return std::clamp(0, first, first + PaddedField::block - 1);
-    }
+    static int nearest_zero(int first) { return std::clamp(0, first, first + PaddedField::block - 1); }
     template <class Visit>
     void score_block(const Block& made, const Visit& visit) const {
         constexpr int block = PaddedField::block;
-        int sums[block][block] = {};
+        std::uint16_t sums[block * window_lanes];
         const std::int32_t* const starts =
             all_starts_.data() + std::size_t(made.angle + most_angle_) * points_.size();
         const int shift = (made.row + most_shift_) * padded_.stride + made.column + most_shift_;
-        for (std::size_t k = 0; k < points_.size(); ++k) {
-            const std::uint8_t* from = padded_.bytes.data() + starts[k] + shift;
-            for (int row = 0; row < block; ++row, from += padded_.stride)
-                for (int column = 0; column < block; ++column) sums[row][column] += from[column];
-        }
+        Kernels::sum_windows(padded_.bytes.data() + shift, starts, int(points_.size()), padded_.stride, block,
+                             block, sums);
         for (int i = 0; i < block; ++i) {
             for (int j = 0; j < block; ++j) {
                 const int row = made.row + i, column = made.column + j;
                 if (row > most_shift_ || column > most_shift_) continue;
-                visit(Cell{sums[i][j] - loss_of(made.angle, row, column), sums[i][j], made.angle, row, column});
+                const int sum = sums[i * window_lanes + j];
+                visit(Cell{sum - loss_of(made.angle, row, column), sum, made.angle, row, column});
             }
         }
     }
@@ -313,16 +313,18 @@ class CorrelativeSearch {
         return angle >= low_[0] && angle <= top_[0] && row >= low_[1] && row <= top_[1] &&
                column >= low_[2] && column <= top_[2];
     }
-    void find_second(bool is_whole) {
+    void find_second(bool is_whole, bool is_exact) {
         second_ = 0;
         const auto admit = [&](const Cell& cell) {
             if (cell.score > second_ && !is_in_peak(cell.angle, cell.row, cell.column)) second_ = cell.score;
         };
         if (is_whole) {
+            if (!is_exact) second_ = std::max(0, int(search::ambiguous_share * best_.score) - 1);
             visit_surface([&] { return second_ + 1; }, admit);
             return;
         }
         for (const Cell& cell : scored_) admit(cell);
+        if (!is_exact) return;
         InterruptPoll poll(1 << 5);
         for (std::size_t k = next_block_; k < blocks_.size() && blocks_[k].bound > second_; ++k) {
             const Block& made = blocks_[k];
@@ -344,24 +346,26 @@ class CorrelativeSearch {
         search_whole(field);
     }
 
-    // The second moment of the surface about its best cell, each weighted by the likelihood that its score stands for.
+    // The second moment of the surface about its best cell, each weighted by the likelihood that its score
+    // stands for.
     PlanarSpace::Square measure_covariance() {
-        const double scale = search::independent_beams / full_;
+        const double scale = search::covariance_beams / full_;
         const int least = std::max(1, int(best_.score + search::least_log_weight / scale));
         std::array<double, 6> sums{};  // xx, xy, yy, xt, yt, tt
         std::array<double, 3> means{};
         double total = 0;
         weights_.resize(std::size_t(std::max(1, best_.score - least + 1)));
         for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] = std::exp(-double(k) * scale);
-        visit_surface([&] { return least; }, [&](const Cell& cell) {
-            const double w = weights_[std::size_t(std::max(0, best_.score - cell.score))];
-            const double x = cell.column - best_.column, y = cell.row - best_.row,
-                         t = cell.angle - best_.angle;
-            total += w;
-            means[0] += w * x, means[1] += w * y, means[2] += w * t;
-            sums[0] += w * x * x, sums[1] += w * x * y, sums[2] += w * y * y;
-            sums[3] += w * x * t, sums[4] += w * y * t, sums[5] += w * t * t;
-        });
+        visit_surface([&] { return least; },
+                      [&](const Cell& cell) {
+                          const double w = weights_[std::size_t(std::max(0, best_.score - cell.score))];
+                          const double x = cell.column - best_.column, y = cell.row - best_.row,
+                                       t = cell.angle - best_.angle;
+                          total += w;
+                          means[0] += w * x, means[1] += w * y, means[2] += w * t;
+                          sums[0] += w * x * x, sums[1] += w * x * y, sums[2] += w * y * y;
+                          sums[3] += w * x * t, sums[4] += w * y * t, sums[5] += w * t * t;
+                      });
         constexpr double uniform = 1.0 / 12;  // the variance of a place within one cell
         const auto moment = [&](std::size_t k, std::size_t i, std::size_t j) {
             return sums[k] / total - means[i] * means[j] / (total * total);

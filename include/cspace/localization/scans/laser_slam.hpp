@@ -1,5 +1,5 @@
-// Laser SLAM on a pose graph: each scan is matched against the last ones, loops are found by matching against those
-// of earlier passes, and the graph is optimized whenever some were accepted.
+// Laser SLAM on a pose graph: each scan is matched against the last ones, loops are found by matching against
+// those of earlier passes, and the graph is optimized whenever some were accepted.
 //
 // Scan matching: Olson 2009. Consistent loops: Mangelson et al. 2018. Weights of loops while driving: dynamic
 // covariance scaling (Agarwal et al. 2013).
@@ -16,6 +16,7 @@
 #include "cspace/localization/scans/correlative_search.hpp"
 #include "cspace/localization/scans/loop_consistency.hpp"
 #include "cspace/localization/scans/refine_pose.hpp"
+#include "cspace/localization/scans/thin_points.hpp"
 
 namespace cspace::localization {
 
@@ -38,27 +39,32 @@ struct ScanEdge {
 
 namespace slam {
 
-inline constexpr int submap_scans = 30;  // that a new scan is matched against
+inline constexpr int submap_scans = 30;                        // that a new scan is matched against
 inline constexpr double least_move = 0.05, least_turn = 0.05;  // [m, rad] between the scans of a submap
 inline constexpr double least_score = 0.3;                     // of a match against the last scans
-// The window of a match, and the deviation of its prior: what odometry may be off at rest and per metre or radian.
+// The window of a match, and the deviation of its prior: what odometry may be off at rest and per metre or
+// radian.
 inline constexpr double window_rest = 0.15, window_share = 0.3;
 inline constexpr double turn_rest = 0.12, turn_share = 0.4;
 inline constexpr double prior_rest = 0.05, prior_share = 0.15;
+// Where that finds nothing or little, the window is so much larger, and the score has to be better.
+inline constexpr double wide_reach = 0.5, wide_turn = 0.6, least_wide_score = 0.5;
 // Deviation of an odometry step that no scan confirms.
 inline constexpr double blind_share = 0.15;
-// Loops: the scans of a submap of a submap about the candidate, and how far along the drive it must be.
+// Loops: the scans to either side of a candidate, and how far along the drive it must be.
 inline constexpr int loop_scans = 12;
+inline constexpr std::size_t loop_beams = 90;
 inline constexpr int loop_gap = 60;       // scans of submaps: nearer ones repeat the matches of the drive
 inline constexpr int pass_gap = 30;       // between two passes of one place
 inline constexpr double loop_step = 0.3;  // [m or rad] from one search of loops to the next
-inline constexpr double loop_reach = 2.5, loop_turn = 0.45;  // the window [m, rad]
+inline constexpr double loop_reach = 2.5, loop_turn = 0.45;     // the window [m, rad]
 inline constexpr double least_radius = 1.0, most_radius = 3.0;  // of the search for candidates [m]
 inline constexpr double radius_deviations = 3;
 inline constexpr double least_loop_score = 0.65;
-inline constexpr double consistent_square = 21.1;  // the quantile of 99.99 % of χ² with three degrees of freedom
-inline constexpr int fewest_agreeing = 2;          // loops before any of them counts
-inline constexpr int optimize_gap = 10;            // scans between two optimizations
+inline constexpr double consistent_square =
+    21.1;                                  // the quantile of 99.99 % of χ² with three degrees of freedom
+inline constexpr int fewest_agreeing = 2;  // loops before any of them counts
+inline constexpr int optimize_gap = 10;    // scans between two optimizations
 inline constexpr int optimize_steps = 3;
 inline constexpr double loop_scaling = 9;  // φ of dynamic covariance scaling while driving
 
@@ -69,9 +75,10 @@ class LaserSlam {
   public:
     using Pose = PlanarSpace::Pose;
 
-    // points: in base, of all scans; first (n + 1): where those of each scan begin. steps (n − 1): the odometry between scans as twists.
-    LaserSlam(std::vector<Point> points, std::vector<std::int32_t> first, std::vector<PlanarSpace::Twist> steps,
-              const SlamOptions& options)
+    // points: in base, of all scans; first (n + 1): where those of each scan begin. steps (n − 1): the
+    // odometry between scans as twists.
+    LaserSlam(std::vector<Point> points, std::vector<std::int32_t> first,
+              std::vector<PlanarSpace::Twist> steps, const SlamOptions& options)
         : points_(std::move(points)),
           first_(std::move(first)),
           steps_(std::move(steps)),
@@ -126,13 +133,19 @@ class LaserSlam {
         Box box{{guess.x, guess.y}, {guess.x, guess.y}};
         double far = 0;
         for (const Point p : points) box.include(place_point(guess, p)), far = std::max(far, norm(p));
-        const double margin = window.reach + window.turn * far + (stamp_.radius() + 1) * options_.resolution;
-        box.low = box.low - Point{margin, margin}, box.high = box.high + Point{margin, margin};
-        clear_field(field_, box, options_.resolution);
+        const double margin = window.reach + window.turn * far + options_.resolution;
+        placed_.clear();
         for (std::size_t k = begin; k < end; ++k) {
             const Pose& pose = poses_[std::size_t(kept_[k])];
-            for (const Point p : scan(kept_[k])) stamp_.stamp_point(field_, place_point(pose, p));
+            for (const Point p : scan(kept_[k])) placed_.push_back(place_point(pose, p));
         }
+        const Box marks = placed_.empty() ? box : bounds_of(placed_);
+        const double bell = (stamp_.radius() + 1) * options_.resolution;
+        const Point low = box.low - Point{margin, margin}, high = box.high + Point{margin, margin};
+        box.low = {std::max(low.x, marks.low.x - bell), std::max(low.y, marks.low.y - bell)};
+        box.high = {std::min(high.x, marks.high.x + bell), std::min(high.y, marks.high.y + bell)};
+        clear_field(field_, box, options_.resolution);
+        for (const Point p : placed_) stamp_.stamp_point(field_, p);
         poll_interrupts();
     }
 
@@ -146,11 +159,18 @@ class LaserSlam {
         const double place = slam::prior_rest + slam::prior_share * length;
         const double heading = slam::prior_rest + slam::prior_share * turn;
         const double weight = 1 / (2 * search::independent_beams);
-        lay_field(scan(k), guess, window,
-                  kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans)), kept_.size());
-        const SearchPeak peak = search_.find_peak(
-            field_, scan(k), guess, window, {weight / (place * place), weight / (heading * heading)},
-            slam::least_score);
+        const std::size_t begin = kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans));
+        lay_field(scan(k), guess, window, begin, kept_.size());
+        SearchPeak peak =
+            search_.find_peak(field_, scan(k), guess, window,
+                              {weight / (place * place), weight / (heading * heading)}, slam::least_score);
+        if (!peak.is_found || peak.score < slam::least_wide_score) {  // did the wheels slip?
+            const SearchWindow wide{window.reach + slam::wide_reach, window.turn + slam::wide_turn};
+            lay_field(scan(k), guess, wide, begin, kept_.size());
+            const SearchPeak other =
+                search_.find_peak(field_, scan(k), guess, wide, {}, slam::least_wide_score);
+            if (other.is_found && !other.is_ambiguous) peak = other;
+        }
         ScanEdge edge{k - 1, k, {}, {}, 0, 0};
         Pose pose = guess;
         if (peak.is_found) {
@@ -202,8 +222,7 @@ class LaserSlam {
     void search_loops(int k) {
         if (kept_.back() != k || since_search_ < slam::loop_step) return;
         since_search_ = 0;
-        thin_.clear();
-        for (std::size_t i = 0; i < scan(k).size(); i += 2) thin_.push_back(scan(k)[i]);
+        thin_points(scan(k), slam::loop_beams, thin_);
         const SearchWindow window{slam::loop_reach, slam::loop_turn};
         for (std::size_t c : find_candidates(k)) {
             ++tried_;
@@ -215,10 +234,10 @@ class LaserSlam {
             const SearchPeak peak =
                 search_.find_peak(field_, thin_, guess, window, {}, slam::least_loop_score);
             if (!peak.is_found) continue;
-            const Pose pose = refine_pose(field_, thin_, peak.pose);
+            const Pose pose = refine_pose(field_, scan(k), peak.pose);
             const int from = kept_[c];
-            add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance, peak.score,
-                      peak.second},
+            add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance,
+                      peak.score, peak.second},
                      peak.is_ambiguous);
         }
         if (has_news_ && k - last_optimized_ >= slam::optimize_gap) optimize();
@@ -232,8 +251,7 @@ class LaserSlam {
         for (int other = 0; other < node; ++other) {
             const ScanEdge& there = loops_[std::size_t(other)];
             if (is_ambiguous_[std::size_t(other)]) continue;
-            const double error =
-                chain_.cycle_error(made, {there.from, there.to, there.z, there.covariance});
+            const double error = chain_.cycle_error(made, {there.from, there.to, there.z, there.covariance});
             if (error <= slam::consistent_square) agreement_.join(node, other);
         }
         has_news_ = true;
@@ -281,7 +299,7 @@ class LaserSlam {
     std::vector<int> kept_;
     std::vector<ScanEdge> edges_, loops_;
     std::vector<char> is_ambiguous_, is_used_;
-    std::vector<Point> thin_;
+    std::vector<Point> thin_, placed_;
     LoopConsistency chain_;
     AgreementGraph agreement_;
     double moved_ = 0, turned_ = 0, since_search_ = 0;

@@ -1,5 +1,5 @@
-// Point-to-line iterated closest points (Censi 2008): each point of a scan is drawn to the line through the two
-// reference points nearest to it, and the farthest tenth is left out.
+// Point-to-line iterated closest points (Censi 2008): each point of a scan is drawn to the line through the
+// two reference points nearest to it, and the farthest tenth is left out.
 #pragma once
 
 #include <algorithm>
@@ -25,8 +25,8 @@ struct IcpResult {
 namespace icp {
 
 inline constexpr int most_iterations = 100;
-inline constexpr double small_step = 1e-6;     // [m, rad]
-inline constexpr double kept_share = 0.9;      // of the pairs, the nearest ones
+inline constexpr double small_step = 1e-6;       // [m, rad]
+inline constexpr double kept_share = 0.9;        // of the pairs, the nearest ones
 inline constexpr double least_condition = 1e-6;  // of the equations: below it a direction is undetermined
 inline constexpr int fewest_pairs = 6;
 
@@ -47,7 +47,8 @@ class NearestPoints {
         for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
         std::vector<int> next(first_.begin(), first_.end() - 1);
         members_.resize(points.size());
-        for (std::size_t k = 0; k < points.size(); ++k) members_[std::size_t(next[bucket_of(points[k])]++)] = int(k);
+        for (std::size_t k = 0; k < points.size(); ++k)
+            members_[std::size_t(next[bucket_of(points[k])]++)] = int(k);
     }
     // The two nearest points within reach; −1 for those that are not there.
     std::pair<int, int> find_two(Point p) const {
@@ -136,7 +137,8 @@ inline IcpResult match_lines(std::span<const Point> reference, std::span<const P
         const double inverse[9] = {c00, c01, c02, c01, c11, c12, c02, c12, c22};
         double twist[3];
         for (std::size_t i = 0; i < 3; ++i)
-            twist[i] = (inverse[3 * i] * g[0] + inverse[3 * i + 1] * g[1] + inverse[3 * i + 2] * g[2]) / determinant;
+            twist[i] =
+                (inverse[3 * i] * g[0] + inverse[3 * i + 1] * g[1] + inverse[3 * i + 2] * g[2]) / determinant;
         const double variance = squares / double(std::max(1, int(kept) - 3));
         for (std::size_t i = 0; i < 9; ++i) result.covariance[i] = variance * inverse[i] / determinant;
         result.pose = PlanarSpace::move(result.pose, twist);

@@ -1,8 +1,9 @@
-// Which loops agree with each other: pairwise consistent measurement sets (Mangelson, Dominic, Eustice & Vasudevan
-// 2018).
+// Which loops agree with each other: pairwise consistent measurement sets (Mangelson, Dominic, Eustice &
+// Vasudevan 2018).
 //
-// Two loops and the two stretches of the chain between their ends close a cycle. Its error has a covariance, the sum
-// of those of its four parts. The loops of a largest set in which each pair closes within a quantile are kept.
+// Two loops and the two stretches of the chain between their ends close a cycle. Its error has a covariance,
+// the sum of those of its four parts. The loops of a largest set in which each pair closes within a quantile
+// are kept.
 #pragma once
 
 #include <algorithm>
@@ -84,7 +85,7 @@ class LoopConsistency {
     double cycle_error(const ClosedLoop& a, const ClosedLoop& b) const {
         const Pose &ka = pose(a.to), &kb = pose(b.to), &ia = pose(a.from), &ib = pose(b.from);
         const Pose there = PlanarSpace::compose(a.z, PlanarSpace::between(ka, kb));  // to of b, in from of a
-        const Pose back = PlanarSpace::compose(there, PlanarSpace::inverse(b.z));   // from of b
+        const Pose back = PlanarSpace::compose(there, PlanarSpace::inverse(b.z));    // from of b
         const auto error = PlanarSpace::logarithm(PlanarSpace::compose(back, PlanarSpace::between(ib, ia)));
         PlanarSquare M = transport_covariance(a.z, a.covariance);
         add(M, transport_covariance(there, b.covariance));
@@ -115,17 +116,14 @@ class AgreementGraph {
         rows_[std::size_t(b)][std::size_t(a) / 64] |= std::uint64_t(1) << (a % 64);
         ++degrees_[std::size_t(a)], ++degrees_[std::size_t(b)];
     }
-    bool are_joined(int a, int b) const {
-        return rows_[std::size_t(a)][std::size_t(b) / 64] >> (b % 64) & 1;
-    }
-    // Nodes of which all are joined, as many as a greedy search finds from every start whose degree allows for more
-    // (Pattabiraman et al. 2015).
+    bool are_joined(int a, int b) const { return rows_[std::size_t(a)][std::size_t(b) / 64] >> (b % 64) & 1; }
+    // Nodes of which all are joined, as many as a greedy search finds from every start whose degree allows
+    // for more (Pattabiraman et al. 2015).
     std::vector<char> find_clique() const {
         std::vector<int> order(rows_.size());
         std::iota(order.begin(), order.end(), 0);
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-            return degrees_[std::size_t(a)] > degrees_[std::size_t(b)];
-        });
+        std::stable_sort(order.begin(), order.end(),
+                         [&](int a, int b) { return degrees_[std::size_t(a)] > degrees_[std::size_t(b)]; });
         std::vector<int> best, clique;
         int starts = 0;
         for (int start : order) {

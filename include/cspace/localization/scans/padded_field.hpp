@@ -1,5 +1,5 @@
-// The part of a field that a scan can reach, with margins, so that no window leaves it; and the same pooled: the
-// greatest score of each block of 4 × 4 cells, for bounds of whole blocks of translations.
+// The part of a field that a scan can reach, with margins, so that no window leaves it; and the same pooled:
+// the greatest score that any translation of a block of 4 × 4 meets, for bounds of whole blocks.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,9 @@ namespace cspace::localization {
 
 struct PaddedField {
     static constexpr int block = 4;  // cells of a side that are pooled
+    static constexpr int grain = 2;  // cells: pooled scores serve all windows that begin within it
+    static constexpr std::size_t pooled_side = block + grain - 1;
+    static constexpr std::size_t beyond = 64;  // bytes that lanes may read behind the last window
 
     double resolution = 1;
     Point origin;  // of cell (0, 0) of the padded bytes
@@ -24,8 +27,8 @@ struct PaddedField {
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint8_t> pooled;  // by place in the block, then by block
 
-    // The cells within `reach` of a center. Windows of so many rows and columns, multiples of a block, may begin at any cell up
-    // to the last ones.
+    // The cells within `reach` of a center. Windows of so many rows and columns, multiples of a block, may
+    // begin at any cell up to the last ones.
     void copy_part(const maps::ByteField& field, Point center, double reach, int window_rows,
                    int window_columns) {
         resolution = field.frame.resolution;
@@ -40,10 +43,10 @@ struct PaddedField {
         rows = round_up(last_row + window_rows), stride = round_up(last_column + window_columns);
         origin = {field.frame.origin.x + (left - window_columns) * resolution,
                   field.frame.origin.y + (bottom - window_rows) * resolution};
-        bytes.assign(std::size_t(rows) * std::size_t(stride), field.outside);
+        bytes.assign(std::size_t(rows) * std::size_t(stride) + beyond, field.outside);
         for (int row = bottom; row < top; ++row) {
-            const std::uint8_t* from = field.scores.data() +
-                                       std::size_t(row) * std::size_t(field.columns) + std::size_t(left);
+            const std::uint8_t* from =
+                field.scores.data() + std::size_t(row) * std::size_t(field.columns) + std::size_t(left);
             std::copy_n(from, right - left,
                         bytes.data() + std::size_t(row - bottom + window_rows) * std::size_t(stride) +
                             std::size_t(window_columns));
@@ -54,29 +57,21 @@ struct PaddedField {
     int pooled_stride() const { return stride / block; }
     // Where the pooled scores of a window that begins at a cell begin.
     std::int32_t pooled_at(int row, int column) const {
-        const int place = row % block * block + column % block;
+        const int place = row % block / grain * (block / grain) + column % block / grain;
         return (place * (rows / block) + row / block) * pooled_stride() + column / block;
     }
     void pool_blocks() {
         const auto width = std::size_t(stride), height = std::size_t(rows);
-        across_.resize(bytes.size()), pooled.resize(bytes.size());
+        pooled.resize(width * height / (grain * grain) + beyond);
+        column_.resize(width), row_.resize(width);
         InterruptPoll poll(1 << 6);
-        for (std::size_t row = 0; row < height; ++row) {
-            pool_row(bytes.data() + row * width, 1, across_.data() + row * width, width);
-            poll.step();
-        }
-        row_.resize(width);
-        for (std::size_t row = 0; row < height; ++row) {
-            const std::uint8_t* const from = across_.data() + row * width;
-            if (row + block <= height)
-                for (std::size_t k = 0; k < width; ++k)
-                    row_[k] = std::max(std::max(from[k], from[k + width]),
-                                       std::max(from[k + 2 * width], from[k + 3 * width]));
-            else
-                std::copy_n(from, width, row_.data());
-            for (int place = 0; place < block; ++place) {
-                std::uint8_t* const to = pooled.data() + pooled_at(int(row), place);
-                for (std::size_t k = 0; k < width / block; ++k) to[k] = row_[k * block + std::size_t(place)];
+        for (std::size_t row = 0; row < height; row += grain) {
+            pool_rows(row, column_.data());
+            pool_columns(column_.data(), row_.data());
+            for (int first = 0; first < block; first += grain) {
+                std::uint8_t* const to = pooled.data() + pooled_at(int(row), first);
+                const std::uint8_t* const from = row_.data() + first;
+                for (std::size_t k = 0; k < width / block; ++k) to[k] = from[k * block];
             }
             poll.step();
         }
@@ -84,15 +79,27 @@ struct PaddedField {
 
   private:
     static int round_up(int count) { return (count + block - 1) / block * block; }
-    static void pool_row(const std::uint8_t* from, std::size_t step, std::uint8_t* to, std::size_t count) {
-        const std::size_t whole = count >= block ? count - block + 1 : 0;
+    // The greatest of the cells that windows of a block reach which begin at a row, or at the next one of the
+    // grain.
+    void pool_rows(std::size_t row, std::uint8_t* to) const {
+        const auto width = std::size_t(stride);
+        const std::size_t last = std::min(row + pooled_side, std::size_t(rows));
+        std::copy_n(bytes.data() + row * width, width, to);
+        for (++row; row < last; ++row) {
+            const std::uint8_t* const from = bytes.data() + row * width;
+            for (std::size_t k = 0; k < width; ++k) to[k] = std::max(to[k], from[k]);
+        }
+    }
+    void pool_columns(const std::uint8_t* from, std::uint8_t* to) const {
+        static_assert(pooled_side == 5);
+        const std::size_t width = std::size_t(stride), whole = width - pooled_side + 1;
         for (std::size_t k = 0; k < whole; ++k)
-            to[k] = std::max(std::max(from[k], from[k + step]),
-                             std::max(from[k + 2 * step], from[k + 3 * step]));
-        for (std::size_t k = whole; k < count; ++k) to[k] = from[k];
+            to[k] = std::max(std::max(std::max(from[k], from[k + 1]), std::max(from[k + 2], from[k + 3])),
+                             from[k + 4]);
+        for (std::size_t k = whole; k < width; ++k) to[k] = *std::max_element(from + k, from + width);
     }
 
-    std::vector<std::uint8_t> across_, row_;
+    std::vector<std::uint8_t> column_, row_;
 };
 
 }  // namespace cspace::localization

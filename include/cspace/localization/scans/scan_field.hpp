@@ -49,8 +49,8 @@ class PointStamp {
         const int part = int(parts * (up - row)) * parts + int(parts * (across - column));
         const int left = column - radius_, columns = 2 * radius_ + 1;
         const bool is_inside = left + width_ <= field.columns;
-        std::uint8_t* to = field.scores.data() +
-                           std::size_t(row - radius_) * std::size_t(field.columns) + std::size_t(left);
+        std::uint8_t* to =
+            field.scores.data() + std::size_t(row - radius_) * std::size_t(field.columns) + std::size_t(left);
         const std::uint8_t* from = bytes_.data() + index(part, 0);
         for (int k = 0; k < columns; ++k, to += field.columns, from += width_) {
             if (is_inside) {
@@ -65,7 +65,7 @@ class PointStamp {
 
   private:
     static constexpr double reach = 2.5;  // of a stamp [σ]: beyond it a score is below 4 %
-    static constexpr int parts = 4;       // of a cell's side, for the place of the point in it
+    static constexpr int parts = 8;       // of a cell's side, for the place of the point in it
     static constexpr int pack = 16;
 
     static void raise_pack(std::uint8_t* to, const std::uint8_t* from) {
