@@ -11,15 +11,18 @@ from cspace.plot.configuration_space import configuration_space
 from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
+from cspace.plot.localization_films import animation
+from cspace.plot.localization_runs import run
 from cspace.plot.mechanisms import mechanism
 from cspace.plot.planar import manipulability, workspace
 from cspace.plot.plans import plan
+from cspace.plot.pose_graphs import graph
 from cspace.plot.scenes import collision, scene
 from cspace.plot.simulations import simulation
 from cspace.plot.space_slices import space_projection, space_slice
 from cspace.plot.trajectories import trajectory
 from cspace.plot.vehicles import coverage, drive
-from cspace.plot.worlds import animation, route, routes, world
+from cspace.plot.worlds import route, routes, world
 
 __all__ = [
     "animation",
@@ -33,6 +36,6 @@ __all__ = [
     "solutions",
     "workspace",
 ]
-__all__ += ["coverage", "drive", "world"]
+__all__ += ["coverage", "drive", "graph", "run", "world"]
 __all__ += ["collision", "configuration_space", "plan", "scene", "surface"]
 __all__ += ["simulation", "space_projection", "space_slice", "trajectory"]
