@@ -4,7 +4,7 @@ file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels
 list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
 # Kernels that work on packs of four numbers: an AVX-512 copy of them is no faster than that for AVX2
 # (docs/decisions/compiled-boundary.md). Their headers say CSPACE_NARROW_KERNEL.
-set(narrow_kernels math_fronts ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision search)
+set(narrow_kernels math_fronts localization_correlation localization_landmarks localization_particles localization_search ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision search)
 list(TRANSFORM narrow_kernels PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/)
 list(TRANSFORM narrow_kernels APPEND .cpp)
 set(wide_files ${kernel_files})
@@ -70,8 +70,10 @@ if(has_wide_moves)
 endif()
 
 # Verdicts on edges and nearest nodes are the same on every machine: no product and sum are rounded at once.
+# So are the draws, the moves and the weights of particles.
 if(NOT MSVC)
   set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/collision.cpp ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/search.cpp
+                      ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/localization_particles.cpp
                APPEND PROPERTY COMPILE_OPTIONS -ffp-contract=off)
 endif()
 
@@ -88,7 +90,7 @@ endif()
 # decisions about points, whose signs rest on every rounding as written; x86-64 has no such instruction in its baseline.
 if(NOT MSVC)
   set(exact_files ${library_files})
-  list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation|collision|planning|shapes)_")
+  list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation|collision|planning|shapes|localization_particles)[_.]")
   set_property(SOURCE ${exact_files} APPEND PROPERTY COMPILE_OPTIONS -ffp-contract=off)
 endif()
 # GCC stops inlining in a file that has grown by two fifths, and a file of several searches soon has.

@@ -35,7 +35,9 @@ COURSE += (
     "cars",
     "mobile",
     "localization",
+    "monte-carlo",
     "pose-graphs",
+    "slam",
 )
 COURSE += ("plot", "cli", "cpp")
 """The pages of the rooms, in the order in which they build on each other."""

@@ -29,12 +29,12 @@ def draw_four_bar() -> None:
     motion = linkage.follow({"crank": turns}, linkage.assembly_modes({"crank": 0.0}).q[0])
     qd = linkage.velocities(motion.q, {"crank": np.ones(len(turns))})
     right.plot(turns, motion.q[:, 2], label="rocker [rad]")
-    right.plot(turns, qd[:, 2], label="its velocity per crank velocity")
+    right.plot(turns, qd[:, 2], label="its velocity by that of the crank")
     for q in linkage.dead_points("rocker"):
         if q[2] > 0:
             right.axvline(q[0] % (2.0 * np.pi), color="0.6", linestyle="--", linewidth=1.0)
     right.axhline(0.0, color="0.8", linewidth=0.8)
-    right.set(xlabel="crank [rad]", xlim=(0.0, 2.0 * np.pi))
+    right.set(xlabel="crank [rad]", ylabel="rocker [rad]; velocity ratio [rad/rad]", xlim=(0.0, 2.0 * np.pi))
     right.set_title("a full turn; dashed: dead points of the rocker", fontsize=9, loc="left")
     right.legend(fontsize=8)
     figure.savefig(HERE / "four_bar.png")
@@ -46,15 +46,17 @@ def draw_others() -> None:
     engine = SliderCrank(crank=0.4, rod=0.8, offset=0.1)
     delta = Delta(base_radius=0.2, platform_radius=0.06, arm=0.25, rod=0.6)
     platform = Stewart.of_radii(base_radius=0.5, platform_radius=0.3, height=0.6)
-    figure = plt.figure(figsize=(12.0, 4.4), dpi=120)
-    flat = figure.add_axes((0.06, 0.2, 0.27, 0.6))
-    left, right = (figure.add_axes((x, 0.06, 0.28, 0.84), projection="3d") for x in (0.35, 0.68))
-    cs.plot.mechanism(engine, engine.assembly_modes({"crank": 1.1}).q, ax=flat, title="slider-crank")
+    figure = plt.figure(figsize=(12.0, 4.2), dpi=120)
+    flat = figure.add_axes((0.06, 0.16, 0.27, 0.62))
+    left, right = (figure.add_axes((x, 0.02, 0.28, 0.86), projection="3d") for x in (0.36, 0.68))
+    cs.plot.mechanism(engine, engine.assembly_modes({"crank": 1.1}).q, ax=flat)
     flat.set(ylim=(-0.35, 0.75))
     place = {"x": 0.05, "y": -0.03, "z": -0.55}
-    cs.plot.mechanism(delta, delta.assembly_modes(place).q[0], ax=left, title="delta robot")
+    cs.plot.mechanism(delta, delta.assembly_modes(place).q[0], ax=left)
     pose = platform.pose_coordinates(cs.pose((0.05, 0.0, 0.62), rpy=(0.15, -0.1, 0.2)))
-    cs.plot.mechanism(platform, platform.assembly_modes(pose).q[0], ax=right, title="Stewart platform")
+    cs.plot.mechanism(platform, platform.assembly_modes(pose).q[0], ax=right)
+    for x, title in ((0.06, "slider-crank"), (0.4, "delta robot"), (0.72, "Stewart platform")):
+        figure.text(x, 0.86, title, fontsize=11)
     figure.savefig(HERE / "mechanisms.png")
     plt.close(figure)
 

@@ -18,7 +18,7 @@ from matplotlib.patheffects import withStroke
 import cspace as cs
 from cspace import plot
 
-DPI = 70
+DPI, SHARP = 70, {"forces": 110}
 INK, FAINT, BLUE, RED, GREEN = "#222222", "#bbbbbb", "#1f6fb2", "#c8442f", "#3a8f4d"
 HALO = [withStroke(linewidth=3, foreground="white")]
 
@@ -269,13 +269,14 @@ def forces():
         "velocity, C q̇": (arm.coriolis_matrix(q, qd) @ qd[..., None])[..., 0],
         "weight, g": arm.gravity_torques(q),
     }
-    _, axes = plt.subplots(1, 3, figsize=(11.5, 3.4), layout="constrained")
+    _, axes = plt.subplot_mosaic("ab\ncc", figsize=(8.8, 6.4), layout="constrained")
+    axes = [axes[name] for name in "abc"]
     for joint, ax in enumerate(axes[:2]):
         for (name, values), color in zip(parts.items(), (INK, BLUE, GREEN, RED), strict=True):
             ax.plot(t[:, 0], values[:, joint], color=color, lw=2.2 if name == "torque" else 1.4, label=name)
         ax.set(title=f"joint {joint + 1}", xlabel="time [s]", ylabel="torque [N·m]")
         ax.grid(alpha=0.3)
-    axes[0].legend(fontsize=8)
+    axes[0].legend(fontsize=9)
     for robot, style, name in (
         (arm, "-", "the same arm"),
         (arm.with_payload(0.02, com=(0.3, 0, 0), frame="link_2"), "--", "with 20 g at the tip"),
@@ -289,8 +290,8 @@ def forces():
         )
         for joint, color in enumerate((BLUE, RED)):
             axes[2].plot(run.times, run.q[:, joint], style, color=color, label=f"joint {joint + 1}, {name}")
-    axes[2].set(title="replayed", xlabel="time [s]", ylabel="angle [rad]")
-    axes[2].legend(fontsize=8)
+    axes[2].set(title="the torques replayed", xlabel="time [s]", ylabel="angle [rad]")
+    axes[2].legend(fontsize=9, loc="upper left")
     axes[2].grid(alpha=0.3)
     return axes
 
@@ -355,7 +356,7 @@ def main(folder: Path) -> None:
     for picture in PICTURES:
         drawn = picture()
         artists = list(drawn) if isinstance(drawn, (list, tuple, np.ndarray)) else [drawn]
-        plot.save(artists, folder / f"{picture.__name__}.png", dpi=DPI)
+        plot.save(artists, folder / f"{picture.__name__}.png", dpi=SHARP.get(picture.__name__, DPI))
 
 
 if __name__ == "__main__":

@@ -23,7 +23,8 @@ def main() -> None:
     wall = cs.Box((0.4, 0.04, 0.5), (0.4, 0.15, 0.25), name="wall")
     lamp = cs.Sphere(0.12, (0.3, 0.3, 0.9), name="lamp")
     goal = cs.pose((0.45, 0.4, 0.25), rpy=(np.pi, 0, 0))
-    motion = cs.move(robot, start, goal, cs.Scene([wall, lamp]), jerk=True)
+    scene = cs.Scene([wall, lamp])
+    motion = cs.move(robot, start, goal, scene, jerk=True)
     figure = plt.figure(figsize=(10.5, 5.2), layout="constrained")
     grid = figure.add_gridspec(2, 4, width_ratios=(1.6, 0.05, 1, 1))
     plot.plan(motion.plan, poses=6, ax=figure.add_subplot(grid[:, 0], projection="3d"))
@@ -31,6 +32,8 @@ def main() -> None:
     plot.trajectory(motion, limits=robot, axes=panels)
     panels[0].get_legend().remove()  # seven names are wider than a panel
     plot.save(figure, HERE / "motion.png", dpi=75)
+    film = plt.figure(figsize=(4.6, 4.4), layout="constrained").add_subplot(projection="3d")
+    plot.save(plot.animation(motion, robot=robot, scene=scene, ax=film), HERE / "motion.gif", dpi=60)
 
 
 if __name__ == "__main__":

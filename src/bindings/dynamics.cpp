@@ -15,7 +15,7 @@ using namespace nb::literals;
 using namespace cspace;
 
 const char inverse_dynamics_doc[] =
-    R"doc(inverse_dynamics($self, q, qd, qdd, *, gravity=(0, 0, -9.81), wrenches=None, expressed_in='base', friction=True, T_world_base=None, out=None, threads=None, dtype=numpy.float64)
+    R"doc(inverse_dynamics($self, q, qd, qdd, *, gravity=(0, 0, -9.81), wrenches=None, expressed_in='base', friction=True, T_world_base=None, out=None, threads=None, dtype='float64')
 --
 
 The joint torques and forces behind a motion (inverse dynamics).
@@ -38,7 +38,7 @@ unknown frame.
 Luh, Walker and Paul 1980; Featherstone 2008, section 5.3.)doc";
 
 const char forward_dynamics_doc[] =
-    R"doc(forward_dynamics($self, q, qd, tau, *, gravity=(0, 0, -9.81), wrenches=None, expressed_in='base', friction=True, T_world_base=None, out=None, threads=None, dtype=numpy.float64)
+    R"doc(forward_dynamics($self, q, qd, tau, *, gravity=(0, 0, -9.81), wrenches=None, expressed_in='base', friction=True, T_world_base=None, out=None, threads=None, dtype='float64')
 --
 
 The accelerations of the joints under given torques (forward dynamics).
@@ -55,7 +55,7 @@ inertia, which it names.
 Featherstone 2008, section 7.3.)doc";
 
 const char mass_matrix_doc[] =
-    R"doc(mass_matrix($self, q, *, T_world_base=None, out=None, threads=None, dtype=numpy.float64)
+    R"doc(mass_matrix($self, q, *, T_world_base=None, out=None, threads=None, dtype='float64')
 --
 
 The mass matrix M of the kinetic energy ½ q̇ᵀ M(q) q̇, with the armature of the joints.
@@ -95,6 +95,49 @@ q (..., n) [rad or m], qd (..., dof) [rad/s or m/s]; of a floating base [v; ω] 
 Returns C (..., dof, dof). Raises InputError for a wrong shape or NaN and where no link has a mass.
 
 Echeandia and Wensing 2021, algorithm 1.)doc";
+
+const char centroidal_momentum_doc[] =
+    R"doc(centroidal_momentum($self, q, qd, *, T_world_base=None, out=None, threads=None)
+--
+
+The momentum of the whole robot: linear, and angular about its centre of mass.
+
+Without external forces it does not change, apart from the weight, which changes the linear part alone.
+
+q (..., n) [rad or m], qd (..., dof) [rad/s or m/s]; of a floating base [v; ω] comes first. T_world_base
+(..., 4, 4): where the base is. out (..., 6): float64 array to write into. threads: as in fk.
+
+Returns [l; k] (..., 6) [kg·m/s, kg·m²/s] in the axes of the base, of the world where the base is placed. Raises
+InputError for a wrong shape or NaN and where no link has a mass.
+
+Orin, Goswami and Lee 2013.)doc";
+
+const char momentum_matrix_doc[] =
+    R"doc(centroidal_momentum_matrix($self, q, *, T_world_base=None, out=None, threads=None)
+--
+
+The matrix A with [l; k] = A(q) q̇; see centroidal_momentum.
+
+q (..., n) [rad or m], T_world_base (..., 4, 4), out (..., 6, dof), threads: as there. Returns A (..., 6, dof).
+Raises InputError for a wrong shape or NaN and where no link has a mass.)doc";
+
+const char kinetic_energy_doc[] =
+    R"doc(kinetic_energy($self, q, qd, *, T_world_base=None, out=None, threads=None)
+--
+
+The kinetic energy ½ q̇ᵀ M(q) q̇, that of rotors (armature) included.
+
+q (..., n) [rad or m], qd (..., dof) [rad/s or m/s], T_world_base (..., 4, 4), out (...). Returns (...) [J].
+Raises InputError for a wrong shape or NaN and where no link has a mass.)doc";
+
+const char potential_energy_doc[] =
+    R"doc(potential_energy($self, q, *, gravity=(0, 0, -9.81), T_world_base=None, out=None, threads=None)
+--
+
+The energy −m g · c of the weight, zero with the centre of mass at the origin.
+
+q (..., n) [rad or m], gravity (3,) [m/s²], T_world_base (..., 4, 4), out (...). Returns (...) [J]. Raises
+InputError for a wrong shape or NaN and where no link has a mass.)doc";
 
 const char inverse_derivatives_doc[] =
     R"doc(inverse_dynamics_derivatives($self, q, qd, qdd, *, gravity=(0, 0, -9.81), friction=True, T_world_base=None, out=None, threads=None)
@@ -205,15 +248,31 @@ struct Single {
     }
 };
 
+enum class Shape { number, vector, six, square, six_rows };  // (), (dof,), (6,), (dof, dof), (6, dof)
+
+PyObject* new_result(Shape shape, npy_intp dof) {
+    switch (shape) {
+        case Shape::number:
+            return new_array({});
+        case Shape::vector:
+            return new_array({dof});
+        case Shape::six:
+            return new_array({6});
+        case Shape::square:
+            return new_array({dof, dof});
+        default:
+            return new_array({6, dof});
+    }
+}
+
 // The answer of a single call, an array of that shape, or that of the free function of that name.
 template <class Kernel>
 PyObject* answer_call(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames,
-                      Py_ssize_t count, bool square, Kernel kernel, const char* name,
+                      Py_ssize_t count, Shape shape, Kernel kernel, const char* name,
                       dynamics::What what = {}) {
     Single call;
     if (call.read(self, args, nargs, kwnames, count)) {
-        const npy_intp n = velocities_of(*kinematics_of(self));
-        PyObject* result = square ? new_array({n, n}) : new_array({n});
+        PyObject* result = new_result(shape, velocities_of(*kinematics_of(self)));
         if (!result) return nullptr;
         call.rows.result = data_of(result);
         call.rows.what = what;
@@ -282,24 +341,46 @@ dynamics::RegressorRows regressor_of(const KinematicsObject& robot, const dynami
 
 PyObject* compute_inverse_dynamics(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
                                    PyObject* kwnames) {
-    return answer_call(self, args, nargs, kwnames, 3, false, kernels::inverse_rows, "inverse_dynamics");
+    return answer_call(self, args, nargs, kwnames, 3, Shape::vector, kernels::inverse_rows,
+                       "inverse_dynamics");
 }
 PyObject* compute_forward_dynamics(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
                                    PyObject* kwnames) {
-    return answer_call(self, args, nargs, kwnames, 3, false, kernels::forward_rows, "forward_dynamics");
+    return answer_call(self, args, nargs, kwnames, 3, Shape::vector, kernels::forward_rows,
+                       "forward_dynamics");
 }
 PyObject* compute_mass_matrix(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    return answer_call(self, args, nargs, kwnames, 1, true, kernels::mass_rows, "mass_matrix");
+    return answer_call(self, args, nargs, kwnames, 1, Shape::square, kernels::mass_rows, "mass_matrix");
 }
 PyObject* compute_gravity_torques(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
                                   PyObject* kwnames) {
-    return answer_call(self, args, nargs, kwnames, 1, false, kernels::inverse_rows, "gravity_torques");
+    return answer_call(self, args, nargs, kwnames, 1, Shape::vector, kernels::inverse_rows,
+                       "gravity_torques");
 }
 
 PyObject* compute_coriolis_matrix(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
                                   PyObject* kwnames) {
-    return answer_call(self, args, nargs, kwnames, 2, true, kernels::spatial_rows, "coriolis_matrix",
+    return answer_call(self, args, nargs, kwnames, 2, Shape::square, kernels::spatial_rows, "coriolis_matrix",
                        dynamics::What::coriolis);
+}
+PyObject* compute_centroidal_momentum(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
+                                      PyObject* kwnames) {
+    return answer_call(self, args, nargs, kwnames, 2, Shape::six, kernels::spatial_rows,
+                       "centroidal_momentum", dynamics::What::momentum);
+}
+PyObject* compute_momentum_matrix(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
+                                  PyObject* kwnames) {
+    return answer_call(self, args, nargs, kwnames, 1, Shape::six_rows, kernels::spatial_rows,
+                       "centroidal_momentum_matrix", dynamics::What::momentum_matrix);
+}
+PyObject* compute_kinetic_energy(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+    return answer_call(self, args, nargs, kwnames, 2, Shape::number, kernels::spatial_rows, "kinetic_energy",
+                       dynamics::What::kinetic);
+}
+PyObject* compute_potential_energy(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
+                                   PyObject* kwnames) {
+    return answer_call(self, args, nargs, kwnames, 1, Shape::number, kernels::spatial_rows,
+                       "potential_energy", dynamics::What::potential);
 }
 PyObject* compute_inverse_derivatives(PyObject* self, PyObject* const* args, Py_ssize_t nargs,
                                       PyObject* kwnames) {

@@ -24,8 +24,8 @@ class Simulator {
   public:
     Simulator(nb::object robot, const std::string& method, const ConstDoubles& gravity, const In& damping,
               const In& dry, double friction_speed, const std::pair<double, double>& times,
-              const std::pair<long long, long long>& steps, bool is_held, double tolerance, const In& lower,
-              const In& upper, int threads)
+              const std::pair<long long, long long>& steps, bool is_held, bool keeps_pieces, double tolerance,
+              const In& lower, const In& upper, int threads)
         : robot_(std::move(robot)), threads_(threads) {
         KinematicsObject& object = robot_from(robot_);
         auto& mechanics = task_.mechanics;
@@ -48,6 +48,7 @@ class Simulator {
         task_.steps = steps.first;
         task_.every = steps.second;
         task_.is_held = is_held;
+        task_.keeps_pieces = keeps_pieces;
         task_.tolerance = tolerance;
         task_.lower = keep(lower, n_);
         task_.upper = keep(upper, n_);
@@ -76,12 +77,13 @@ class Simulator {
     }
     // Where states are recorded: (rows, count, …).
     void hold_records(const Doubles& q, const Doubles& qd, const Doubles& tau, const Doubles& energy,
-                      const Out& T) {
+                      const Doubles& momentum, const Out& T) {
         const npy_intp count = rows_ > 0 ? energy.size / rows_ : 0;
         task_.records = {keep(q, rows_ * count * n_),
                          keep(qd, rows_ * count * dof_),
                          keep(tau, rows_ * count * dof_),
                          keep(energy, rows_ * count),
+                         keep(momentum, rows_ * count * 6),
                          T ? keep(*T, rows_ * count * 16) : nullptr,
                          std::size_t(count)};
         const long long needed = (task_.steps + task_.every - 1) / task_.every + 1;
@@ -218,14 +220,15 @@ class Simulator {
 void bind_dynamics_simulation(nb::module_& m) {
     nb::class_<Simulator>(m, "Simulator", "The compiled half of cspace.dynamics.simulate.")
         .def(nb::init<nb::object, const std::string&, const ConstDoubles&, const In&, const In&, double,
-                      const std::pair<double, double>&, const std::pair<long long, long long>&, bool, double,
-                      const In&, const In&, int>(),
+                      const std::pair<double, double>&, const std::pair<long long, long long>&, bool, bool,
+                      double, const In&, const In&, int>(),
              "robot"_a, "method"_a, "gravity"_a, "damping"_a.none(), "dry"_a.none(), "friction_speed"_a,
-             "times"_a, "steps"_a, "is_held"_a, "tolerance"_a, "lower"_a.none(), "upper"_a.none(),
-             "threads"_a, "times: duration and dt; steps: how many, and of how many one state is recorded.")
+             "times"_a, "steps"_a, "is_held"_a, "keeps_pieces"_a, "tolerance"_a, "lower"_a.none(),
+             "upper"_a.none(), "threads"_a,
+             "times: duration and dt; steps: how many, and of how many one state is recorded.")
         .def("hold_state", &Simulator::hold_state, "q"_a, "qd"_a, "T_world_base"_a, "tau"_a, "status"_a,
              "joint"_a, "stopped"_a, "The arrays of the states of all rows, which are written to.")
-        .def("hold_records", &Simulator::hold_records, "q"_a, "qd"_a, "tau"_a, "energy"_a,
+        .def("hold_records", &Simulator::hold_records, "q"_a, "qd"_a, "tau"_a, "energy"_a, "momentum"_a,
              "T_world_base"_a.none(), "The arrays (rows, count, …) into which states are recorded.")
         .def("set_torques", &Simulator::set_torques, "tau"_a.none(), "Torques that are given.")
         .def("set_pd", &Simulator::set_pd, "kp"_a, "kd"_a, "goal"_a, "carries_weight"_a,

@@ -86,7 +86,17 @@ void bind_localization_graph(nb::module_& m) {
                 return solver.write_covariances(read(pairs), out.data());
             },
             "pairs"_a, "out"_a, WithoutLock(),
-            "Writes the blocks of pairs of variables; False where singular.");
+            "Writes the blocks of pairs of variables; False where singular.")
+        .def_prop_ro("anisotropic_measurement", &GraphSolver::anisotropic_measurement)
+        .def(
+            "certify",
+            [](const GraphSolver& solver) {
+                const CertificateResult found = solver.certify();
+                return std::make_tuple(found.is_proved, found.bound, found.cost);
+            },
+            WithoutLock(),
+            "Whether the dual has a proof, the bound of chi2, and the cost of the optimum next to that "
+            "proved.");
     m.def(
         "find_graph_parts",
         [](std::size_t poses, std::size_t landmarks, const Pairs& edges, const Pairs& sightings) {

@@ -96,6 +96,4 @@ void bind_navigation_vehicles(nb::module_& m) {
     m.def("_follow", follow_path, "points"_a, "runs"_a, "vehicle"_a, "start"_a, "settings"_a, "controller"_a,
           "numbers"_a, "world"_a.none(), "footprint"_a, WithoutLock(),
           "Lets a vehicle follow a path; the outcome and a row per step.");
-    m.def("_cast_rays", cast_rays, "grid"_a, "points"_a, "angles"_a, "most"_a, WithoutLock(),
-          "Ranges from rows of points at angles.");
 }

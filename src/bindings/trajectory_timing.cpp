@@ -139,6 +139,22 @@ void bind_trajectory_timing(nb::module_& m) {
         "Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether "
         "converged.");
     m.def(
+        "evaluate_path",
+        [](const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops,
+           const Integers& piece, const ConstDoubles& local) {
+            const TimingPath path = read_path(controls, lengths, stops);
+            require_size(piece.size == local.size);
+            for (npy_intp i = 0; i < piece.size; ++i)
+                require_size(0 <= piece.data[i] && std::size_t(piece.data[i]) < path.lengths.size());
+            const npy_intp n = path.joints;
+            Doubles q({local.size, n}), slope({local.size, n}), bend({local.size, n});
+            const std::size_t count = std::size_t(local.size);
+            evaluate_path(path, {{piece.data, count}, {local.data, count}, q.data, slope.data, bend.data});
+            return std::make_tuple(q, slope, bend);
+        },
+        "controls"_a, "lengths"_a, "stops"_a, "piece"_a, "local"_a,
+        "Configurations (m, dof) and their first two derivatives at places (m,) within pieces (m,).");
+    m.def(
         "time_path_with_jerk",
         [](const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops,
            const ConstDoubles& velocity, const ConstDoubles& acceleration, const ConstDoubles& jerk,

@@ -37,7 +37,18 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.localization import PoseGraph, ate, localize, read_log, rpe
+    from cspace.localization import (
+        IncrementalGraph,
+        LaserScanner,
+        ParticleFilter,
+        PoseGraph,
+        ate,
+        localize,
+        match_scan,
+        read_log,
+        rpe,
+        slam,
+    )
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.mechanisms import Mechanism
     from cspace.mobile import Car, DifferentialDrive, Mecanum, Omni, Tracked, Unicycle
@@ -65,9 +76,12 @@ logging.getLogger("cspace").addHandler(logging.NullHandler())
 
 __all__ = [
     "CspaceError",
+    "IncrementalGraph",
+    "LaserScanner",
     "Limits",
     "Mechanism",
     "OccupancyGrid",
+    "ParticleFilter",
     "PolygonWorld",
     "PoseGraph",
     "Robot",
@@ -85,6 +99,7 @@ __all__ = [
     "localization",
     "localize",
     "maps",
+    "match_scan",
     "mechanisms",
     "mobile",
     "model",
@@ -96,6 +111,7 @@ __all__ = [
     "planning",
     "read_log",
     "rpe",
+    "slam",
 ]
 __all__ += ["plot", "robots", "shapes", "spatial", "subproblems", "trajectory"]
 __all__ += ["Box", "Capsule", "Cylinder", "HalfSpace", "HeightField", "Hull", "Mesh", "PointCloud", "Sphere"]
@@ -120,12 +136,15 @@ _LATER = {
     "HalfSpace": "cspace.shapes",
     "HeightField": "cspace.shapes",
     "Hull": "cspace.shapes",
+    "IncrementalGraph": "cspace.localization",
+    "LaserScanner": "cspace.localization",
     "Limits": "cspace.model",
     "Mechanism": "cspace.mechanisms",
     "Mecanum": "cspace.mobile",
     "Mesh": "cspace.shapes",
     "OccupancyGrid": "cspace.maps",
     "Omni": "cspace.mobile",
+    "ParticleFilter": "cspace.localization",
     "PointCloud": "cspace.shapes",
     "PolygonWorld": "cspace.maps",
     "PoseGraph": "cspace.localization",
@@ -151,6 +170,7 @@ _LATER = {
     "localization": "",
     "localize": "cspace.localization",
     "maps": "",
+    "match_scan": "cspace.localization",
     "mechanisms": "",
     "mobile": "",
     "model": "",
@@ -165,6 +185,7 @@ _LATER = {
     "robots": "",
     "rpe": "cspace.localization",
     "shapes": "",
+    "slam": "cspace.localization",
     "spatial": "",
     "spline": "cspace.trajectory",
     "subproblems": "cspace.ik",

@@ -285,6 +285,45 @@ class RobotBase(KinematicsBase):
         Echeandia and Wensing 2021, algorithm 1.
         """
 
+    def centroidal_momentum(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The momentum of the whole robot: linear, and angular about its centre of mass.
+
+        Without external forces it does not change, apart from the weight, which changes the linear part alone.
+
+        q (..., n) [rad or m], qd (..., dof) [rad/s or m/s]; of a floating base [v; ω] comes first. T_world_base
+        (..., 4, 4): where the base is. out (..., 6): float64 array to write into. threads: as in fk.
+
+        Returns [l; k] (..., 6) [kg·m/s, kg·m²/s] in the axes of the base, of the world where the base is placed. Raises
+        InputError for a wrong shape or NaN and where no link has a mass.
+
+        Orin, Goswami and Lee 2013.
+        """
+
+    def centroidal_momentum_matrix(self, q: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The matrix A with [l; k] = A(q) q̇; see centroidal_momentum.
+
+        q (..., n) [rad or m], T_world_base (..., 4, 4), out (..., 6, dof), threads: as there. Returns A (..., 6, dof).
+        Raises InputError for a wrong shape or NaN and where no link has a mass.
+        """
+
+    def kinetic_energy(self, q: ArrayLike, qd: ArrayLike, *, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The kinetic energy ½ q̇ᵀ M(q) q̇, that of rotors (armature) included.
+
+        q (..., n) [rad or m], qd (..., dof) [rad/s or m/s], T_world_base (..., 4, 4), out (...). Returns (...) [J].
+        Raises InputError for a wrong shape or NaN and where no link has a mass.
+        """
+
+    def potential_energy(self, q: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
+        """
+        The energy −m g · c of the weight, zero with the centre of mass at the origin.
+
+        q (..., n) [rad or m], gravity (3,) [m/s²], T_world_base (..., 4, 4), out (...). Returns (...) [J]. Raises
+        InputError for a wrong shape or NaN and where no link has a mass.
+        """
+
     def inverse_dynamics_derivatives(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
         """
         ∂tau/∂q, ∂tau/∂q̇ and ∂tau/∂q̈ = M of inverse dynamics.
@@ -899,7 +938,7 @@ def find_reach(checker: CollisionChecker) -> float:
 class Simulator:
     """The compiled half of cspace.dynamics.simulate."""
 
-    def __init__(self, robot: object, method: str, gravity: numpy.typing.NDArray[numpy.float64], damping: numpy.typing.NDArray[numpy.float64] | None, dry: numpy.typing.NDArray[numpy.float64] | None, friction_speed: float, times: tuple[float, float], steps: tuple[int, int], is_held: bool, tolerance: float, lower: numpy.typing.NDArray[numpy.float64] | None, upper: numpy.typing.NDArray[numpy.float64] | None, threads: int) -> None:
+    def __init__(self, robot: object, method: str, gravity: numpy.typing.NDArray[numpy.float64], damping: numpy.typing.NDArray[numpy.float64] | None, dry: numpy.typing.NDArray[numpy.float64] | None, friction_speed: float, times: tuple[float, float], steps: tuple[int, int], is_held: bool, keeps_pieces: bool, tolerance: float, lower: numpy.typing.NDArray[numpy.float64] | None, upper: numpy.typing.NDArray[numpy.float64] | None, threads: int) -> None:
         """
         times: duration and dt; steps: how many, and of how many one state is recorded.
         """
@@ -907,7 +946,7 @@ class Simulator:
     def hold_state(self, q: numpy.typing.NDArray[numpy.float64], qd: numpy.typing.NDArray[numpy.float64], T_world_base: numpy.typing.NDArray[numpy.float64], tau: numpy.typing.NDArray[numpy.float64], status: numpy.typing.NDArray[numpy.int32], joint: numpy.typing.NDArray[numpy.int32], stopped: numpy.typing.NDArray[numpy.float64]) -> None:
         """The arrays of the states of all rows, which are written to."""
 
-    def hold_records(self, q: numpy.typing.NDArray[numpy.float64], qd: numpy.typing.NDArray[numpy.float64], tau: numpy.typing.NDArray[numpy.float64], energy: numpy.typing.NDArray[numpy.float64], T_world_base: numpy.typing.NDArray[numpy.float64] | None) -> None:
+    def hold_records(self, q: numpy.typing.NDArray[numpy.float64], qd: numpy.typing.NDArray[numpy.float64], tau: numpy.typing.NDArray[numpy.float64], energy: numpy.typing.NDArray[numpy.float64], momentum: numpy.typing.NDArray[numpy.float64], T_world_base: numpy.typing.NDArray[numpy.float64] | None) -> None:
         """The arrays (rows, count, …) into which states are recorded."""
 
     def set_torques(self, tau: numpy.typing.NDArray[numpy.float64] | None) -> None:
@@ -933,18 +972,25 @@ class Simulator:
         The steps of the adaptive method (k, width), and where those of each row begin.
         """
 
-PHASES_OF_AXIS: int = ...
+NUMBERS_OF_MOTION: int = ...
 
-def solve_states(states: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], durations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cycle: float, mode: int, threads: int, verdict: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None, None), order='C', device='cpu')], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None, None), order='C', device='cpu')]) -> None:
+def solve_states(states: Annotated[NDArray[numpy.float64], dict(shape=(None, 2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], durations: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], cycle: float, mode: int, threads: int, verdict: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], duration: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], motions: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')]) -> None:
     """
     Motions of axes from state to state.
 
-    states (rows, 2, 3, dof): q, qd, qdd at the start and the goal. limits (5, dof): highest and lowest velocity and acceleration, jerk. durations (rows,): NaN for the shortest. mode: 0 in time, 1 in phase, 2 each axis alone. Writes verdict (rows,): 0 found, 1 another duration, 2 not parallel; duration (rows,), shortest (rows, dof), count (rows, dof), phases (rows, dof, PHASES_OF_AXIS, 3).
+    states (rows, 2, 3, dof): q, qd, qdd at the start and the goal. limits (5, dof): highest and lowest velocity and acceleration, jerk. durations (rows,): NaN for the shortest. mode: 0 in time, 1 in phase, 2 each axis alone. Writes verdict (rows,): 0 found, 1 another duration, 2 not parallel; duration (rows,), shortest (rows, dof), motions (NUMBERS_OF_MOTION, rows, dof).
     """
 
-def fill_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None), order='C', device='cpu', writable=False)], count: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], phases: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu', writable=False)], duration: float, knots: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], origins: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+def make_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None), order='C', device='cpu', writable=False)], limits: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], shortest: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], motions: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], duration: float, mode: int) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
-    Polynomials of the phases of one motion: writes knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
+    Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
+    """
+
+def move_plain(states: object, limits: object, bounds: object, farthest: float) -> tuple[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], float, bool] | None:
+    """
+    The fastest motion between two states, or None where arguments are not plain rows that can be asked.
+
+    states: start, its velocity and acceleration, goal, likewise. limits: velocity, acceleration, jerk. bounds: lower and upper positions. Each an array (n,), a float, or None. Returns knots, coefficients and origins, the duration, and whether positions keep within bounds.
     """
 
 def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], intervals: int) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
@@ -955,6 +1001,11 @@ def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.ty
 def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], numpy.typing.NDArray[numpy.float64], bool]:
     """
     Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.
+    """
+
+def evaluate_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], piece: numpy.typing.NDArray[numpy.int32], local: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    Configurations (m, dof) and their first two derivatives at places (m,) within pieces (m,).
     """
 
 def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], jerk: numpy.typing.NDArray[numpy.float64], grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], start: numpy.typing.ArrayLike, end: numpy.typing.ArrayLike, duration: float, tolerance: float) -> tuple[bool, numpy.typing.NDArray[numpy.float64], float, float, float, int]:
@@ -994,15 +1045,226 @@ class GraphSolver:
     def write_covariances(self, pairs: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> bool:
         """Writes the blocks of pairs of variables; False where singular."""
 
+    @property
+    def anisotropic_measurement(self) -> int: ...
+
+    def certify(self) -> tuple[bool, float, float]:
+        """
+        Whether the dual has a proof, the bound of chi2, and the cost of the optimum next to that proved.
+        """
+
 def find_graph_parts(poses: int, landmarks: int, edges: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], sightings: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> list[int]:
     """The connected part of each pose, then of each landmark."""
+
+class ScoreMap:
+    """A score per cell for the ends of beams."""
+
+    def __init__(self, scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int) -> None: ...
+
+class ParticleCloud:
+    """Weighted poses of Monte Carlo localisation."""
+
+    def __init__(self, most: int, seed: int) -> None: ...
+
+    def __len__(self) -> int: ...
+
+    @property
+    def most(self) -> int: ...
+
+    def place(self, poses: numpy.typing.NDArray[numpy.float64]) -> None:
+        """Particles at poses (k, 3), with equal weights."""
+
+    def move(self, increment: numpy.typing.ArrayLike, covariance: numpy.typing.ArrayLike, threads: int) -> None:
+        """A step (3,) with noise of a covariance (9,)."""
+
+    def add_scan(self, map: ScoreMap, ends: numpy.typing.NDArray[numpy.float64], exponent: float, threads: int) -> float:
+        """Weighs by the ends of beams (m, 2) in base; the best mean score."""
+
+    def score(self, map: ScoreMap, ends: numpy.typing.NDArray[numpy.float64], threads: int) -> numpy.typing.NDArray[numpy.float64]:
+        """The mean score of each particle."""
+
+    def add_logs(self, logs: numpy.typing.NDArray[numpy.float64]) -> None:
+        """Adds to the logarithms of the weights (n,)."""
+
+    def add_sightings(self, ranges: numpy.typing.NDArray[numpy.float64], bearings: numpy.typing.NDArray[numpy.float64], rows: numpy.typing.NDArray[numpy.int32], points: numpy.typing.NDArray[numpy.float64], mount: numpy.typing.ArrayLike, range_sigma: float, bearing_sigma: float, false_share: float, exponent: float, threads: int) -> float:
+        """Weighs by readings of landmarks; how well the best particle fits."""
+
+    def effective_count(self) -> float: ...
+
+    def resample(self, least: int, error: float, z: float) -> int:
+        """Systematic resampling; the number of occupied bins."""
+
+    def find_modes(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """Poses (k, 3), covariances (k, 9) and shares (k,) of the clusters."""
+
+    def poses(self) -> numpy.typing.NDArray[numpy.float64]:
+        """(n, 3)"""
+
+    def weights(self) -> numpy.typing.NDArray[numpy.float64]:
+        """(n,)"""
+
+    def draw_normals(self, count: int) -> numpy.typing.NDArray[numpy.float64]:
+        """Standard normal numbers (count, 3) of a step of their own."""
+
+def match_points(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float, turn: float, refines: bool) -> tuple:
+    """
+    Found, ambiguous, pose, covariance, score and second score of a correlative match.
+    """
+
+def match_point_lines(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, reference: numpy.typing.NDArray[numpy.float64], points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float) -> tuple:
+    """The same by point-to-line ICP."""
+
+def make_field_of_points(points: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float) -> tuple:
+    """The scores and the origin of a field of bells about points."""
+
+def thin_scans(points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], most: int) -> tuple:
+    """At most so many points of each scan, and where each scan begins."""
+
+class LaserSlamRun:
+    """Laser SLAM on a pose graph, as far as it is done."""
+
+    def __init__(self, points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], steps: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float, finds_loops: bool) -> None: ...
+
+    def advance(self, scans: int) -> bool:
+        """Works on so many scans more; False when all are done."""
+
+    @property
+    def done(self) -> int: ...
+
+    @property
+    def tried(self) -> int: ...
+
+    @property
+    def optimizations(self) -> int: ...
+
+    @property
+    def poses(self) -> object: ...
+
+    @property
+    def matched(self) -> object: ...
+
+    @property
+    def edges(self) -> tuple:
+        """Ends, poses, covariances, scores with second scores, and verdicts."""
+
+    @property
+    def loops(self) -> tuple:
+        """The same of all loops that were found."""
+
+class LandmarkFilter:
+    """A filter on a pose and landmarks."""
+
+    def predict(self, increment: numpy.typing.ArrayLike, noise: numpy.typing.ArrayLike) -> None:
+        """Moves the pose."""
+
+    def predict_walk(self, increment: numpy.typing.ArrayLike, walk: numpy.typing.ArrayLike, duration: float) -> None:
+        """Moves the pose, with the noise of a random walk."""
+
+    def update(self, readings: numpy.typing.NDArray[numpy.float64]) -> bool:
+        """False, and nothing done, for rows that cannot be used."""
+
+    @property
+    def outcomes(self) -> tuple[numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.uint8], numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+
+    @property
+    def pose(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def covariance(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def landmarks(self) -> tuple[numpy.typing.NDArray[numpy.int64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.uint8]]: ...
+
+    @property
+    def is_lost(self) -> bool: ...
+
+    @property
+    def counts(self) -> tuple[int, int, int, int, int, int, int, int, int]: ...
+
+    @property
+    def joint_covariance(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def particles(self) -> numpy.typing.NDArray[numpy.float64]: ...
+
+    @property
+    def chunks(self) -> int: ...
+
+def make_ekf_slam(sensor: numpy.typing.ArrayLike, rule: numpy.typing.ArrayLike, linearization: int, is_joint: bool, most_nodes: int, start: numpy.typing.ArrayLike, covariance: numpy.typing.ArrayLike) -> LandmarkFilter:
+    """A Kalman filter on a pose and landmarks."""
+
+def make_fast_slam(sensor: numpy.typing.ArrayLike, rule: numpy.typing.ArrayLike, version: int, particles: int, seed: int, resample_below: float, start: numpy.typing.ArrayLike, covariance: numpy.typing.ArrayLike) -> LandmarkFilter:
+    """Particles with maps of landmarks."""
+
+class IncrementalSolver:
+    """A pose graph that grows, and its estimate."""
+
+    def __init__(self, is_spatial: bool, relinearize: float, substitute: float) -> None: ...
+
+    @property
+    def is_spatial(self) -> bool: ...
+
+    def hold_pose(self, id: int, pose: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None: ...
+
+    def add_edges(self, ids: Annotated[NDArray[numpy.int64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], motions: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], information: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> None: ...
+
+    def add_sightings(self, ids: Annotated[NDArray[numpy.int64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], information: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], has_bearing: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> None: ...
+
+    def step(self) -> bool:
+        """False where the equations are singular."""
+
+    def restart(self, poses: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], landmarks: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> bool:
+        """False where the equations are singular."""
+
+    @property
+    def pose_ids(self) -> list[int]: ...
+
+    @property
+    def landmark_ids(self) -> list[int]: ...
+
+    def find_pose(self, id: int) -> int:
+        """Its row; -1: none of this id."""
+
+    def find_landmark(self, id: int) -> int:
+        """Its row; -1: none of this id."""
+
+    def write_pose(self, row: int, out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None: ...
+
+    def write_state(self, poses: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')], landmarks: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> None: ...
+
+    @property
+    def waiting(self) -> int: ...
+
+    @property
+    def eliminated(self) -> int: ...
+
+    def cost(self) -> float: ...
+
+    def arrays(self) -> tuple:
+        """
+        Edges, motions, information, sightings, points, their information, and has_bearing, flat.
+        """
+
+    def write_covariance(self, is_pose: bool, first: int, second: int, out: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu')]) -> bool:
+        """False where singular."""
+
+def are_clearly_positive(matrices: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], size: int) -> bool:
+    """
+    Whether square matrices are symmetric and far from singular; where not, they need a closer look.
+    """
 
 def _car_clear(*arguments: Any) -> bool: ...
 def _car_distance(*arguments: Any) -> Any: ...
 def _car_shortest(*arguments: Any) -> Any: ...
 def _car_distances(*arguments: Any) -> NDArray[numpy.float64]: ...
 def _car_poses(*arguments: Any) -> NDArray[numpy.float64]: ...
+def _draw_counter_words(counter: NDArray[numpy.uint32], key: NDArray[numpy.uint32]) -> NDArray[numpy.uint32]: ...
+def _count_particles_for_bins(bins: int, error: float, z: float) -> float: ...
 def _cast_rays(*arguments: Any) -> NDArray[numpy.float64]: ...
+def _likelihood_field(*arguments: Any) -> NDArray[numpy.uint8]: ...
+def _reached_cells(*arguments: Any) -> tuple[float, float, float, float]: ...
+def _add_evidence(*arguments: Any) -> None: ...
+def _search_map(*arguments: Any) -> NDArray[numpy.float64]: ...
 def _cover(*arguments: Any) -> Any: ...
 def _potential_a_star(*arguments: Any) -> Any: ...
 def _fast_marching(*arguments: Any) -> Any: ...

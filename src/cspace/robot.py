@@ -231,12 +231,8 @@ class Robot(Renamed, RobotBase, KinematicModel):
         ik_numeric = ik.ik_numeric
         ik_plan = ik.ik_plan
         ik_tasks = ik.ik_tasks
-        centroidal_momentum = dynamics.centroidal_momentum
-        centroidal_momentum_matrix = dynamics.centroidal_momentum_matrix
         inertia_report = dynamics.inertia_report
-        kinetic_energy = dynamics.kinetic_energy
         operational_space = dynamics.operational_space
-        potential_energy = dynamics.potential_energy
         simulate = dynamics.simulate
         redundancy = ik.redundancy
         resolved_rate = ik.resolved_rate
@@ -259,11 +255,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
     else:
         clearance, contact, edge, escape = (_Later("cspace.collision") for _ in range(4))
         export = _Later("cspace.export")
-        centroidal_momentum, centroidal_momentum_matrix = (_Later("cspace.dynamics") for _ in range(2))
-        inertia_report = _Later("cspace.dynamics")
-        kinetic_energy, potential_energy = (_Later("cspace.dynamics") for _ in range(2))
-        operational_space = _Later("cspace.dynamics")
-        simulate = _Later("cspace.dynamics")
+        inertia_report, operational_space, simulate = (_Later("cspace.dynamics") for _ in range(3))
         ik_many_starts, ik_numeric, ik_plan, ik_tasks = (_Later("cspace.ik") for _ in range(4))
         redundancy, resolved_rate, task_velocity, track = (_Later("cspace.ik") for _ in range(4))
         move_to = _Later("cspace.trajectory")

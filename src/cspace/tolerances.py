@@ -228,6 +228,10 @@ RUN_CELLS: Final = 1 << 28
 """Most cells of a grid that is searched over runs: its corners are numbered in rows as long as the next power
 of two, which fits into 31 bits then."""
 
+WIDEST_SIGMA: Final = 200
+"""Largest standard deviation of a likelihood field, in cells: its table by squared distance then has half a
+million entries, and bytes no longer tell the distances of neighbouring cells apart."""
+
 FARTHEST_CELL: Final = 1e12
 """Farthest cell from zero, in cells: there float64 still resolves a ten thousandth of a cell."""
 ON_WALL: Final = 1e-12
@@ -732,5 +736,9 @@ of Gauss-Newton is smaller by far."""
 GRAPH_DECREASE: Final = 1e-9
 """Decrease of χ² that the last step of a pose graph predicts, relative to χ²: thousandths of what is asked of
 its digits."""
+
+SAME_CHI2: Final = 1e-6
+"""Difference of two values of χ², relative, within which they are of one optimum: steps that end the search
+leave 1e-9."""
 
 __all__ = [name for name in globals() if name.isupper()]

@@ -3,29 +3,15 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "cspace/localization/graph/certificate.hpp"
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
-#include "kernels/math_fronts.hpp"
+#include "localization_fronts.hpp"
 
 namespace cspace::localization {
 
 namespace {
-
-struct KernelFronts {
-    static bool factor(double* panel, int stride, int pivots, int first) {
-        return kernels::factor_front_columns(panel, stride, pivots, first);
-    }
-    static void update(double* schur, int size, const double* panel, int stride, int pivots, int row) {
-        kernels::update_front_strip(schur, size, panel, stride, pivots, row);
-    }
-    static void lower(const double* panel, int stride, int pivots, double* x) {
-        kernels::solve_front_lower(panel, stride, pivots, x);
-    }
-    static void upper(const double* panel, int stride, int pivots, double* x) {
-        kernels::solve_front_upper(panel, stride, pivots, x);
-    }
-};
 
 void require(bool fits) {
     if (!fits) throw std::invalid_argument("the arrays of a pose graph do not fit together");
@@ -80,6 +66,7 @@ PoseGraph<Space> read_graph(const GraphArrays& arrays) {
 // Dynamic covariance scaling is tried with these shares of its width: the information of files may be a
 // hundredth of the true one, and an honest one lets loops start out far.
 constexpr double scaling_widths[] = {1.0, 0.3, 3.0};
+constexpr double clear_share = 0.1;  // of the doubted measurements: an answer that keeps fewer is doubtful
 
 template <class Space>
 class SolverOf : public GraphSolver {
@@ -138,6 +125,11 @@ class SolverOf : public GraphSolver {
         return true;
     }
 
+    std::ptrdiff_t anisotropic_measurement() const override { return find_anisotropic(graph_, is_used_); }
+    CertificateResult certify() const override {
+        return DualCertificate<Space, KernelFronts>(graph_, is_used_).certify(state_);
+    }
+
   private:
     using Equations = NormalEquations<Space, KernelFronts>;
 
@@ -160,10 +152,19 @@ class SolverOf : public GraphSolver {
         if (rule.false_loops != FalseLoops::gnc) {
             for (double share : scaling_widths)
                 keep_answer(solver.scale_covariances(start, share * rule.width));
+            // Where loops start out far, or are many, the answers keep few of them, or not the same.
+            const bool is_clear = std::all_of(answers.begin(), answers.end(), [&](const auto& each) {
+                return each.is_used == answers[0].is_used &&
+                       double(solver.count_kept(each)) >= clear_share * double(solver.count_doubted());
+            });
+            if (!is_clear) keep_answer(solver.scale_in_time(start, rule.width));
         }
         if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
-        double scale = 1;
-        for (const auto& answer : answers) scale = std::min(scale, answer.scale);
+        // One scale for all, of the answer that knows most.
+        const double scale =
+            std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
+                return solver.count_kept(a) < solver.count_kept(b);
+            })->scale;
         const RobustAnswer<Space>& best =
             *std::min_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
                 return solver.truncated_cost(a, scale) < solver.truncated_cost(b, scale);

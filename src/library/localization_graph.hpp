@@ -52,6 +52,10 @@ class GraphSolver {
     // Covariances of the variables (first, second), blocks one after the other, with [v; ω] in the base for
     // poses; false where the equations are singular.
     virtual bool write_covariances(std::span<const std::int32_t> pairs, double* to) = 0;
+    // The first measurement in use whose information is not isotropic, or that has no dual; −1: none.
+    virtual std::ptrdiff_t anisotropic_measurement() const = 0;
+    // Tries to prove that the state of least cost is the global optimum; all information must be isotropic.
+    virtual CertificateResult certify() const = 0;
 };
 
 // Throws std::invalid_argument for arrays that do not fit together.

@@ -1,8 +1,8 @@
 #include "navigation_fields_grid.hpp"
 
+#include "cspace/maps/clearance.hpp"
 #include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/brushfire.hpp"
-#include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/fields/fast_marching.hpp"
 #include "cspace/navigation/fields/harmonic.hpp"
 #include "cspace/navigation/fields/potential_search.hpp"
@@ -55,7 +55,7 @@ bool walls_divide(const GridWorld& world, Point start, Point goal) {
 }
 
 ClearanceField::ClearanceField(const GridWorld& world)
-    : cells(std::make_shared<Clearance>(make_clearance(world.state().bits))) {}
+    : cells(std::make_shared<maps::Clearance>(make_clearance(world.state().bits))) {}
 
 bool plan_by_potential(const Query<GridWorld>& query, Route& route, const ClearanceField* field,
                        const std::array<double, 7>& s) {

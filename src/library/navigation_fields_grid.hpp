@@ -9,9 +9,12 @@
 #include "navigation_query.hpp"
 #include "table.hpp"
 
+namespace cspace::maps {
+struct Clearance;
+}
+
 namespace cspace::navigation {
 
-struct Clearance;
 class HarmonicField;
 
 // Whether start and goal certainly lie in different parts of the free cells; not told of small parts.
@@ -20,7 +23,7 @@ bool walls_divide(const GridWorld& world, Point start, Point goal);
 // The distance of every cell to the nearest wall.
 struct ClearanceField {
     explicit ClearanceField(const GridWorld& world);
-    std::shared_ptr<const Clearance> cells;
+    std::shared_ptr<const maps::Clearance> cells;
 };
 
 // By a potential. numbers: gain, rho_0, cap, all in cells; scale, weight, whether greedy, Corners.

@@ -2,7 +2,6 @@
 
 #include <bit>
 
-#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/cars/car_world.hpp"
 #include "cspace/navigation/following/dynamic_window.hpp"
 #include "cspace/navigation/following/follow.hpp"
@@ -58,20 +57,6 @@ std::pair<int, Table<FollowRow>> follow_path(
     Table<FollowRow> rows;
     for (const FollowStep& step : record.steps) rows.values.push_back(std::bit_cast<FollowRow>(step));
     return {int(record.outcome), std::move(rows)};
-}
-
-Table<double> cast_rays(const maps::GridWorld& world, std::span<const Point> from,
-                        std::span<const double> angles, double most) {
-    if (from.size() != angles.size()) throw std::invalid_argument("as many points as angles are needed");
-    const auto& [bits, frame, parts] = world.state();
-    Table<double> ranges;
-    InterruptPoll poll(64);
-    for (std::size_t k = 0; k < from.size(); ++k) {
-        poll.step();
-        const Point direction{std::cos(angles[k]), std::sin(angles[k])};
-        ranges.values.push_back(cast_ray(bits, frame, from[k], direction, most));
-    }
-    return ranges;
 }
 
 }  // namespace cspace::navigation

@@ -26,8 +26,4 @@ std::pair<int, Table<FollowRow>> follow_path(
     const std::array<double, 7>& numbers, const maps::GridWorld* world,
     const std::array<double, 4>& footprint);
 
-// Ranges from points at angles, as many.
-Table<double> cast_rays(const maps::GridWorld& world, std::span<const Point> from,
-                        std::span<const double> angles, double most);
-
 }  // namespace cspace::navigation

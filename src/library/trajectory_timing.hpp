@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -64,5 +65,14 @@ Timing time_on_grid(const TimingPath& path, const TimingLimits& limits, const Ti
 // The same on a grid that is halved where this changes the duration.
 Timing time_path(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options,
                  const Sampler& sample);
+
+// The configurations of a path and their first two derivatives by the parameter, (places, joints) each, at
+// places within pieces.
+struct PathPlaces {
+    std::span<const std::int32_t> piece;
+    std::span<const double> local;  // in [0, 1]
+    double *q, *slope, *bend;
+};
+void evaluate_path(const TimingPath& path, const PathPlaces& places);
 
 }  // namespace cspace::trajectory

@@ -144,7 +144,6 @@ def test_lines_through_a_singularity_slow_down_or_say_so():
     [
         (lambda r: r.move_linear(np.eye(3), start=START), "goal pose"),
         (lambda r: r.move_linear(np.eye(4), start=START[:3]), "start has shape"),
-        (lambda r: r.move_linear(r.fk(START), start=START, acceleration=8.0), "all poses are the same"),
         (lambda r: r.move_linear(beside(r), start=START), "pass acceleration="),
         (lambda r: r.move_linear(beside(r), start=START, speed=0.0, acceleration=1.0), "speed"),
         (lambda r: r.move_through(np.eye(4), start=START, acceleration=8.0), "poses has shape"),
@@ -158,3 +157,49 @@ def test_lines_through_a_singularity_slow_down_or_say_so():
 def test_what_makes_no_motion_is_named(call, message):
     with pytest.raises(InputError, match=message):
         call(cs.load_robot("ur5e"))
+
+
+def test_motions_to_where_the_arm_is_have_no_length():
+    robot = cs.load_robot("ur5e")
+    T = robot.fk(START)
+    about = {"center": T[:3, 3] + 0.1, "axis": [0, 0, 1], "angle": 0.0}
+    for motion in (
+        robot.move_linear(T, start=START),
+        robot.move_through([T, T], start=START),
+        robot.move_arc(start=START, **about),
+        robot.move_to(START, start=START, acceleration=1.0, jerk=1.0),
+        cs.move(robot, START, START),
+    ):
+        assert motion
+        assert motion.duration == 0.0
+        assert np.array_equal(motion(0.0), START)
+        assert not motion(0.0, 1).any()
+        assert motion.check(robot)
+        assert len(motion.sample(100.0).times) == 1
+    outside = robot.limits.upper + 0.1
+    assert "beyond its limits" in robot.move_linear(robot.fk(outside), start=outside).reason
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda"])
+def test_as_far_as_possible_is_the_part_that_can_be_followed(name):
+    robot = cs.load_robot(name)
+    rng, parts = np.random.default_rng(4), 0
+    for q in robot.random_configuration(6, rng=rng, reach=0.6):
+        goal = robot.fk(q).copy()
+        goal[:3, 3] += rng.uniform(-1.2, 1.2, 3)
+        whole = robot.move_linear(goal, start=q, acceleration=8.0)
+        part = robot.move_linear(goal, start=q, acceleration=8.0, as_far_as_possible=True)
+        if whole:
+            assert not part.stopped_by
+            assert part.duration == whole.duration
+            continue
+        if not part:
+            continue
+        parts += 1
+        assert part.stopped_by == whole.reason
+        assert 0.0 < part.s_end <= whole.s_end
+        assert part.s_end == part.path.length
+        s = np.linspace(0.0, part.s_end, 50)
+        np.testing.assert_allclose(robot.fk(part.path(s)), part.cartesian(s), atol=3e-5)
+        assert part.check(cs.Limits(robot.limits.lower, robot.limits.upper))
+    assert parts >= 3

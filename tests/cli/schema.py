@@ -49,6 +49,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             }
         ],
         "frames": [TEXT],
+        "loops": [TEXT],
         "poses": dict,
         "geometry": (dict, type(None)),
         "freedoms": {
@@ -105,7 +106,12 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "center_of_mass": VECTOR,
         "kinetic_energy": NUMBER,
         "potential_energy": NUMBER,
+        "T_world_base": LIST_OR_NULL,
+        "frame": TEXT_OR_NULL,
+        "operational_inertia": LIST_OR_NULL,
+        "loops": [TEXT],
         "warnings": [TEXT],
+        "written": [TEXT],
     },
     "cspace.simulate/1": {
         "robot": TEXT,
@@ -117,9 +123,11 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "tau": MATRIX,
         "T_world_base": LIST_OR_NULL,
         "energy": VECTOR,
+        "momentum": MATRIX,
         "stopped": NUMBER,
         "ended": bool,
         "reason": TEXT,
+        "loops": [TEXT],
         "written": [TEXT],
     },
     "cspace.traj/1": {
@@ -194,6 +202,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "clearance": NUMBER_OR_NULL,
         "seconds": NUMBER,
         "stats": dict,
+        "duration": NUMBER_OR_NULL,
         "written": [TEXT],
     },
     "cspace.planners/1": {

@@ -320,3 +320,27 @@ def test_values_of_options_without_sense_are_refused(option):
     found = cspace(f"plan planar_2r --from 0 0 --to 1 1 --planner {planner} --option {option}")
     assert found.code == Exit.USAGE
     assert option.split("=")[1] in found.err
+
+
+def test_a_path_in_time_is_written_as_samples(tmp_path):
+    ends = "--from ready --to 1 0.2 0 -1.5 0 1.8 0.8"
+    table, message = tmp_path / "move.csv", tmp_path / "move.yaml"
+    found = cspace(f"plan panda {ends} --trajectory {table} --rate 50 --json")
+    schema.check(found.json, "cspace.plan/1")
+    assert found.json["written"] == [str(table)]
+    motion = cs.trajectory.from_csv(table)
+    assert motion.duration == pytest.approx(found.json["duration"], rel=1e-9)
+    np.testing.assert_allclose(motion(0.0), found.json["path"][0], atol=1e-9)
+    np.testing.assert_allclose(motion(motion.duration), found.json["path"][-1], atol=1e-9)
+    slow = cspace(f"plan panda {ends} --trajectory {message} --acceleration 0.5 --jerk 2")
+    assert slow.code == Exit.DONE
+    assert float(re.search(r"trajectory: ([0-9.]+) s", slow.out)[1]) > 1.5 * motion.duration
+    assert "time_from_start" in message.read_text()
+    for words, fault in (
+        (f"--trajectory {tmp_path / 'move.txt'}", "must be .yaml or .csv"),
+        ("--jerk 2", "--trajectory"),
+        (f"--plot {tmp_path / 'move.gif'}", "picture format"),
+    ):
+        refused = cspace(f"plan panda {ends} {words}")
+        assert refused.code == Exit.USAGE
+        assert fault in refused.err

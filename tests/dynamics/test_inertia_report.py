@@ -151,7 +151,7 @@ def test_joints_that_move_without_inertia_are_named():
     assert spin.inertia_report().singular == ("joint_1",)
     floating = Robot(chain_of(POINT), floating=True)  # one point: only its three translations have energy
     assert "the base" in floating.inertia_report().singular
-    assert "move without inertia" in repr(Robot(chain_of(POINT, None)).inertia_report())
+    assert "joint_1 moves without inertia" in repr(Robot(chain_of(POINT, None)).inertia_report())
 
 
 def test_an_armature_is_an_inertia():

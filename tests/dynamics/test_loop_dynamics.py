@@ -352,6 +352,7 @@ def test_random_trees_with_loops(seed):
         if np.linalg.matrix_rank(K) < len(K):
             pytest.skip("dependent rows")
     qd, tau = rng.normal(size=(2, robot.dof))
+    qd -= np.linalg.pinv(K) @ (K @ qd)  # velocities that keep the loops closed
     k = constraints.bias(q, qd)[np.abs(constraints.jacobian(q)).any(axis=1)]
     n, r = robot.dof, len(K)
     kkt = np.block([[robot.mass_matrix(q), -K.T], [K, np.zeros((r, r))]])
@@ -359,6 +360,41 @@ def test_random_trees_with_loops(seed):
     expected = np.linalg.solve(kkt, np.concatenate([tau - h, -k]))[:n]
     ours = dynamics.constrained_forward_dynamics(constraints, q, qd, tau)
     np.testing.assert_allclose(ours, expected, atol=1e-8 * np.abs(expected).max())
+
+
+@case
+def test_answers_go_into_given_arrays(make):
+    rng = np.random.default_rng(4)
+    constraints, q, driven = make(rng)
+    qd, qdd = motion(constraints, q, driven, rng)
+    rates = dict(zip(driven, rng.normal(size=len(driven)), strict=True))
+    tau = dynamics.constrained_inverse_dynamics(constraints, q, qd, qdd, driven)
+    calls = [
+        lambda **out: dynamics.constrained_forward_dynamics(constraints, q, qd, tau, **out),
+        lambda **out: dynamics.constrained_inverse_dynamics(constraints, q, qd, qdd, driven, **out),
+        lambda **out: dynamics.loop_wrenches(constraints, q, qd, qdd, tau, **out),
+        lambda **out: dynamics.loop_velocities(constraints, q, rates, **out),
+        lambda **out: dynamics.loop_accelerations(constraints, q, qd, rates, **out),
+    ]
+    for call in calls:
+        expected = call()
+        out = np.full_like(expected, np.nan)
+        assert call(out=out) is out
+        np.testing.assert_array_equal(out, expected)
+        with pytest.raises(InputError, match="out has shape"):
+            call(out=np.zeros(1 + expected.size))
+
+
+@case
+def test_velocities_that_tear_loops_apart_are_refused(make):
+    rng = np.random.default_rng(5)
+    constraints, q, driven = make(rng)
+    qd, _ = motion(constraints, q, driven, rng)
+    rest = np.zeros(constraints.robot.dof)
+    dynamics.constrained_forward_dynamics(constraints, q, qd, rest)
+    for size in (1e-3, 1.0, 1e3):
+        with pytest.raises(InputError, match="qd tears a loop apart"):
+            dynamics.constrained_forward_dynamics(constraints, q, qd + size * rng.normal(size=len(qd)), rest)
 
 
 def test_bad_input():

@@ -73,7 +73,9 @@ def start_of(robot, rng, *lead):
 
 def differ(run, other):
     """The largest difference of two simulations, relative to their sizes."""
-    names = ["q", "qd", "tau", "energy"] + (["T_world_base"] if run.T_world_base is not None else [])
+    names = ["q", "qd", "tau", "energy", "momentum"] + (
+        ["T_world_base"] if run.T_world_base is not None else []
+    )
     pairs = [(getattr(run, name), getattr(other, name)) for name in names]
     return max(np.abs(a - b).max() / (1 + np.abs(a).max()) for a, b in pairs)
 
@@ -111,6 +113,8 @@ def test_compiled_steps_are_those_of_the_functions_of_dynamics(method, name, rng
         energy = robot.kinetic_energy(run.q, run.qd, **place)
         energy = energy + robot.potential_energy(run.q, gravity=gravity, **place)
         np.testing.assert_allclose(run.energy, energy, rtol=1e-12)
+        momentum = robot.centroidal_momentum(run.q, run.qd, **place)
+        np.testing.assert_allclose(run.momentum, momentum, rtol=1e-11, atol=1e-11 * np.abs(momentum).max())
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -122,7 +126,7 @@ def test_lanes_are_one_lane(method, name, rng):
     many = robot.simulate(q, qd, control=tau, T_world_base=T, **given)
     for i in range(11):
         one = robot.simulate(q[i], qd[i], control=tau[i], T_world_base=T[i], **given)
-        for part in ("q", "qd", "tau", "energy"):
+        for part in ("q", "qd", "tau", "energy", "momentum"):
             alone, among = getattr(one, part), getattr(many, part)[i]
             np.testing.assert_allclose(among, alone, rtol=1e-12, atol=1e-12 * (1 + np.abs(alone).max()))
 
@@ -135,7 +139,7 @@ def test_any_number_of_threads_gives_the_same_bits(method, rng):
     control = PD(random_q(robot, rng), 2.0, 0.5)
     runs = [robot.simulate(q, qd, control=control, threads=threads, **given) for threads in (1, 2, 3, 0)]
     for other in runs[1:]:
-        for part in ("q", "qd", "tau", "energy", "T_world_base"):
+        for part in ("q", "qd", "tau", "energy", "momentum", "T_world_base"):
             np.testing.assert_array_equal(getattr(other, part), getattr(runs[0], part))
 
 
@@ -154,6 +158,31 @@ def test_rows_step_adaptively_on_their_own(rng):
         np.testing.assert_allclose(many(t)[0][calm], without(t)[0], atol=1e-9)
         alone = robot.simulate(q[3], qd[3], control=tau[3], **given)
         np.testing.assert_allclose(many(t)[1][3], alone(t)[1], rtol=1e-7, atol=1e-7)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_without_dense_steps_the_records_are_the_same(method, rng):
+    robot = branches(rng, floating=True)
+    q, qd, tau, T = start_of(robot, rng, 11)
+    given = {"duration": 0.2, "dt": 0.02, "every": 3, "method": method, "T_world_base": T, "friction": False}
+    run, lean = (robot.simulate(q, qd, control=tau, dense=dense, **given) for dense in (True, False))
+    assert differ(run, lean) == 0.0
+    assert lean._dense is None
+    t = run.times[1]
+    np.testing.assert_allclose(lean(t)[0], run(t)[0], atol=1e-12)
+
+
+def test_adaptive_records_are_most_of_the_memory_without_dense_steps(rng):
+    robot = branches(rng)
+    q, qd, _, _ = start_of(robot, rng, 400)
+    given = {"duration": 0.2, "dt": 1e-3, "method": "adaptive", "dense": False, "friction": False}
+    robot.simulate(q[:8], qd[:8], **given)
+    tracemalloc.start()
+    run = robot.simulate(q, qd, **given)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    parts = (run.q, run.qd, run.tau, run.energy, run.momentum)
+    assert peak < 2.0 * sum(part.nbytes for part in parts)
 
 
 def call_of(control, robot, **world):
@@ -208,7 +237,7 @@ def test_a_long_motion_is_sampled_in_parts(monkeypatch, rng):
 def test_constant_torques_are_those_of_a_function(method, rng):
     robot = branches(rng)
     q, qd, tau, _ = start_of(robot, rng, 4)
-    given = {"duration": 0.03, "dt": 0.01, "method": method, "tolerance": 1e-11}
+    given = {"duration": 0.009, "dt": 0.003, "method": method, "tolerance": 1e-11}
     fixed = robot.simulate(q, qd, control=tau[0], **given)
     called = robot.simulate(q, qd, control=lambda t, q, qd: tau[0], **given)
     assert differ(fixed, called) < 1e-9
@@ -232,7 +261,7 @@ def test_rows_that_end_at_limits_are_the_same_alone(method, rng):
         one = robot.simulate(q[i], [2.0, -1.0], **given)
         assert one.stopped == many.stopped[i]
         shown = many.times <= one.stopped
-        for part in ("q", "qd", "energy"):
+        for part in ("q", "qd", "energy", "momentum"):
             row, alone = getattr(many, part)[i], getattr(one, part)
             assert np.isnan(row[~shown]).all()
             np.testing.assert_allclose(row[shown], alone[: shown.sum()], atol=1e-9)

@@ -14,6 +14,7 @@ from scipy.special import ellipk
 import cspace as cs
 from cspace.dynamics import PD, ComputedTorque
 from cspace.errors import InputError, InputTypeError, UnknownNameError
+from cspace.mechanisms import FourBar
 from cspace.model import Description, Inertial, Joint, Link, Mimic
 from dynamics.bodies import random_body
 from kinematics.robots import arm, random_q, tree
@@ -482,8 +483,9 @@ def test_an_answer_is_one_line_a_table_and_can_be_pickled():
         ),
         ({"control": PD([0, 0, 0], 1, 1)}, InputError, r"q_goal has shape \(3,\)"),
         ({"control": lambda t, q, qd: [1e300, 0]}, InputError, r"at step 0 .* the largest allowed value"),
+        ({"wrenches": {"rod_1": np.zeros((3, 5))}}, InputError, r"'rod_1' .*\(3, 5\)"),
         (
-            {"wrenches": {"rod_1": np.zeros((3, 6))}},
+            {"wrenches": lambda t, q, qd: {"rod_1": np.zeros((3, 6))}},
             InputError,
             r"'rod_1' has shape \(3, 6\), expected \(6,\)",
         ),
@@ -569,3 +571,84 @@ def test_a_placed_robot_moves_as_in_a_turned_world(rng):
         turned = robot.simulate([0.2, 0.5], [0, 1], gravity=T[:3, :3].T @ [0, 0, -G], **given)
         np.testing.assert_allclose(placed.q, turned.q, atol=1e-10)
         assert placed.T_world_base is None
+
+
+def test_a_controller_follows_a_trajectory_and_holds_its_end():
+    robot = cs.load_robot("panda")
+    q = np.array([0, 0, 0, -1.5, 0, 1.5, 0])
+    way = robot.move_to(q + 0.3, start=q)
+    control = ComputedTorque(way, kp=100.0, kd=20.0)
+    run = robot.simulate(q, np.zeros(7), control=control, duration=way.duration + 2.0, dt=1e-3)
+    assert run
+    np.testing.assert_allclose(run.q[-1], q + 0.3, atol=1e-5)
+    told = ComputedTorque(lambda t: (way(t), way(t, 1), way(t, 2)), kp=100.0, kd=20.0)
+    part = robot.simulate(q, np.zeros(7), control=told, duration=0.5 * way.duration, dt=1e-3)
+    np.testing.assert_array_equal(run.q[: len(part) - 1], part.q[:-1])
+
+
+@pytest.mark.parametrize("friction", [0.5, 10.0, 200.0])
+@pytest.mark.parametrize("dt", [1e-3, 1e-2])
+def test_stiff_dry_friction_chooses_the_method_that_takes_it(friction, dt):
+    """Without a method the answer is that of shorter steps; RK4 by name is refused where it would creep."""
+    robot = pendulum(2, friction=friction)
+    given = {"q": [0.0, 0.0], "qd": [0.0, 0.0], "duration": 0.5}
+    run = robot.simulate(**given, dt=dt)
+    exact = robot.simulate(**given, dt=dt, method="adaptive", tolerance=1e-8)
+    np.testing.assert_allclose(run.q, exact.q, atol=0.05 * dt / 1e-3 * 0.02)
+    if run.method == "variational":
+        with pytest.raises(InputError, match=r"creeps: the friction of joint .* use a dt below"):
+            robot.simulate(**given, dt=dt, method="rk4")
+    else:
+        assert robot.simulate(**given, dt=dt, method="rk4")
+
+
+def test_rows_of_torques_wrenches_and_goals_are_rows_of_states(rng):
+    robot = pendulum(2)
+    taus = rng.normal(size=(4, 2))
+    given = {"duration": 0.1, "dt": 0.01}
+    many = robot.simulate([0.1, 0.2], [0, 0], control=taus, **given)
+    pushed = robot.simulate([0.1, 0.2], [0, 0], wrenches={robot.frames[-1]: rng.normal(size=(3, 6))}, **given)
+    goals = robot.simulate([0.1, 0.2], [0, 0], control=PD(rng.normal(size=(5, 2)), 10.0, 1.0), **given)
+    assert (many.q.shape[0], pushed.q.shape[0], goals.q.shape[0]) == (4, 3, 5)
+    for i in range(4):
+        one = robot.simulate([0.1, 0.2], [0, 0], control=taus[i], **given)
+        np.testing.assert_allclose(many.q[i], one.q, atol=1e-12)
+    with pytest.raises(InputError, match="leading axes"):
+        robot.simulate(np.zeros((3, 2)), [0, 0], control=taus, **given)
+
+
+def test_a_robot_with_closed_loops_is_not_simulated_as_a_tree():
+    linkage = FourBar(1.0, 0.3, 0.9, 0.7)
+    q = linkage.assembly_modes({"crank": 0.5}).q[0]
+    with pytest.raises(InputError, match=r"has closed loops \(pin\).*Mechanism"):
+        linkage.robot.simulate(q, np.zeros(3), duration=0.1, dt=0.01)
+
+
+@pytest.mark.parametrize(
+    ("kp", "kd", "word"), [(0.0, 1e6, "kd of joint"), (1e9, 0.0, "kp of joint"), (1e9, 1e6, "kd of joint")]
+)
+@pytest.mark.parametrize("method", ["rk4", "variational"])
+def test_gains_that_are_too_high_for_the_step_are_named(method, kp, kd, word):
+    robot = pendulum(2)
+    run = robot.simulate([0, 0], [1, 0], control=PD([1, 1], kp, kd), duration=5.0, dt=0.01, method=method)
+    assert not run
+    assert word in run.reason
+    assert "use at most" in run.reason
+
+
+@pytest.mark.parametrize("part", ["damping", "friction", "armature"])
+def test_negative_resistances_are_refused(part):
+    with pytest.raises(InputError, match=f"{part} of joint 'j' is -1; it must not be negative"):
+        Joint("j", "continuous", "a", "b", **{part: -1.0})
+
+
+def test_a_negative_inertia_is_named_as_such():
+    robot = cs.Robot(
+        Description(
+            "wrong",
+            (Link("base"), Link("arm", Inertial(1.0, (0, 0, 0), np.diag([-1.0, -1.0, 0.1])))),
+            (Joint("j", "continuous", "base", "arm", axis=(0, 1, 0)),),
+        )
+    )
+    with pytest.raises(InputError, match="not positive: joint 'j' moves a negative inertia"):
+        robot.forward_dynamics([0], [0], [1])

@@ -5,6 +5,7 @@ import pytest
 
 from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.kinematics import LoopConstraints, close_loops, find_assembly_modes, follow_loops, loop_freedom
+from cspace.mechanisms import FourBar
 from cspace.model import Loop, mobility
 from cspace.robot import Robot
 from kinematics.loops import bennett, closing_loop, random_tree
@@ -107,3 +108,19 @@ def test_bad_input():
         follow_loops(constraints, {"pin_0": [0.8], "pin_1": [2.0]}, [0.8, 2, 0])
     with pytest.raises(InputError, match="one number each"):
         find_assembly_modes(constraints, {"pin_0": [0.1, 0.2]})
+
+
+@pytest.mark.parametrize("turns", [3.0, 40.0])
+def test_long_ways_between_two_values_are_no_dead_points(turns):
+    """A crank that may turn for ever arrives however far the next value is; beyond any computation the time
+    limit ends it."""
+    linkage = FourBar(1.0, 0.3, 0.9, 0.7)
+    start = linkage.assembly_modes({"crank": 0.5}).q[0]
+    motion = linkage.follow({"crank": [0.5, 0.5 + 2 * np.pi * turns]}, start)
+    assert motion
+    np.testing.assert_allclose(np.remainder(motion.q[-1] - start + 1, 2 * np.pi), 1, atol=1e-6)
+    for far in (1e7, 1e12):
+        endless = linkage.follow({"crank": [0.5, far]}, start, time_limit=0.05)
+        assert not endless
+        assert endless.reason == "time limit"
+        assert endless.stop[0] > 0.5

@@ -291,3 +291,33 @@ def test_misuse_is_named():
     ):
         with pytest.raises(error, match=text):
             state_to_state([0.0, 0.0], [1.0, 1.0], **limits | change)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_many_axes_at_once_move_as_one_alone(kind):
+    # Motions in phase are solved one axis at a time, others in lanes.
+    rng = np.random.default_rng(21)
+    for _ in range(20):
+        problem = random_problem(rng, 60, kind)
+        names = [name for name in problem if name not in MAGNITUDES]
+        rows = {name: np.stack([problem[name]] * 4)[:, :1] * rng.uniform(0, 1, (4, 1)) for name in names}
+        limits = {name: problem[name][:1] for name in MAGNITUDES}
+        rows |= {name: problem[name][:1] + np.zeros((4, 1)) for name in names if name.startswith("goal_")}
+        lanes = state_to_state(**rows, **limits)
+        alone = state_to_state(**rows, **limits, synchronize="phase")
+        np.testing.assert_allclose(lanes.durations, alone.durations, rtol=1e-9, atol=1e-12)
+        for a, b in zip(lanes, alone, strict=True):
+            t = np.linspace(0.0, min(a.duration, b.duration), 50)
+            np.testing.assert_allclose(a(t), b(t), atol=1e-8)
+
+
+def test_single_calls_are_rows_of_batches():
+    rng = np.random.default_rng(22)
+    for kind in KINDS:
+        for _ in range(50):
+            problem = random_problem(rng, 7, kind)
+            one = state_to_state(**problem)
+            listed = state_to_state(**{name: value.tolist() for name, value in problem.items()})
+            assert one.duration == listed.duration
+            assert np.array_equal(one.coefficients, listed.coefficients)
+            assert np.array_equal(one.joint_knots, listed.joint_knots)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
+from cspace.errors import InputError
 from cspace.trajectory import Path
 from trajectory.path_cases import MAKERS, excess, line, random_waypoints
 
@@ -261,7 +262,7 @@ def test_torques_keep_their_limits_at_samples():
 def test_a_torque_below_gravity_is_answered_with_the_joint_and_the_place():
     robot = cs.load_robot("panda")
     path = cs.spline([robot.q_home if hasattr(robot, "q_home") else np.zeros(7), np.full(7, -0.5)])
-    refused = cs.time_parametrize(path, robot, torque=2.0)
+    refused = cs.time_parametrize(path, robot, torque=2.0, positions=False)
     assert not refused
     assert "against gravity" in refused.reason
     assert "panda_joint" in refused.reason
@@ -307,3 +308,64 @@ def test_bad_input_is_named(options, message):
         options["robot"] = cs.load_robot(options["robot"])
     with pytest.raises(cs.CspaceError, match=message):
         cs.time_parametrize(**options)
+
+
+def test_dry_friction_keeps_torque_limits_where_joints_reverse():
+    robot = cs.load_robot("puma560")
+    limit, (low, high) = 0.8 * robot.limits.effort, robot.limits.range
+    rng, reversals = np.random.default_rng(5), 0
+    for _ in range(30):
+        q = 0.5 * (low + high) + 0.3 * (high - low) * rng.uniform(-1, 1, (rng.integers(3, 7), 6))
+        timed = cs.time_parametrize(cs.spline(q), robot, velocity=3.0, acceleration=20.0, torque=limit)
+        if not timed:
+            continue
+        shares = np.linspace(0.0, 1.0, 41)
+        t = (timed.knots[:-1] + shares[:, None] * np.diff(timed.knots)).ravel()
+        q, qd, qdd = (timed(t, order) for order in range(3))
+        reversals += int((np.diff(np.sign(timed(timed.knots, 1)), axis=0) != 0.0).sum())
+        assert (np.abs(robot.inverse_dynamics(q, qd, qdd)) <= limit * (1.0 + 1e-4)).all()
+    assert reversals > 200
+
+
+def test_a_path_beyond_a_limit_of_position_is_answered_with_the_joint_and_the_place():
+    rng = np.random.default_rng(3)
+    for _ in range(60):
+        path = cs.spline(rng.uniform(-1, 1, (5, 3)))
+        dense = path(np.linspace(0.0, path.length, 20001))
+        bound = rng.uniform(0.7, 1.3, 3)
+        limits = cs.Limits(-bound, bound, [1, 1, 1], [2, 2, 2])
+        timed = cs.time_parametrize(path, limits, grid=50)
+        within = (np.abs(dense) <= bound + 1e-7).all()
+        assert bool(timed) == within
+        assert cs.time_parametrize(path, limits, grid=50, positions=False)
+        if not timed:
+            j = int(timed.reason.split()[1])
+            assert abs(path(timed.place)[j]) > bound[j]
+            beyond = np.flatnonzero((np.abs(dense) > bound).any(axis=1))
+            assert timed.place <= path.length * (beyond[-1] + 1) / 20000
+
+
+def test_the_feed_is_held_but_where_a_limit_is_named():
+    robot = cs.load_robot("ur5e")
+    rng = np.random.default_rng(31)
+    for feed in (0.05, 0.2, 0.8, 5.0):
+        q = np.array([0.3, -1.2, 1.5, -0.8, -1.3, 0.2]) + rng.uniform(-0.4, 0.4, (4, 6))
+        timed = cs.time_parametrize(cs.spline(q), robot, acceleration=6.0, feed=feed)
+        t = np.linspace(0.0, timed.duration, 3000)
+        twist = np.einsum("nij,nj->ni", robot.jacobian(timed(t)), timed(t, 1))
+        speed = np.linalg.norm(twist[:, :3], axis=1)
+        assert speed.max() <= feed * (1.0 + 1e-6)
+        slow = np.zeros(len(t), dtype=bool)
+        for each in timed.below_feed():
+            inside = (t >= each.begin) & (t <= each.end)
+            slow |= inside
+            assert each.limit in ("velocity", "acceleration")
+            assert each.joint in robot.joint_names
+            assert each.slowest <= speed[inside].min(initial=feed) + 1e-3 * feed
+        assert (speed[~slow] >= 0.985 * feed).all()
+        assert slow[0]
+        assert slow[-1]
+    with pytest.raises(InputError, match="without a feed"):
+        cs.time_parametrize(cs.spline(q), robot, acceleration=6.0).below_feed()
+    with pytest.raises(InputError, match="more than speed"):
+        cs.time_parametrize(cs.spline(q), robot, acceleration=6.0, feed=1.0, speed=0.5)

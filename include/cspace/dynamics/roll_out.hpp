@@ -4,10 +4,12 @@
 // anywhere: its results do not depend on where.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "cspace/dynamics/controllers.hpp"
 #include "cspace/dynamics/explicit_steps.hpp"
+#include "cspace/dynamics/momentum.hpp"
 #include "cspace/dynamics/variational_step.hpp"
 
 namespace cspace::dynamics {
@@ -87,9 +89,17 @@ void update_torques(const RollOut& task, const RollOutPack<V>& pack, long long k
         memory.tau[j] = select(pack.runs, memory.fresh[j], memory.tau[j]);
 }
 
-// The energy of a state. memory: its momenta and slopes are written over.
+// The energy of a state, and its momentum: linear, and angular about the centre of mass, in axes of the
+// world.
 template <class V>
-V find_energy(const RollOut& task, const State<V>& state, RollOutMemory<V>& memory) {
+struct Balance {
+    V energy;
+    V momentum[6];
+};
+
+// memory: its momenta and slopes are written over.
+template <class V>
+Balance<V> find_balance(const RollOut& task, const State<V>& state, RollOutMemory<V>& memory) {
     const Mechanics& mechanics = task.mechanics;
     const int first = mechanics.first();
     const Mat3<V>& R = state.T.R;
@@ -105,7 +115,14 @@ V find_energy(const RollOut& task, const State<V>& state, RollOutMemory<V>& memo
     V twice = dot(base.v, whole.momentum.f) + dot(base.w, whole.momentum.n);
     for (int j = 0; j < mechanics.bodies.n_coordinates; ++j)
         twice = twice + state.qd[first + j] * momentum[j];
-    return 0.5 * twice - dot(gravity, R * whole.first + mechanics.bodies.mass * state.T.t);
+    Balance<V> balance;
+    balance.energy = 0.5 * twice - dot(gravity, R * whole.first + mechanics.bodies.mass * state.T.t);
+    const Vec3<V> center = (1.0 / mechanics.bodies.mass) * whole.first;
+    const Wrench<V> central = momentum_about(whole.momentum, center);
+    const Vec3<V> l = R * central.f, k = R * central.n;
+    const V both[6] = {l.x, l.y, l.z, k.x, k.y, k.z};
+    std::copy(both, both + 6, balance.momentum);
+    return balance;
 }
 
 // Records the states of a pack; what it writes of rows that have ended counts for nothing.
@@ -118,11 +135,12 @@ void write_record(const RollOut& task, const RollOutPack<V>& pack, std::size_t r
         store_rows(values, width, array + at, to.count * size, pack.count);
     };
     const int n = task.mechanics.bodies.n_coordinates, dof = task.mechanics.dof();
-    const V energy = find_energy(task, memory.state, memory);
+    const Balance<V> balance = find_balance(task, memory.state, memory);
     write(memory.state.q, n, to.q);
     write(memory.state.qd, dof, to.qd);
     write(memory.tau, dof, to.tau);
-    write(&energy, 1, to.energy);
+    write(&balance.energy, 1, to.energy);
+    write(balance.momentum, 6, to.momentum);
     if (!to.T) return;
     V matrix[16];
     kinematics::write_matrix(memory.state.T, matrix);
@@ -326,7 +344,7 @@ void write_between(const RollOut& task, const RollOutPack<V>& pack, mask_of<V> t
         if (!is_any) return;
         interpolate(task, theta, dx, dv, memory);
         const State<V>& state = memory.stages.inner;
-        const V energy = find_energy(task, state, memory);
+        const Balance<V> balance = find_balance(task, state, memory);
         V matrix[16];
         kinematics::write_matrix(state.T, matrix);
         const Records& to = task.records;
@@ -342,7 +360,8 @@ void write_between(const RollOut& task, const RollOutPack<V>& pack, mask_of<V> t
             put(state.q, task.mechanics.bodies.n_coordinates, to.q);
             put(state.qd, task.mechanics.dof(), to.qd);
             put(memory.tau, task.mechanics.dof(), to.tau);
-            put(&energy, 1, to.energy);
+            put(&balance.energy, 1, to.energy);
+            put(balance.momentum, 6, to.momentum);
             if (to.T) put(matrix, 16, to.T);
         }
     }
@@ -390,7 +409,8 @@ bool roll_adaptive_steps(const RollOut& task, std::size_t begin, std::size_t i, 
         const mask_of<V> takes = active && (is_good || h <= shortest_step * (time + dt));
         if (any(takes)) {
             find_dense(task.mechanics, h, memory.stages, dx, dv);
-            keep_pieces(task, pack, takes && is_good, time, h, dx, dv, memory.state, pieces, begin);
+            if (task.keeps_pieces)
+                keep_pieces(task, pack, takes && is_good, time, h, dx, dv, memory.state, pieces, begin);
             write_between(task, pack, takes && is_good, time, h, time_after, k_end, dx, dv, memory);
             take_step(task, pack, takes, is_good, time, time_after, memory);
         }

@@ -55,10 +55,10 @@ enum class Method { runge_kutta, variational, adaptive };
 // off by a time limit.
 enum Status : int { running, ended, at_limit, broken, out_of_time };
 
-// The recorded states of each row: q (rows, count, n), qd, tau (rows, count, dof), energy (rows, count), and
-// the poses of a floating base (rows, count, 4, 4), or null.
+// The recorded states of each row: q (rows, count, n), qd, tau (rows, count, dof), energy (rows, count),
+// centroidal momentum (rows, count, 6), and the poses of a floating base (rows, count, 4, 4), or null.
 struct Records {
-    double *q, *qd, *tau, *energy, *T;
+    double *q, *qd, *tau, *energy, *momentum, *T;
     std::size_t count;
 };
 
@@ -77,6 +77,7 @@ struct RollOut {
     Method method;
     double duration, dt, tolerance;
     long long steps, every;       // of dt, the last up to the duration; every so many states are recorded
+    bool keeps_pieces;            // of the adaptive method
     bool is_held;                 // what acts is held over each step, so that no adaptive one is longer
     const double *lower, *upper;  // where a motion ends (n,), or null
     double *q, *qd, *T;           // the state of each row

@@ -11,127 +11,172 @@ namespace cspace::trajectory {
 
 inline constexpr double never = std::numeric_limits<double>::infinity();
 
+// What is asked of an axis: to change its state and to be displaced by P meanwhile.
+template <class V>
+struct AxisTaskOf {
+    VelocityChangeOf<V> up, down;  // the change and its mirror image
+    V P;
+    DomainOf<V> domain;
+};
+using AxisTask = AxisTaskOf<double>;
+
+}  // namespace cspace::trajectory
+
+namespace cspace::trajectory::inline CSPACE_ISA {
+
 namespace crossing {
 
 inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
 inline constexpr int most_steps = 200;  // bisection alone needs 64
 
-// The time between low and high at which f, which is below zero at low and not at high, is zero: Halley's
-// method in a bracket. f(T) returns value, slope and bend.
-template <class F>
-double find_root(double low, double high, const F& f) {
-    double x = high;
-    for (int i = 0; i < most_steps; ++i) {
-        const auto [value, slope, bend] = f(x);
-        if (value == 0) return x;
-        (value > 0 ? high : low) = x;
-        const double halley = 2 * slope * slope - value * bend;
-        double next = x - (halley > 0 ? 2 * value * slope / halley : value / slope);
-        if (!(next > low && next < high)) {
-            // A step that leaves the bracket by rounding alone has arrived.
-            if (std::fabs(next - x) <= 2 * epsilon * x) return x;
-            next = 0.5 * (low + high);
-        }
-        if (std::fabs(next - x) <= 2 * epsilon * x || high - low <= 2 * epsilon * high) return next;
-        x = next;
-    }
-    return high;
-}
-
+template <class V>
 struct Value {
-    double value, slope, bend;
+    V value, slope, bend;
 };
 
+// The time between low and high at which f, which is below zero at low and not at high, is zero: Halley's
+// method in a bracket, where `asked`. f(T) returns value, slope and bend.
+template <class V, class F>
+CSPACE_INLINE V find_root(V low, V high, mask_of<V> asked, const F& f) {
+    V x = high;
+    auto open = asked;
+    for (int i = 0; i < most_steps; ++i) {
+        const Value<V> e = f(x);
+        const auto above = e.value > 0, met = e.value == 0;
+        high = select(open && above, x, high);
+        low = select(open && !above, x, low);
+        const V halley = 2 * e.slope * e.slope - e.value * e.bend;
+        const V step = select(halley > 0, 2 * e.value * e.slope / halley, e.value / e.slope);
+        V next = x - step;
+        const auto inside = next > low && next < high;
+        // A step that leaves the bracket by rounding alone has arrived.
+        const auto stays = met || (!inside && abs(next - x) <= 2 * epsilon * x);
+        next = select(inside || stays, next, 0.5 * (low + high));
+        const auto arrived = abs(next - x) <= 2 * epsilon * x || high - low <= 2 * epsilon * high;
+        x = select(open && !stays, next, x);
+        open = open && !stays && !arrived;
+        if (!any(open)) return x;
+    }
+    return select(open, high, x);
+}
+
 // When P_max(T) = P between low, where it is less, and high, where it is not.
-inline double find_crossing(const VelocityChange& q, double P, double low, double high) {
-    return find_root(low, high, [&](double T) {
-        const Reach r = find_farthest(q, T);
-        return Value{r.displacement - P, r.slope, r.bend};
+template <class V>
+CSPACE_INLINE V find_crossing(const VelocityChangeOf<V>& q, V P, V low, V high, mask_of<V> asked) {
+    return find_root<V>(low, high, asked, [&](V T) {
+        const ReachOf<V> r = find_farthest(q, T);
+        return Value<V>{r.displacement - P, r.slope, r.bend};
     });
 }
 
 // The end of the concave head of P_max, where its second derivative becomes positive; it is before `low`
 // where P_max is convex there.
-inline double end_of_head(const VelocityChange& q) {
-    const double J = q.limits.jerk, a0 = q.a0, af = q.af, dv = q.vf - q.v0, sqrt3 = std::sqrt(3.0);
-    const double kappa = J * dv + (a0 * a0 - af * af) / 2, w = std::sqrt(std::fabs(kappa) / sqrt3);
-    const auto time_of = [&](double width) { return (2 * width - a0 + af) / J; };
-    const double p = (w + kappa / w) / 2, l = p - w;
-    if (!(w > 0) || (p <= q.limits.a_max && l >= q.limits.a_min)) return time_of(w);
+template <class V>
+CSPACE_INLINE V end_of_head(const VelocityChangeOf<V>& q) {
+    const V J = q.limits.jerk, a0 = q.a0, af = q.af, dv = q.vf - q.v0;
+    const V kappa = J * dv + (a0 * a0 - af * af) / 2, size = abs(kappa), w = sqrt(size / std::sqrt(3.0));
+    const auto time_of = [&](V width) { return (2 * width - a0 + af) / J; };
+    const V p = (w + kappa / w) / 2, l = p - w;
+    const auto is_free = !(w > 0) || (p <= q.limits.a_max && l >= q.limits.a_min);
     // p is held at a_max up to where l = p / 4 or p is no longer held; likewise l.
-    const double held = kappa > 0 ? q.limits.a_max : -q.limits.a_min, size = std::fabs(kappa);
-    const double until = (held * (9.0 / 16 * held + af - a0) + size) / (J * held);
-    const double beyond = held * held - size;  // below zero: it is held for ever
-    return beyond < 0 ? until : std::min(until, time_of(held - std::sqrt(beyond)));
+    const V held = select(kappa > 0, q.limits.a_max, -q.limits.a_min);
+    const V until = (held * (9.0 / 16 * held + af - a0) + size) / (J * held);
+    const V beyond = held * held - size;  // below zero: it is held for ever
+    const V while_held = select(beyond < 0, until, min(until, time_of(held - reach::root(beyond))));
+    return select(is_free, time_of(w), while_held);
 }
 
 // A time in low … high, within the head, at which P_max ≥ P, if there is one; else where it is largest.
-inline double top_of_head(const VelocityChange& q, double P, double low, double high) {
-    double x = high;
-    for (int i = 0; i < most_steps && high - low > 2 * epsilon * high; ++i) {
-        const Reach r = find_farthest(q, x);
-        if (r.displacement >= P || (i == 0 && r.slope >= 0)) return x;
-        (r.slope > 0 ? low : high) = x;
-        const double next = x - r.slope / r.bend;
-        x = next > low && next < high ? next : 0.5 * (low + high);
+template <class V>
+CSPACE_INLINE V top_of_head(const VelocityChangeOf<V>& q, V P, V low, V high, mask_of<V> asked) {
+    V x = high;
+    auto open = asked;
+    for (int i = 0; i < most_steps; ++i) {
+        open = open && high - low > 2 * epsilon * high;
+        if (!any(open)) break;
+        const ReachOf<V> r = find_farthest(q, x);
+        const auto rises = r.slope > 0;
+        open = open && r.displacement < P;
+        if (i == 0) open = open && r.slope < 0;
+        low = select(open && rises, x, low);
+        high = select(open && !rises, x, high);
+        const V next = x - r.slope / r.bend;
+        x = select(open, select(next > low && next < high, next, 0.5 * (low + high)), x);
     }
     return x;
 }
 
 }  // namespace crossing
 
-// An axis that is to change its state and to be displaced by P meanwhile.
-struct AxisTask {
-    VelocityChange up, down;  // the change and its mirror image
-    double P;
-    Domain domain;
-};
-
-inline AxisTask make_axis_task(const VelocityChange& q, double P) {
+template <class V>
+CSPACE_INLINE AxisTaskOf<V> make_axis_task(const VelocityChangeOf<V>& q, V P) {
     return {q, mirror_change(q), P, find_domain(q)};
 }
 
 // What rounding may leave of a displacement.
-inline double displacement_rounding(const AxisTask& x, double T) {
+template <class V>
+CSPACE_INLINE V displacement_rounding(const AxisTaskOf<V>& x, V T) {
     constexpr double roundings = 64 * std::numeric_limits<double>::epsilon();
-    const VelocityChange& q = x.up;
-    const double swing = q.limits.has_jerk()
-                             ? std::min(q.limits.jerk * T * T, std::max(q.limits.a_max, -q.limits.a_min) * T)
-                             : std::max(q.limits.a_max, -q.limits.a_min) * T;
-    const double fastest =
-        std::min(std::fabs(q.v0) + std::fabs(q.vf) + swing, std::max(q.limits.v_max, -q.limits.v_min));
-    return roundings * (std::fabs(x.P) + T * fastest);
+    const VelocityChangeOf<V>& q = x.up;
+    const V by_acceleration = max(q.limits.a_max, -q.limits.a_min) * T, by_jerk = q.limits.jerk * T * T;
+    // An infinite acceleration times T = 0 is NaN, which min leaves out.
+    const V swing = select(q.limits.jerk < never, min(by_acceleration, by_jerk), by_acceleration);
+    const V fastest = min(abs(q.v0) + abs(q.vf) + swing, max(q.limits.v_max, -q.limits.v_min));
+    return roundings * (abs(x.P) + T * fastest);
 }
 
-// The first time from A to B at which P_max(T) ≥ P, where P_max(A) < P and A … B lies in the domain. slack:
-// by how much P_max may fall short of P at the end of a part of the domain, and where it turns back.
-inline double first_reached(const VelocityChange& q, double P, double A, double B, double slack) {
+// Where `asked`, the first time from A to B at which P_max(T) ≥ P, where P_max(A) < P and A … B lies in the
+// domain. slack: by how much P_max may fall short of P at the end of a part of the domain, and where it turns
+// back.
+template <class V>
+inline V first_reached(const VelocityChangeOf<V>& q, V P, V A, V B, V slack, mask_of<V> asked) {
     using namespace crossing;
-    if (q.limits.has_jerk()) {
-        if (const Reach r = find_farthest(q, A); r.bend < 0) {
-            const double end = std::min(std::max(end_of_head(q), A), B), top = top_of_head(q, P, A, end);
-            const double most = find_farthest(q, top).displacement;
-            if (most >= P) return find_crossing(q, P, A, top);
-            if (most >= P - slack) return top;
-            A = end;
-            if (A >= B) return never;
-        }
+    V found = fill<V>(never), low = A, high = B;
+    auto open = asked, crosses = open && !open;
+    // At the end of the head or of the part: a crossing before it, or within the slack.
+    const auto decide = [&](mask_of<V> here, V end) {
+        const V most = find_farthest(q, end).displacement;
+        const auto reached = here && most >= P, nearly = here && !reached && most >= P - slack;
+        high = select(reached, end, high);
+        found = select(nearly, end, found);
+        crosses = crosses || reached;
+        open = open && !reached && !nearly;
+    };
+    const ReachOf<V> first = find_farthest(q, A);
+    const auto head = open && first.bend < 0;
+    if (any(head)) {
+        const V end = min(max(end_of_head(q), A), B);
+        decide(head, top_of_head(q, P, A, end, head));
+        A = select(head && open, end, A);
+        low = select(open, A, low);
+        open = open && A < B;
     }
-    if (B < never) {
-        const double most = find_farthest(q, B).displacement;
-        return most >= P ? find_crossing(q, P, A, B) : most >= P - slack ? B : never;
+    const auto ends = open && B < never;
+    if (any(ends)) {
+        decide(ends, B);
+        open = open && !ends;
     }
-    if (q.limits.v_max < never) {
-        const SevenPhases touch = reach::touch_cruise(q);
-        const double on = touch.duration();
-        if (on <= A) return A + (P - find_farthest(q, A).displacement) / q.limits.v_max;
-        const double at = displace_axis(q, touch);
-        return P >= at ? on + (P - at) / q.limits.v_max : find_crossing(q, P, A, on);
+    const auto straight = open && q.limits.v_max < never;
+    if (any(straight)) {
+        const SevenPhasesOf<V> touch = reach::touch_cruise(q);
+        const V on = duration_of(touch), at = displace_axis(q, touch), v = q.limits.v_max;
+        const auto passed = straight && on <= A, later = straight && !passed && P >= at;
+        if (any(passed)) found = select(passed, A + (P - find_farthest(q, A).displacement) / v, found);
+        found = select(later, on + (P - at) / v, found);
+        const auto before = straight && !passed && !later;
+        high = select(before, on, high);
+        crosses = crosses || before;
+        open = open && !straight;
     }
-    double far = 2 * A;
-    if (!(far > 0)) far = 1;
-    while (find_farthest(q, far).displacement < P) far *= 2;
-    return find_crossing(q, P, A, far);
+    if (any(open)) {
+        V far = select(A > 0, 2 * A, fill<V>(1.0));
+        for (auto shorter = open; any(shorter); far = select(shorter, 2 * far, far))
+            shorter = shorter && find_farthest(q, far).displacement < P;
+        high = select(open, far, high);
+        crosses = crosses || open;
+    }
+    if (any(crosses)) found = select(crosses, find_crossing<V>(q, P, low, high, crosses), found);
+    return found;
 }
 
 // The two extreme motions for a time.
@@ -140,41 +185,77 @@ struct ExtremeMotions {
     Reach up, down;
 };
 
-// The first time from A to B, in the domain, in which P can be attained; the extreme motions for A.
-inline double next_in_part(const AxisTask& x, double A, double B, ExtremeMotions& at) {
-    at = {A, find_farthest(x.up, A), find_farthest(x.down, A)};
-    const double up = at.up.displacement, down = -at.down.displacement;
-    const double slack = displacement_rounding(x, A);
-    if (x.P > up + slack) return first_reached(x.up, x.P, A, B, slack);
-    if (x.P < down - slack) return first_reached(x.down, -x.P, A, B, slack);
-    return A;
-}
-
-// Likewise from the beginning of a part of the domain on, where the axis is displaced by P0.
-inline double first_in_part(const AxisTask& x, double A, double B, double P0) {
-    const double slack = displacement_rounding(x, A);
-    if (x.P > P0 + slack) return first_reached(x.up, x.P, A, B, slack);
-    if (x.P < P0 - slack) return first_reached(x.down, -x.P, A, B, slack);
-    return A;
+// Where `asked`, the first time from A to B, a part of the domain, in which P can be attained; at A the axis
+// is displaced by up at most and by down at least.
+template <class V>
+CSPACE_INLINE V first_in_part(const AxisTaskOf<V>& x, V A, V B, V down, V up, mask_of<V> asked) {
+    const V slack = displacement_rounding(x, A);
+    const auto rises = x.P > up + slack, moves = asked && (rises || x.P < down - slack);
+    if (!any(moves)) return A;
+    const VelocityChangeOf<V> q = select_change<V>(rises, x.up, x.down);
+    return select(moves, first_reached<V>(q, select(rises, x.P, -x.P), A, B, slack, moves), A);
 }
 
 // The shortest time.
-inline double minimum_time(const AxisTask& x) {
-    const Domain& d = x.domain;
-    const double T = first_in_part(x, d.first, d.has_gap ? d.gap_begin : never, d.displacement);
-    return T < never ? T : first_in_part(x, d.gap_end, never, d.displacement_after_gap);
+template <class V>
+CSPACE_INLINE V minimum_time(const AxisTaskOf<V>& x) {
+    const DomainOf<V>& d = x.domain;
+    const V P0 = d.displacement, P1 = d.displacement_after_gap;
+    const auto all_axes = P0 == P0 || P0 != P0;
+    const V T = first_in_part<V>(x, d.first, d.gap_begin, P0, P0, all_axes);
+    const auto later = !(T < never) && d.has_gap;
+    if (!any(later)) return T;
+    return select(later, first_in_part<V>(x, d.gap_end, fill<V>(never), P1, P1, later), T);
 }
 
 // The next time not before T in which P can be attained; the extreme motions for T, if they were needed.
 inline double next_time(const AxisTask& x, double T, ExtremeMotions& at) {
     const Domain& d = x.domain;
     if (T <= d.first) return minimum_time(x);
+    const auto next_in_part = [&](double B) {
+        at = {T, find_farthest(x.up, T), find_farthest(x.down, T)};
+        return first_in_part(x, T, B, -at.down.displacement, at.up.displacement, true);
+    };
     if (d.has_gap && T <= d.gap_begin) {
-        const double found = next_in_part(x, T, d.gap_begin, at);
+        const double found = next_in_part(d.gap_begin);
         if (found < never) return found;
     }
-    if (d.has_gap && T <= d.gap_end) return first_in_part(x, d.gap_end, never, d.displacement_after_gap);
-    return next_in_part(x, T, never, at);
+    const double P1 = d.displacement_after_gap;
+    if (d.has_gap && T <= d.gap_end) return first_in_part(x, d.gap_end, never, P1, P1, true);
+    return next_in_part(never);
+}
+
+// How an axis moves that attains P in T: by the combination θ up + (1 − θ) down of the two extreme motions,
+// which keeps all limits because they are convex.
+template <class V>
+struct CombinationOf {
+    V theta;
+    V up[7], down[7];  // the times of the phases of both
+};
+using Combination = CombinationOf<double>;
+
+template <class V>
+CSPACE_INLINE CombinationOf<V> combine_motions(const AxisTaskOf<V>& x, const ReachOf<V>& up,
+                                               const ReachOf<V>& down) {
+    const V width = up.displacement + down.displacement, one = fill<V>(1.0);
+    const V share = min(reach::not_negative((x.P + down.displacement) / width), one);
+    CombinationOf<V> made;
+    made.theta = select(width > 0, share, one);
+    for (int i = 0; i < 7; ++i) {
+        made.up[i] = up.phases.t[i];
+        made.down[i] = down.phases.t[i];
+    }
+    return made;
+}
+
+// The motion in T, and where it is possible: elsewhere T is outside of the domain, or P of the interval.
+template <class V>
+inline mask_of<V> attain_in(const AxisTaskOf<V>& x, V T, CombinationOf<V>& made) {
+    const ReachOf<V> up = find_farthest(x.up, T), down = find_farthest(x.down, T);
+    const V slack = displacement_rounding(x, T);
+    made = combine_motions(x, up, down);
+    return T > x.domain.first && is_in_domain(x.domain, T) && x.P <= up.displacement + slack &&
+           x.P >= -down.displacement - slack;
 }
 
 namespace crossing {
@@ -193,11 +274,21 @@ struct Walk {
         }
     }
     Phase at(double t) const {
-        const Phase p = f.phase(i, a0, jerk);
+        const Phase p = phase_of(f, i, a0, jerk);
         const double j = std::isfinite(p.j) ? p.j : 0;
         return {end - t, sign * (p.a + j * (t - begin)), sign * j};
     }
 };
+
+// The phases of an extreme motion from their times. Peaks differ from their limits by rounding alone.
+inline SevenPhases restore_phases(const VelocityChange& q, const double* t) {
+    const AxisLimits& l = q.limits;
+    SevenPhases f;
+    std::copy_n(t, 7, f.t);
+    f.peak = l.has_jerk() ? std::min(q.a0 + l.jerk * t[0], std::max(l.a_max, q.a0)) : l.a_max;
+    f.trough = l.has_jerk() ? std::max(q.af - l.jerk * t[6], std::min(l.a_min, q.af)) : l.a_min;
+    return f;
+}
 
 }  // namespace crossing
 
@@ -207,27 +298,22 @@ inline bool is_still(const AxisTask& x) {
     return x.P == 0 && q.v0 == 0 && q.vf == 0 && q.a0 == 0 && q.af == 0;
 }
 
-// The motion that attains P in T: the combination θ up + (1 − θ) down of the two extreme motions, which keeps
-// all limits because they are convex. Appends its phases. known: the extreme motions, if they are for T.
-inline void append_motion(const AxisTask& x, double T, const ExtremeMotions& known, Phases& out) {
+// Appends the phases of a motion of T seconds.
+inline void append_motion(const AxisTask& x, double T, const Combination& combination, Phases& out) {
     using namespace crossing;
     if (is_still(x)) return out.append({T, 0, 0});
-    const bool is_known = known.T == T;
-    const Reach up = is_known ? known.up : find_farthest(x.up, T);
-    const Reach down = is_known ? known.down : find_farthest(x.down, T);
-    const double width = up.displacement + down.displacement;
-    const double theta = width > 0 ? std::clamp((x.P + down.displacement) / width, 0.0, 1.0) : 1.0;
-    const double jerk = x.up.limits.jerk;
-    Walk a{up.phases, x.up.a0, jerk, 1}, b{down.phases, x.down.a0, jerk, -1};
+    const SevenPhases up = restore_phases(x.up, combination.up),
+                      down = restore_phases(x.down, combination.down);
+    const double jerk = x.up.limits.jerk, theta = combination.theta, other = 1 - theta;
+    Walk a{up, x.up.a0, jerk, 1}, b{down, x.down.a0, jerk, -1};
     for (double t = 0; t < T;) {
         a.advance_to(t);
         b.advance_to(t);
         const Phase f = a.at(t), g = b.at(t);
         const double next = std::min(std::min(a.i == 6 ? T : a.end, b.i == 6 ? T : b.end), T);
-        const double other = 1 - theta;
         out.append({next - t, theta * f.a + other * g.a, theta * f.j + other * g.j});
         t = next;
     }
 }
 
-}  // namespace cspace::trajectory
+}  // namespace cspace::trajectory::inline CSPACE_ISA

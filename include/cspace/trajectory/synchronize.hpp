@@ -28,13 +28,19 @@ struct Axis {
     ExtremeMotions last{};  // those for the duration that was asked last
 };
 
-inline void set_axis(Axis& axis, const AxisState& start, const AxisState& goal, const AxisLimits& limits) {
+// All but the shortest time.
+inline void set_task(Axis& axis, const AxisState& start, const AxisState& goal, const AxisLimits& limits) {
     axis.phases.count = 0;
     axis.last.T = -1;
     const AxisState within = append_brake({0, start.v, start.a}, limits, axis.phases);
     axis.brake_time = axis.phases.duration();
     const double af = limits.has_jerk() ? goal.a : 0;
-    axis.task = make_axis_task({within.v, within.a, goal.v, af, limits}, (goal.p - start.p) - within.p);
+    const VelocityChange change{within.v, within.a, goal.v, af, limits};
+    axis.task = make_axis_task(change, (goal.p - start.p) - within.p);
+}
+
+inline void set_axis(Axis& axis, const AxisState& start, const AxisState& goal, const AxisLimits& limits) {
+    set_task(axis, start, goal, limits);
     axis.shortest = axis.brake_time + minimum_time(axis.task);
 }
 
@@ -44,19 +50,20 @@ inline double next_duration(Axis& axis, double T) {
     return next <= T * (1 + 4 * crossing::epsilon) ? T : next;
 }
 
+// The least multiple of a cycle that is not less; the time itself without a cycle.
+inline double round_up(double t, double cycle) {
+    if (!(cycle > 0)) return t;
+    return std::ceil(t / cycle * (1 - 4 * crossing::epsilon)) * cycle;
+}
+
 // The next duration from T on that no axis refuses; cycle: of which it is a multiple, or 0.
 inline double common_duration(Axis* axes, std::size_t n, double T, double cycle) {
-    const auto round_up = [&](double t) {
-        if (!(cycle > 0)) return t;
-        const double count = std::ceil(t / cycle * (1 - 4 * crossing::epsilon));
-        return count * cycle;
-    };
-    T = round_up(T);
+    T = round_up(T, cycle);
     for (std::size_t agreed = 0, i = 0; agreed < n; i = (i + 1) % n) {
         const double next = next_duration(axes[i], T);
         agreed = next > T ? 1 : agreed + 1;
         if (next > T) {
-            const double rounded = round_up(next);
+            const double rounded = round_up(next, cycle);
             if (rounded > next) agreed = 0;
             T = rounded;
         }
@@ -65,9 +72,16 @@ inline double common_duration(Axis* axes, std::size_t n, double T, double cycle)
     return T;
 }
 
+// The motion of the axis in `time`, after its brake; is_still: it has none.
+inline Combination combine_axis(const Axis& axis, double time) {
+    const AxisTask& x = axis.task;
+    if (axis.last.T == time) return combine_motions(x, axis.last.up, axis.last.down);
+    return combine_motions(x, find_farthest(x.up, time), find_farthest(x.down, time));
+}
+
 inline void finish_axis(Axis& axis, double T) {
     const double time = T - axis.brake_time;
-    if (time > 0) append_motion(axis.task, time, axis.last, axis.phases);
+    if (time > 0) append_motion(axis.task, time, combine_axis(axis, time), axis.phases);
 }
 
 }  // namespace cspace::trajectory

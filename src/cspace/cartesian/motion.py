@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, one_array
+from cspace.arrays import Array, one_array, one_number
 from cspace.cartesian.free_turn import follow_free_turn
 from cspace.cartesian.joint_branches import JointBranch, JointBranches, follow_cartesian
 from cspace.cartesian.redundant_path import follow_redundant
@@ -19,11 +19,11 @@ from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import limits_of
 from cspace.model import Limits
 from cspace.spatial import as_pose
-from cspace.spatial.checks import PoseLike
+from cspace.spatial.checks import PoseLike, one_pose
 from cspace.tables import count_things, one_line, shown
-from cspace.tolerances import LIMIT_ROUNDING, PATH_START
-from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path
-from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path
+from cspace.tolerances import LIMIT_ROUNDING, PATH_START, SHORTEST_PATH_PIECE
+from cspace.trajectory.cartesian_makers import arc_path, is_repeated, pose_path
+from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path, stay_at
 from cspace.trajectory.path import Path
 from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_motion import TimedMotion, stand_still
@@ -36,14 +36,25 @@ RANKING_GRID: Final = 100
 """Intervals with which branches are compared: their durations are off by a few percent, alike for all."""
 
 
+SHORTENED: Final = (0.0, 1e-4, 1e-2, 0.1, 0.3, 0.6)
+"""Shares by which the part of a path that is followed is shortened until a motion ends there: beside a
+singular configuration joints move without bound on the last of it, and a chain may end before a search."""
+
+HALVINGS: Final = 5
+"""Of the last of these shares."""
+
+
 class CartesianMotion(TimedMotion):
     """A motion of the joints that moves the tip along a Cartesian path; falsy where there is none.
 
     A TimedMotion, whose path has the parameter s of the Cartesian path. cartesian: that path. branches: all
     that were followed, with where and why the others end. chosen: the number of the one that is taken, or −1.
     durations (k,): of each branch on a coarse grid [s], inf where there is none, nan where none was needed.
-    s_end: how far the tip goes.
+    s_end: how far the tip goes. stopped_by: why a motion that goes as far as possible ends before the path
+    does; empty if it arrives.
     """
+
+    stopped_by: str = ""
 
     def __init__(
         self,
@@ -62,7 +73,8 @@ class CartesianMotion(TimedMotion):
         arrived = sum(map(bool, self.branches))
         branches = count_things(len(self.branches), "branch", "branches")
         text = f"{arrived} of {branches} along {shown(self.cartesian.length)}"
-        return one_line("CartesianMotion", f"{text}, {self.reason or shown(self.duration) + ' s'}")
+        part = f" up to {shown(self.s_end)}" if self.stopped_by else ""
+        return one_line("CartesianMotion", f"{text}{part}, {self.reason or shown(self.duration) + ' s'}")
 
 
 def move_cartesian(
@@ -72,6 +84,7 @@ def move_cartesian(
     *,
     speed: float | None = None,
     turn_rate: float | None = None,
+    feed: float | None = None,
     velocity: ArrayLike | None = None,
     acceleration: ArrayLike | None = None,
     jerk: ArrayLike | bool | None = None,
@@ -82,19 +95,22 @@ def move_cartesian(
     limits: bool | Limits = True,
     tolerance: float = 1e-5,
     grid: int | None = None,
+    as_far_as_possible: bool = False,
 ) -> CartesianMotion:
     """The fastest motion of the joints that moves the tip along a Cartesian path.
 
     Every branch of solutions is followed along the path, each that arrives is timed, and the fastest is
     taken. A redundant arm is planned along the whole path at once (follow_redundant).
 
-    path: such as of line_path. start (dof,) [rad or m]: the configuration at its begin, whose branch alone is
-    followed. speed [m/s], turn_rate [rad/s]: of the tip, at most. velocity, acceleration, jerk, torque, grid:
-    as of time_parametrize. free_axis: an axis of the tip about which it may turn freely ("z", or a direction
-    (3,) in its frame). scene: obstacles; branches that touch them or the arm itself are left out, proved with
-    `margin` [m] to spare. limits: True for those of the robot, False for none, or Limits. tolerance [m and
-    rad]: the largest distance of the tip from the path, checked at the middle of each piece of the joint
-    path.
+    path: such as of line_path. start (dof,) [rad or m]: the configuration at its begin, whose branch alone
+    is followed. speed [m/s], turn_rate [rad/s]: of the tip, at most; feed [m/s]: held where the limits
+    allow it. velocity, acceleration, jerk, torque, grid: as of time_parametrize. free_axis: an axis of the
+    tip about which it may turn freely ("z", or a direction (3,) in its frame). scene: obstacles; branches
+    that touch them or the arm itself are left out, proved with `margin` [m] to spare. limits: True for
+    those of the robot, False for none, or Limits. tolerance [m and rad]: the largest distance of the tip
+    from the path, checked at the middle of each piece of the joint path. as_far_as_possible: where no
+    branch arrives, the motion along the part of the path that the farthest one follows; stopped_by says
+    what ends it, and s_end where.
 
     Returns a CartesianMotion; falsy, with reason and place s, where no branch arrives (limit, singularity,
     jump, unreachable), each touches something, or the limits cannot be kept. Near singular configurations the
@@ -106,6 +122,10 @@ def move_cartesian(
     if first is not None and (outside := _explain_outside(robot, first, limits)):
         return _refuse(robot, path, (), first, outside, 0.0)
     found = _follow(robot, path, first, free_axis, limits, tolerance)
+    stopped_by, whole = "", path
+    if not found and as_far_as_possible:
+        stopped_by = found.reason
+        path, found = _follow_part(robot, path, first, free_axis, limits, tolerance, found)
     if not found:
         place = max((branch.s_end for branch in found.branches), default=0.0)
         q = found.branches[0].q_start if found.branches else robot.limits.lower * 0.0
@@ -117,8 +137,12 @@ def move_cartesian(
         "torque": torque,
         "speed": speed,
         "turn_rate": turn_rate,
+        "feed": feed,
     }
-    return _take_fastest(robot, path, found.branches, options, grid, scene, margin)
+    motion = _take_fastest(robot, path, found.branches, options, grid, scene, margin)
+    if stopped_by:
+        motion.cartesian, motion.stopped_by, motion.s_end = whole, stopped_by, path.length
+    return motion
 
 
 def move_linear(
@@ -126,11 +150,11 @@ def move_linear(
 ) -> CartesianMotion:
     """The motion of the tip on a straight line to a pose, its rotation about a fixed axis.
 
-    goal (4, 4): T_base_tip. start (dof,) [rad or m]: the present configuration. options: as of
-    move_cartesian.
+    goal (4, 4): T_base_tip; that of the start gives a motion of zero length. start (dof,) [rad or m]: the
+    present configuration. options: as of move_cartesian.
     """
     first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
-    return move_cartesian(robot, line_path(robot.fk(first), goal), first, **options)
+    return _move_along_poses(robot, first, one_pose(goal, "goal pose")[None], options)
 
 
 def move_arc(
@@ -151,6 +175,8 @@ def move_arc(
     arc_path. options: as of move_cartesian.
     """
     first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    if goal is None and angle is not None and one_number(angle, "angle") == 0.0:
+        return _stay(robot, first, options)
     arc = arc_path(robot.fk(first), goal, via=via, center=center, axis=axis, angle=angle, rotation=rotation)
     return move_cartesian(robot, arc, first, **options)
 
@@ -174,9 +200,58 @@ def move_through(
     rows = as_pose(poses, "poses")
     if rows.ndim != 3:
         raise InputError(f"poses has shape {rows.shape}, expected (n, 4, 4)")
-    every = np.concatenate([robot.fk(first)[None], rows])
-    path = pose_path(every, deviation=deviation, turn_deviation=turn_deviation)
+    corners = {"deviation": deviation, "turn_deviation": turn_deviation}
+    return _move_along_poses(robot, first, rows, options, corners)
+
+
+def _move_along_poses(
+    robot: KinematicModel, first: Array, T: Array, options: dict[str, Any], corners: Any = None
+) -> CartesianMotion:
+    """The motion from a configuration through poses (n, 4, 4); of zero length if it is at all of them."""
+    begin = robot.fk(first)
+    if all(is_repeated(begin, each) for each in T):
+        return _stay(robot, first, options)
+    path = pose_path(np.concatenate([begin[None], T]), **(corners or {}))
     return move_cartesian(robot, path, first, **options)
+
+
+def _stay(robot: KinematicModel, q: Array, options: dict[str, Any]) -> CartesianMotion:
+    """The motion of zero length at a configuration within the limits."""
+    path = stay_at(robot.fk(q))
+    if outside := _explain_outside(robot, q, options.get("limits", True)):
+        return _refuse(robot, path, (), q, outside, 0.0)
+    return CartesianMotion(stand_still(q, 1.0, "", np.nan, robot.joint_names), path, (), -1, np.zeros(0))
+
+
+def _follow_part(
+    robot: KinematicModel,
+    path: CartesianPath,
+    start: Array | None,
+    free_axis: str | ArrayLike | None,
+    limits: bool | Limits,
+    tolerance: float,
+    found: JointBranches,
+) -> tuple[CartesianPath, JointBranches]:
+    """The part of a path that the farthest branch follows, and its branches; shorter where rounding asks."""
+    end = max((branch.s_end for branch in found.branches), default=0.0)
+
+    def follow(share: float) -> JointBranches | None:
+        if not end * (1.0 - share) > SHORTEST_PATH_PIECE:
+            return None
+        return _follow(robot, path.part(end * (1.0 - share)), start, free_axis, limits, tolerance) or None
+
+    tried = ((share, follow(share)) for share in SHORTENED)
+    high, best = next(((share, each) for share, each in tried if each), (1.0, None))
+    if best is None:
+        return path, found
+    low = max((share for share in SHORTENED if share < high), default=0.0)
+    for _ in range(HALVINGS if high > low else 0):
+        middle = 0.5 * (low + high)
+        if followed := follow(middle):
+            high, best = middle, followed
+        else:
+            low = middle
+    return path.part(end * (1.0 - high)), best
 
 
 def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, turns: bool) -> Array:
@@ -240,7 +315,9 @@ def _take_fastest(
     space = None if scene is None else space_of_curves(robot, scene, margin)
     if len(arrived) > 1:
         for k in arrived:
-            timed = time_parametrize(_joints(branches[k]), robot, grid=RANKING_GRID, **options)
+            timed = time_parametrize(
+                _joints(branches[k]), robot, grid=RANKING_GRID, positions=False, **options
+            )
             durations[k] = timed.duration if timed else np.inf
         arrived.sort(key=lambda k: durations[k])
     for k in arrived:
@@ -248,7 +325,7 @@ def _take_fastest(
         if space is not None and (touches := find_touches(space, joints, first=True)):
             refused.append(f"at s = {touches[0].s:.6g}: {touches[0].text}")
             continue
-        timed = time_parametrize(joints, robot, grid=grid, **options)
+        timed = time_parametrize(joints, robot, grid=grid, positions=False, **options)
         if timed:
             return CartesianMotion(timed, path, branches, k, durations)
         refused.append(timed.reason)
@@ -271,6 +348,6 @@ def _refuse(
     durations: Array | None = None,
 ) -> CartesianMotion:
     """No motion: it stays at q."""
-    timed = stand_still(q, path.length, reason, place, robot.joint_names)
+    timed = stand_still(q, path.length or 1.0, reason, place, robot.joint_names)
     none = np.full(len(branches), np.inf) if durations is None else durations
     return CartesianMotion(timed, path, branches, -1, none)

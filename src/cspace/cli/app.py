@@ -32,7 +32,7 @@ VERBS: Final[Mapping[str, str]] = MappingProxyType(
         "plan": "a free path of an arm among obstacles, every motion of it proved",
         "planners": "the planners of nav and plan, and their options",
         "space": "the configuration space: exact of a planar arm with two joints, else free share and slices",
-        "simulate": "the motion of a robot that is released, under gravity and friction",
+        "simulate": "the motion of a robot that is released or held, under gravity and friction",
         "traj": "a motion in time: to a configuration, through waypoints, or along a line of the tip",
         "export": "the inverse kinematics of an arm as C++, C or Python code that does not depend on cspace",
         "doctor": "versions, optional parts and a self-check",

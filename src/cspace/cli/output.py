@@ -114,11 +114,17 @@ class Output:
         console.print(drawn, crop=False)
 
     def matrix(self, values: Array, name: str) -> None:
-        """A matrix under its name, digits aligned."""
+        """A matrix under its name, digits aligned; at a narrow terminal some columns at a time."""
         self.heading(name)
         texts = [[f"{tidy_number(x): .6f}" for x in row] for row in values]
-        for row in texts:
-            self.line("  " + "  ".join(f"{text:>10}" for text in row))
+        widest = max([10, *(len(text) for row in texts for text in row)])
+        columns = values.shape[1]
+        stride = columns if self.width is None else max(1, min(columns, self.width // (widest + 2)))
+        for k in range(0, columns, stride):
+            if stride < columns:
+                self.line(f"  columns {k + 1} to {min(k + stride, columns)} of {columns}", style="dim")
+            for row in texts:
+                self.line("  " + "  ".join(f"{text:>{widest}}" for text in row[k : k + stride]))
 
     def _styled(self, text: str, style: str) -> str:
         return f"\x1b[{STYLES[style]}m{text}\x1b[0m" if style and text and self.colours else text

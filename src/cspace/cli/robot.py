@@ -86,7 +86,11 @@ def degrees_note(args: argparse.Namespace, robot: Robot, typed: Sequence[float] 
     typed: values of the joints, one configuration after the other, if not those of --near or of the verb.
     """
     joints = typed or getattr(args, "near", None) or getattr(args, "q", None) or []
-    turning = (value for value, kind in zip(joints, cycle(robot.joint_types), strict=False) if kind == "R")
+    turning = (
+        value
+        for value, kind in zip(joints, cycle(robot.joint_types), strict=False)
+        if kind == "R" and not isinstance(value, tuple)  # JOINT=VALUE
+    )
     angles = [*turning, *(getattr(args, "rpy", None) or []), getattr(args, "angle", None) or 0.0]
     if args.deg or max(map(abs, angles)) <= TURN:
         return ""

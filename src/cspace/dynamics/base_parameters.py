@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+import textwrap
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -45,6 +47,10 @@ ROUNDING: Final = 4096.0 * np.finfo(float).eps
 """Of the weights of a combination, for columns of length one."""
 
 
+WIDTH: Final = 110
+"""Characters of a line of a printed table."""
+
+
 @dataclass(frozen=True, eq=False)
 class BaseParameters:
     """The combinations of dynamic parameters that torques depend on.
@@ -76,7 +82,7 @@ class BaseParameters:
         return [[name, shown(value)] for name, value in zip(self.names, self.values, strict=True)]
 
     def __str__(self) -> str:
-        return f"{self.robot}: {self.summary}\n{align_cells([['parameter', 'value'], *self._cells()])}"
+        return print_sums(f"{self.robot}: {self.summary}", ["parameter", "value"], self._cells())
 
     def _repr_html_(self) -> str:
         return html_table(f"{self.robot}: {self.summary}", ["parameter", "value"], self._cells())
@@ -179,3 +185,26 @@ def describe_sum(weights: Array, first: int, names: tuple[str, ...]) -> str:
             size = f"{abs(weights[k]):.4g}"
             text += f" {'+' if weights[k] > 0.0 else '−'} {'' if size == '1' else size + ' '}{names[k]}"
     return text
+
+
+def print_sums(head: str, titles: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table whose first cells are combinations, as lines of at most WIDTH characters: the numbers, then
+    the combination, which goes on below itself where it is long."""
+    numbers = align_cells([titles[1:], *(row[1:] for row in rows)]).splitlines()
+    indent = len(numbers[0]) + 2
+    lines = textwrap.wrap(head, WIDTH, break_long_words=False)
+    for number, name in zip(numbers, (titles[0], *(row[0] for row in rows)), strict=True):
+        first, *others = wrap_sum(name, WIDTH - indent)
+        lines += [f"{number}  {first}", *(" " * indent + part for part in others)]
+    return "\n".join(lines)
+
+
+def wrap_sum(text: str, width: int) -> list[str]:
+    """A combination as lines, broken before its signs; one term alone may be longer than the width."""
+    lines: list[str] = []
+    for term in re.split(r" (?=[+−] )", text):
+        if lines and len(lines[-1]) + 1 + len(term) <= width:
+            lines[-1] += f" {term}"
+        else:
+            lines.append(term)
+    return lines

@@ -80,10 +80,10 @@ class PD:
 class ComputedTorque:
     """Computed torque control: the torques that give q̈ = q̈_d + kd (q̇_d − q̇) + kp (q_d − q).
 
-    motion: t → (q_d, qd_d, qdd_d), (..., n) each, such as a trajectory. kp, kd: one number or (n,) [1/s²,
-    1/s], not negative; kd = 2 √kp is critically damped. Damping is cancelled at the velocity of the joints,
-    dry friction at that of the motion. Raises InputError for negative gains, and where the base floats,
-    InputTypeError for a motion that cannot be called.
+    motion: t → (q_d, qd_d, qdd_d), (..., n) each, or a trajectory, at whose end the arm is held. kp, kd: one
+    number or (n,) [1/s², 1/s], not negative; kd = 2 √kp is critically damped. Damping is cancelled at the
+    velocity of the joints, dry friction at that of the motion. Raises InputError for negative gains, and
+    where the base floats, InputTypeError for a motion that cannot be called.
 
     Luh, Walker and Paul 1980.
     """
@@ -136,7 +136,7 @@ class ComputedTorque:
 def find_motion(motion: Motion, t: float, robot: KinematicModel) -> tuple[Array, Array, Array]:
     """q, qd and qdd (..., n) of a motion at a time; InputError for NaN or another number of joints."""
     names, place = ("q", "qd", "qdd"), f"the motion at t = {t:g} s"
-    answer: Any = motion(t)
+    answer: Any = getattr(motion, "state", motion)(t)
     try:
         values = tuple(answer)
     except TypeError:

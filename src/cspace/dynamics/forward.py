@@ -15,6 +15,7 @@ from cspace.errors import InputError
 from cspace.kinematics.batch import Batch
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
+from cspace.tolerances import INERTIA_ROUNDING
 
 
 def forward_dynamics(
@@ -58,11 +59,17 @@ def singular_error(robot: KinematicModel, batch: Batch) -> InputError:
     row = _first_singular(robot, batch)
     q = batch.q[row]
     M = mass_matrix(robot, q.astype(np.float64))
-    size = np.sqrt(np.maximum(np.diag(M), np.finfo(float).tiny))
-    weakest = np.linalg.eigh(M / np.outer(size, size))[1][:, 0] / size
+    size = np.sqrt(np.maximum(np.abs(np.diag(M)), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(M / np.outer(size, size))
+    weakest = vectors[:, 0] / size
     names = [*("vx", "vy", "vz", "ωx", "ωy", "ωz")[: 6 if robot.floating else 0], *robot.joint_names]
     joint = names[int(np.argmax(np.abs(weakest)))]
     where = "" if not batch.shape else f" at row {row}"
+    if values[0] < -INERTIA_ROUNDING:
+        return InputError(
+            f"the mass matrix of {robot.name} is not positive{where}: joint {joint!r} moves a negative"
+            " inertia; mend the links that robot.inertia_report() names"
+        )
     return InputError(
         f"the mass matrix of {robot.name} is singular{where}: joint {joint!r} moves no inertia;"
         " give its links a mass or the joint an armature (see robot.inertia_report())"

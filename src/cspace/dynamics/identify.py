@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
-from cspace.dynamics.base_parameters import BaseParameters, base_parameters
+from cspace.dynamics.base_parameters import BaseParameters, base_parameters, print_sums
 from cspace.dynamics.massless_motions import BASE, TAKES_PART
 from cspace.dynamics.possible_parameters import fit_possible
 from cspace.dynamics.regressor import (
@@ -25,7 +25,7 @@ from cspace.dynamics.rows import EARTH, check_gravity, refuse_missing, refuse_ro
 from cspace.kinematics.batch import Batch, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
-from cspace.tables import align_cells, html_table, join_words, one_line, shown
+from cspace.tables import count_things, html_table, join_words, one_line, shown
 from cspace.tolerances import LEAST_EXCITATION, UNDETERMINED
 
 WEIGHINGS: Final = 8
@@ -70,7 +70,8 @@ class Identification:
     @property
     def summary(self) -> str:
         """The answer in one line."""
-        count = f"{len(self.base)} base parameters from {self.samples} samples"
+        many = count_things(len(self.base), "base parameter")
+        count = f"{many} from {count_things(self.samples, 'sample')}"
         if self.unexcited:
             return f"{count}: the motion leaves those of {join_words(self.unexcited)} undetermined"
         largest = float(self.residuals.max(initial=0.0))
@@ -85,7 +86,7 @@ class Identification:
 
     def __str__(self) -> str:
         titles = ["parameter", "value", "standard error"]
-        return f"{self.robot}: {self.summary}\n{align_cells([titles, *self._cells()])}"
+        return print_sums(f"{self.robot}: {self.summary}", titles, self._cells())
 
     def _repr_html_(self) -> str:
         titles = ["parameter", "value", "standard error"]

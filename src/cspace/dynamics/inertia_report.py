@@ -53,7 +53,8 @@ class InertiaReport:
         parts = [f"{self.mass:.6g} kg", count_noun(faults, "fault")]
         parts += [count_noun(hints, "hint")] if hints else []
         if self.singular:
-            parts.append(f"the mass matrix is singular: {join_words(self.singular)} move without inertia")
+            move = "moves" if len(self.singular) == 1 else "move"
+            parts.append(f"the mass matrix is singular: {join_words(self.singular)} {move} without inertia")
         return ", ".join(parts)
 
     def __repr__(self) -> str:

@@ -17,11 +17,11 @@ from cspace.dynamics.rows import EARTH, Wrenches, dynamic_rows, refuse_missing, 
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import LoopConstraints
 from cspace.kinematics.assembly import Numbers
-from cspace.kinematics.batch import Batch
+from cspace.kinematics.batch import Batch, check_output
 from cspace.kinematics.loop_closure import number_coordinates
 from cspace.kinematics.loop_constraints import Placement
 from cspace.spatial.checks import PoseLike
-from cspace.tables import join_words
+from cspace.tables import count_things, join_words
 from cspace.tolerances import FARTHEST, LOOP_MOTION, LOOP_OPEN, LOOP_PROJECTED, LOOP_RANK, LOOP_SINGULAR
 
 MOST_PROJECTIONS: Final = 8
@@ -39,28 +39,31 @@ def constrained_forward_dynamics(
     expressed_in: str = "base",
     friction: bool = True,
     T_world_base: PoseLike | None = None,
+    out: Array | None = None,
     threads: int | None = None,
 ) -> Array:
     """The accelerations of a robot with closed loops under given torques.
 
-    M q̈ + h = τ + Kᵀ λ with K q̈ + k = 0. The acceleration is unique also where rows of K depend on each other
-    (Udwadia and Kalaba 1992).
+    M q̈ + h = τ + Kᵀ λ with K q̈ + k = 0. The acceleration is unique also where rows of K depend on each
+    other (Udwadia and Kalaba 1992).
 
-    q (..., n) [rad or m]: with closed loops. qd, tau (..., dof), gravity (3,), wrenches, expressed_in,
-    friction, T_world_base (..., 4, 4), threads: as in forward_dynamics. Returns qdd (..., dof). Raises
-    InputError for a wrong shape or NaN, open loops, and where a motion that the loops allow moves no inertia;
+    q (..., n) [rad or m]: with closed loops. qd (..., dof): velocities that keep them closed. tau (..., dof),
+    gravity (3,), wrenches, expressed_in, friction, T_world_base (..., 4, 4), out (..., dof), threads: as in
+    forward_dynamics. Returns qdd (..., dof). Raises InputError for a wrong shape or NaN, open loops,
+    velocities that tear them apart, and where a motion that the loops allow moves no inertia;
     UnknownNameError for an unknown frame.
     """
     acts = pack_acts(gravity, wrenches, expressed_in, friction)
     batch = check_state(constraints, q, qd=qd, tau=tau, T_world_base=T_world_base, threads=threads)
     at = constraints.place(batch.q)
-    allowed = find_allowed_motions(constraints, at)
     assert batch.qd is not None
     assert batch.tau is not None
+    check_motion(constraints, at, qd=batch.qd)
+    allowed = find_allowed_motions(constraints, at)
     qdd = solve_accelerations(
         constraints, at, allowed, batch.q, batch.qd, batch.tau, acts, batch.T_world_base, threads
     )
-    return qdd.reshape((*batch.shape, constraints.robot.dof))
+    return fill_output(out, qdd, (*batch.shape, constraints.robot.dof))
 
 
 def solve_accelerations(
@@ -93,6 +96,7 @@ def constrained_inverse_dynamics(
     expressed_in: str = "base",
     friction: bool = True,
     T_world_base: PoseLike | None = None,
+    out: Array | None = None,
     threads: int | None = None,
 ) -> Array:
     """The torques of driven joints behind a motion of a robot with closed loops.
@@ -103,9 +107,9 @@ def constrained_inverse_dynamics(
 
     q (..., n) [rad or m]: with closed loops. qd, qdd (..., dof): a motion that keeps them closed, as
     loop_velocities and loop_accelerations return. driven: names of joints. gravity (3,), wrenches,
-    expressed_in, friction, T_world_base (..., 4, 4), threads: as in inverse_dynamics. Returns tau (..., dof),
-    zero but for the driven joints. Raises InputError for a wrong shape or NaN, open loops, a motion that
-    tears them apart, and where the driven joints do not determine the motion, as at a dead point;
+    expressed_in, friction, T_world_base (..., 4, 4), out (..., dof), threads: as in inverse_dynamics. Returns
+    tau (..., dof), zero but for the driven joints. Raises InputError for a wrong shape or NaN, open loops, a
+    motion that tears them apart, and where the driven joints do not determine the motion, as at a dead point;
     UnknownNameError for an unknown joint or frame.
     """
     robot = constraints.robot
@@ -115,7 +119,7 @@ def constrained_inverse_dynamics(
     assert batch.qdd is not None
     numbers = number_driven(constraints, driven)
     at = constraints.place(batch.q)
-    check_motion(constraints, at, batch.qd, batch.qdd)
+    check_motion(constraints, at, qd=batch.qd, qdd=batch.qdd)
     tree = inverse_dynamics(
         robot, batch.q, batch.qd, batch.qdd, T_world_base=batch.T_world_base, threads=threads, **acts
     )
@@ -127,7 +131,7 @@ def constrained_inverse_dynamics(
     shares = (G[..., numbers, :] / unit[:, None]).swapaxes(-1, -2)
     tau = np.zeros_like(tree)
     tau[..., numbers] = np.einsum("...ij,...j->...i", np.linalg.pinv(shares, rcond=LOOP_RANK), work) / unit
-    return tau.reshape((*batch.shape, robot.dof))
+    return fill_output(out, tau, (*batch.shape, robot.dof))
 
 
 def loop_wrenches(
@@ -142,6 +146,7 @@ def loop_wrenches(
     expressed_in: str = "base",
     friction: bool = True,
     T_world_base: PoseLike | None = None,
+    out: Array | None = None,
     threads: int | None = None,
 ) -> Array:
     """The forces in closed loops during a motion under torques: what each loop exerts on its child link.
@@ -150,9 +155,9 @@ def loop_wrenches(
     least sum of squares, with lengths in units of the size of the mechanism.
 
     q (..., n), qd, qdd, tau (..., dof): a motion and its torques, from constrained_forward_dynamics or
-    constrained_inverse_dynamics; gravity (3,) and all else as there. Returns (..., loops, 6): force and
-    torque [N, N·m] at the origin of the loop's frame in the child, in axes of the base. Raises InputError for
-    a wrong shape or NaN, and open loops.
+    constrained_inverse_dynamics; gravity (3,), out (..., loops, 6) and all else as there. Returns (...,
+    loops, 6): force and torque [N, N·m] at the origin of the loop's frame in the child, in axes of the base.
+    Raises InputError for a wrong shape or NaN, and open loops.
     """
     robot = constraints.robot
     acts = pack_acts(gravity, wrenches, expressed_in, friction)
@@ -165,32 +170,45 @@ def loop_wrenches(
     )
     allowed = find_allowed_motions(constraints, constraints.place(batch.q))
     forces = constraints.wrenches(batch.q, allowed.solve_multipliers(tree - batch.tau))
-    return forces.reshape((*batch.shape, *forces.shape[-2:]))
+    return fill_output(out, forces, (*batch.shape, *forces.shape[-2:]))
 
 
-def loop_velocities(constraints: LoopConstraints, q: ArrayLike, driven: Mapping[str, ArrayLike]) -> Array:
+def loop_velocities(
+    constraints: LoopConstraints,
+    q: ArrayLike,
+    driven: Mapping[str, ArrayLike],
+    *,
+    out: Array | None = None,
+) -> Array:
     """The velocities of all joints when the driven ones move at given rates.
 
-    q (..., n) [rad or m]: with closed loops. driven: joint → velocity (...) [rad/s or m/s].
+    q (..., n) [rad or m]: with closed loops. driven: joint → velocity (...) [rad/s or m/s]. out (..., dof).
     Returns qd (..., dof). Raises InputError for a wrong shape or NaN, open loops, rates that the loops do not
     allow, and where the driven joints do not determine the motion; UnknownNameError for an unknown joint.
     """
-    return find_rates(constraints, q, None, driven)
+    return find_rates(constraints, q, None, driven, out)
 
 
 def loop_accelerations(
-    constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike, driven: Mapping[str, ArrayLike]
+    constraints: LoopConstraints,
+    q: ArrayLike,
+    qd: ArrayLike,
+    driven: Mapping[str, ArrayLike],
+    *,
+    out: Array | None = None,
 ) -> Array:
     """The accelerations of all joints when the driven ones accelerate at given rates.
 
     q (..., n) [rad or m], qd (..., dof): as from loop_velocities. driven: joint → acceleration (...).
-    Returns qdd (..., dof). Raises as loop_velocities.
+    out (..., dof). Returns qdd (..., dof). Raises as loop_velocities.
     """
     refuse_missing(qd=qd)
-    return find_rates(constraints, q, qd, driven)
+    return find_rates(constraints, q, qd, driven, out)
 
 
-def find_rates(constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike | None, driven: Any) -> Array:
+def find_rates(
+    constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike | None, driven: Any, out: Array | None
+) -> Array:
     """The rates x (..., dof) with K x + k = 0 and given values of driven joints; k = 0 without velocities."""
     if not isinstance(driven, Mapping):
         raise InputTypeError(f"driven is a {type(driven).__name__}, expected a dict of joint → rate")
@@ -225,8 +243,7 @@ def find_rates(constraints: LoopConstraints, q: ArrayLike, qd: ArrayLike | None,
             f"the loops of {robot.name} do not allow these rates of {join_words(list(driven))} together;"
             " drive as many joints as there are degrees of freedom"
         )
-    result: Array = x.reshape((*batch.shape, robot.dof))
-    return result
+    return fill_output(out, x, (*batch.shape, robot.dof))
 
 
 def project_state(
@@ -290,10 +307,21 @@ def check_state(constraints: LoopConstraints, q: ArrayLike, **arguments: Any) ->
     return batch
 
 
-def check_motion(constraints: LoopConstraints, at: Placement, qd: Array, qdd: Array) -> None:
+def fill_output(out: Array | None, values: Array, shape: tuple[int, ...]) -> Array:
+    """The values of an answer, in out if it is given."""
+    if out is None:
+        return values.reshape(shape)
+    check_output(out, shape)[...] = values.reshape(shape)
+    return out
+
+
+def check_motion(constraints: LoopConstraints, at: Placement, qd: Array, qdd: Array | None = None) -> None:
     """Raise InputError where velocities or accelerations (rows, dof) tear loops apart."""
     K, scale = constraints.find_jacobian(at), constraints.scale
-    for word, x, k in (("qd", qd, 0.0), ("qdd", qdd, constraints.find_bias(at, qd))):
+    rates: list[tuple[str, Array, Any]] = [("qd", qd, 0.0)]
+    if qdd is not None:
+        rates.append(("qdd", qdd, constraints.find_bias(at, qd)))
+    for word, x, k in rates:
         torn = np.abs((np.einsum("...ij,...j->...i", K, x) + k) * scale)
         size = np.einsum("...ij,...j->...i", np.abs(K) * scale[:, None], np.abs(x)) + np.abs(k * scale)
         bad = torn > LOOP_MOTION * np.maximum(size.max(axis=-1, initial=0.0)[..., None], LOOP_MOTION)
@@ -336,5 +364,6 @@ def check_driving(
         raise InputError(
             f"driven {'joint' if one else 'joints'} {join_words([repr(name) for name in driven])}"
             f" {'does' if one else 'do'} not determine the motion of {constraints.robot.name}{where}, which"
-            f" has {int(dof[row])} degrees of freedom there: a dead point, or too few driven joints"
+            f" has {count_things(int(dof[row]), 'degree')} of freedom there: a dead point, or too few driven"
+            " joints"
         )

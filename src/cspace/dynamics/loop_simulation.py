@@ -17,7 +17,7 @@ from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.loop_dynamics import check_state, project_state, solve_accelerations
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.mechanics import Flags, State, advance_state, find_resistances
-from cspace.dynamics.momentum import kinetic_energy, potential_energy
+from cspace.dynamics.momentum import centroidal_momentum, kinetic_energy, potential_energy
 from cspace.dynamics.rollout import Control, check_control, check_torques
 from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, check_mapping, check_wrench
 from cspace.dynamics.simulation import Simulation
@@ -298,10 +298,15 @@ def make_answer(
         robot, q_safe, gravity=task.acts["gravity"], T_world_base=place, threads=task.threads
     )
     energy = np.where(lost[..., 0], np.nan, energy)
+    momentum = centroidal_momentum(robot, q_safe, qd_safe, T_world_base=place, threads=task.threads)
+    momentum = np.where(lost, np.nan, momentum)
     if T is not None:
         T = np.where(lost[..., None], np.nan, T)
-    q, qd, tau, energy, stopped = (task.shape(each) for each in (q, qd, tau, energy, stopped))
+    q, qd, tau, energy, momentum = (task.shape(each) for each in (q, qd, tau, energy, momentum))
+    stopped = task.shape(stopped)
     ended = ended.reshape(task.lead)
     T = T if T is None else task.shape(T)
     truth, names = bool(ended.all()), tuple(robot.joint_names)
-    return Simulation(robot.name, names, "rk4", times, q, qd, tau, energy, T, stopped, ended, reason, truth)
+    return Simulation(
+        robot.name, names, "rk4", times, q, qd, tau, energy, momentum, T, stopped, ended, reason, truth
+    )

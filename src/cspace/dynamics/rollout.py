@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Final
@@ -15,7 +15,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.dynamics.controllers import PD, ComputedTorque, find_motion
 from cspace.dynamics.mechanics import Mechanics, State, WrenchLaw, find_resistances
-from cspace.dynamics.momentum import kinetic_energy, potential_energy
+from cspace.dynamics.momentum import centroidal_momentum, kinetic_energy, potential_energy
 from cspace.dynamics.rows import Wrenches, check_mapping, check_wrench
 from cspace.dynamics.simulation import DenseSteps
 from cspace.errors import InputError, InputTypeError
@@ -50,6 +50,7 @@ class Task:
     every: int
     stop_at_limits: bool
     tolerance: float
+    dense: bool
     deadline: float
 
     @property
@@ -68,6 +69,12 @@ class Task:
     def shape(self) -> tuple[int, ...]:
         """The leading axes."""
         return self.start.qd.shape[:-1]
+
+    @property
+    def size(self) -> float:
+        """Of the records, in numbers."""
+        width = self.start.qd.shape[-1] * (16.0 if self.mechanics.robot.floating else 4.0) + 7.0
+        return float(self.steps / self.every * math.prod(self.shape) * width)
 
     @property
     def seconds_left(self) -> float:
@@ -102,7 +109,7 @@ class Record:
         self.status, self.joint = np.zeros((2, rows), dtype=np.int32)
         self.stopped = np.zeros(rows)
         self.pieces: DenseSteps | None = None
-        sizes = {"energy": (), "q": (n,), "qd": (dof,), "tau": (dof,)}
+        sizes = {"energy": (), "momentum": (6,), "q": (n,), "qd": (dof,), "tau": (dof,)}
         self.states: dict[str, Array] = {
             name: np.empty((rows, len(self.times), *size)) for name, size in sizes.items()
         }
@@ -139,6 +146,7 @@ class Record:
         energy = kinetic_energy(mechanics.robot, q, qd, T_world_base=T)
         energy = energy + potential_energy(mechanics.robot, q, gravity=mechanics.gravity, T_world_base=T)
         ends = {"q": q, "qd": qd, "tau": self.tau[rows], "energy": energy, "T_world_base": T.reshape(-1, 16)}
+        ends["momentum"] = centroidal_momentum(mechanics.robot, q, qd, T_world_base=T)
         for name, array in self.states.items():
             array[rows, at] = ends[name]
 
@@ -153,7 +161,7 @@ def run_steps(task: Task) -> Record:
         follow_motion(task, task.control, record, simulator)
     else:
         simulator.run(0, task.steps + 1, task.seconds_left)
-    if task.method == "adaptive":
+    if task.method == "adaptive" and task.dense:
         values, first = simulator.take_pieces()
         record.pieces = DenseSteps(values, first, task.start.q.shape[-1], record.stopped)
     record.finish()
@@ -175,6 +183,7 @@ def make_simulator(task: Task, record: Record) -> _core.Simulator:
         (task.duration, task.dt),
         (task.steps, task.every),
         task.is_held,
+        task.dense,
         task.tolerance,
         np.ascontiguousarray(limits.lower) if task.stop_at_limits else None,
         np.ascontiguousarray(limits.upper) if task.stop_at_limits else None,
@@ -185,7 +194,12 @@ def make_simulator(task: Task, record: Record) -> _core.Simulator:
     )
     states = record.states
     simulator.hold_records(
-        states["q"], states["qd"], states["tau"], states["energy"], states.get("T_world_base")
+        states["q"],
+        states["qd"],
+        states["tau"],
+        states["energy"],
+        states["momentum"],
+        states.get("T_world_base"),
     )
     if not callable(task.wrenches):
         set_wrenches(task, simulator, task.wrenches)
@@ -284,6 +298,22 @@ def check_control(control: Control | None, shape: tuple[int, ...]) -> Any:
         f"control is a {type(control).__name__}, expected torques, or a function of t, q and qd that returns"
         " them, or dynamics.PD or dynamics.ComputedTorque"
     )
+
+
+def spread_rows(q: ArrayLike, control: Any, wrenches: Any) -> ArrayLike:
+    """q (..., n) with as many rows as the torques, goals and wrenches that are given have."""
+    leads: dict[str, tuple[int, ...]] = {}
+    if isinstance(control, np.ndarray | list | tuple):
+        leads["control"] = np.shape(control)[:-1]
+    elif type(control) is PD:
+        leads["q_goal"] = np.shape(control.q_goal)[:-1]
+    if isinstance(wrenches, Mapping):
+        leads |= {f"wrench at {frame!r}": np.shape(wrench)[:-1] for frame, wrench in wrenches.items()}
+    if not any(leads.values()):
+        return q
+    joints = as_floats(q, "q", last=(None,), largest=FARTHEST)
+    lead = leading_axes(q=joints.shape[:-1], **leads)
+    return np.broadcast_to(joints, (*lead, joints.shape[-1]))
 
 
 def check_torques(tau: Any, shape: tuple[int, ...], subject: str) -> Array:

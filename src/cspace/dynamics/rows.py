@@ -87,6 +87,8 @@ def refuse_rows(batch: Batch) -> None:
 
 def check_gravity(gravity: ArrayLike) -> Array:
     """Gravity as (3,) [m/s²]. Raises InputError for another shape, NaN, or numbers whose squares overflow."""
+    if gravity is None:
+        raise InputTypeError("gravity is None; give three numbers [m/s²], (0, 0, 0) for none")
     return np.ascontiguousarray(one_array(gravity, "gravity", (3,), largest=FARTHEST))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from time import perf_counter
 from typing import Any, Final
 
@@ -11,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import guard_memory, positive_number, whole_number
 from cspace.dynamics.forward import forward_dynamics
-from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.mechanics import Mechanics, State, WrenchLaw, find_resistances
 from cspace.dynamics.rollout import (
     AT_LIMIT,
@@ -23,9 +23,11 @@ from cspace.dynamics.rollout import (
     Task,
     check_control,
     run_steps,
+    spread_rows,
 )
 from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, refuse_rows
 from cspace.dynamics.simulation import Simulation
+from cspace.dynamics.stiffness import name_stiff_friction, name_stiff_gain
 from cspace.errors import InputError
 from cspace.kinematics.batch import check_choice, check_flag, check_robot, thread_count
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -40,10 +42,6 @@ FRICTION_SPEED: Final = 1e-2
 MOST_STEPS: Final = 10**12
 """Of a simulation: years of computation, and the times of neighbouring steps still differ."""
 
-STIFF: Final = 2.0
-"""Decays of a joint within one step from which on explicit methods are unstable: 2.8 for RK4, less with
-others."""
-
 
 def simulate(
     robot: KinematicModel,
@@ -53,7 +51,7 @@ def simulate(
     control: Control | None = None,
     duration: float,
     dt: float,
-    method: str = "rk4",
+    method: str | None = None,
     gravity: ArrayLike = EARTH,
     wrenches: Wrenches | WrenchLaw | None = None,
     expressed_in: str = "base",
@@ -63,6 +61,7 @@ def simulate(
     every: int = 1,
     stop_at_limits: bool = False,
     tolerance: float = 1e-9,
+    dense: bool = True,
     time_limit: float | None = None,
     threads: int | None = None,
 ) -> Simulation:
@@ -73,8 +72,9 @@ def simulate(
     function t, q, qd → tau. It is asked at the beginning of each step, and its torques are held over the
     step. duration [s]; dt [s]: the step. The last one ends with the duration.
 
-    method: "rk4", the classical Runge–Kutta method, of order four; "variational", the variational midpoint
-    rule of order two, whose energy does not drift and which conserves momenta; or "adaptive", the method of
+    method: "rk4", the classical Runge–Kutta method, of order four, or, if the friction of a joint is too
+    stiff for it, "variational", unless one is named. "variational": the variational midpoint
+    rule of order two, whose energy does not drift and which conserves momenta. "adaptive": the method of
     Dormand and Prince with steps that keep the local error below `tolerance`, absolute and relative. Its
     states at multiples of dt are interpolated, and without control its steps may be longer.
 
@@ -84,7 +84,8 @@ def simulate(
     takes it implicitly; the others need steps shorter than the decay times of damped joints. T_world_base
     (..., 4, 4): where a floating base starts, or a fixed one stands.
 
-    every: of so many states one is recorded, and the last; the adaptive method also keeps its own steps.
+    every: of so many states one is recorded, and the last. dense: the adaptive method also keeps its own
+    steps, so that the answer is as accurate between records; they take memory.
     stop_at_limits: end where a joint passes one of its limits; otherwise limits do not count. time_limit [s]:
     of the computation, looked at between steps; rows are computed some at a time, others may not have begun.
     threads: as in fk.
@@ -96,19 +97,38 @@ def simulate(
 
     Marsden and West 2001 (variational); Dormand and Prince 1980 (adaptive).
     """
-    name = check_choice(method, "method", METHODS)
     check_flag(stop_at_limits, "stop_at_limits")
     mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
+    q = spread_rows(q, control, wrenches)
     start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
     law = check_control(control, start.qd.shape)
-    task = _make_task(
-        mechanics, name, start, law, wrenches, duration, dt, every, stop_at_limits, tolerance, time_limit
-    )
+    name = _choose_method(method, mechanics, start, dt)
+    lengths, recorded = (duration, dt, tolerance), (every, dense)
+    task = _make_task(mechanics, name, start, law, wrenches, lengths, recorded, stop_at_limits, time_limit)
     rest = np.zeros_like(start.qd)
     forward_dynamics(robot, start.q, rest, rest, T_world_base=start.T_world_base)  # raises if M is singular
-    numbers = task.steps / task.every * start.qd.size * (16.0 if robot.floating else 4.0)
-    with guard_memory("duration / dt", f"{task.steps} steps", numbers, "record fewer states (every=)"):
+    with guard_memory("duration / dt", f"{task.steps} steps", task.size, "record fewer states (every=)"):
         return _make_answer(task, run_steps(task))
+
+
+def _check_step(dt: float) -> float:
+    return positive_number(dt, "dt", "it must be one positive number [s]")
+
+
+def _choose_method(method: str | None, mechanics: Mechanics, start: State, dt: float) -> str:
+    """The named method; without a name that of Runge and Kutta unless friction is too stiff for it.
+
+    InputError for RK4 where dry friction is: unlike damping, it would not break down, but creep.
+    """
+    if method is not None and check_choice(method, "method", METHODS) != "rk4":
+        return method
+    stiff = name_stiff_friction(mechanics, start, _check_step(dt))
+    if method is None:
+        return "rk4" if stiff is None else "variational"
+    dry = replace(mechanics, damping=np.zeros_like(mechanics.damping))
+    if stiff is not None and (reason := name_stiff_friction(dry, start, dt)) is not None:
+        raise InputError(f'method "rk4" creeps: {reason}')
+    return method
 
 
 def _make_mechanics(
@@ -121,6 +141,12 @@ def _make_mechanics(
 ) -> Mechanics:
     """What acts on a robot at every time, checked."""
     check_robot(robot)
+    loops = robot.description.loops if hasattr(robot, "description") else ()
+    if loops:
+        raise InputError(
+            f"{robot.name} has closed loops ({loops[0].name}), which simulate does not keep closed; use"
+            " cspace.Mechanism(robot).simulate"
+        )
     damping, dry = find_resistances(robot) if check_flag(friction, "friction") else np.zeros((2, robot.dof))
     return Mechanics(
         robot,
@@ -139,16 +165,16 @@ def _make_task(
     start: State,
     control: Any,
     wrenches: Wrenches | WrenchLaw | None,
-    duration: float,
-    dt: float,
-    every: int,
+    lengths: tuple[float, float, float],
+    recorded: tuple[int, bool],
     stop_at_limits: bool,
-    tolerance: float,
     time_limit: float | None,
 ) -> Task:
-    """The arguments of a simulation, checked."""
+    """The arguments of a simulation, checked. lengths: duration, dt, tolerance. recorded: every, dense."""
+    duration, dt, tolerance = lengths
+    every, dense = recorded
     length = positive_number(duration, "duration", "it must be one positive number [s]")
-    step = positive_number(dt, "dt", "it must be one positive number [s]")
+    step = _check_step(dt)
     if length / step > MOST_STEPS:
         raise InputError(
             f"dt is {step:g} s; {length:g} s then take {length / step:.3g} steps, of {MOST_STEPS:g} at most"
@@ -166,6 +192,7 @@ def _make_task(
         whole_number(every, "every", 1, MOST_STEPS),
         stop_at_limits,
         positive_number(tolerance, "tolerance"),
+        check_flag(dense, "dense"),
         late,
     )
 
@@ -216,6 +243,7 @@ def _make_answer(task: Task, record: Record) -> Simulation:
         qd,
         tau,
         states["energy"].reshape(*shape, count),
+        states["momentum"].reshape(*shape, count, 6),
         T,
         record.stopped.reshape(shape),
         (record.status == ENDED).reshape(shape),
@@ -246,21 +274,14 @@ def _name_reason(task: Task, record: Record) -> str:
 
 def _advise(task: Task) -> str:
     """What helps a simulation that broke down."""
-    method, stiff = task.method, task.mechanics.damping + task.mechanics.dry / task.mechanics.friction_speed
-    if method == "rk4" and stiff.any():
-        M = mass_matrix(task.mechanics.robot, task.start.q, T_world_base=task.start.T_world_base)
-        rates = (
-            (stiff * np.diagonal(np.linalg.inv(M), axis1=-2, axis2=-1)).reshape(-1, len(stiff)).max(axis=0)
-        )
-        fastest = int(rates.argmax())
-        if task.dt * rates[fastest] > STIFF:
-            first = len(stiff) - len(task.mechanics.robot.joint_names)
-            joint = task.mechanics.robot.joint_names[fastest - first]
-            return (
-                f"the friction of joint {joint!r} stops it within {1.0 / rates[fastest]:.2g} s; use a"
-                ' shorter dt or method="variational"'
-            )
-    if method == "adaptive":
+    robot = task.mechanics.robot
+    gain = name_stiff_gain(robot, task.control, task.start, task.dt)
+    if gain is not None:
+        return gain
+    friction = name_stiff_friction(task.mechanics, task.start, task.dt) if task.method == "rk4" else None
+    if friction is not None:
+        return friction
+    if task.method == "adaptive":
         return "no step is short enough"
-    half = "; a base may not rotate by half a turn in one step" if task.mechanics.robot.floating else ""
+    half = "; a base may not rotate by half a turn in one step" if robot.floating else ""
     return f"use a shorter dt{half}"

@@ -59,6 +59,8 @@ class Simulation:
     robot, method: names. joints: those of the coordinates. times (k,) [s]: 0 first, the end last.
     q (..., k, n) [rad or m], qd (..., k, dof): the states. tau (..., k, dof) [N·m or N]: the torques of the
     control, held from each time on. energy (..., k) [J]: kinetic and potential energy of the links.
+    momentum (..., k, 6) [kg·m/s, kg·m²/s]: linear, and angular about the centre of mass, as of
+    centroidal_momentum.
     T_world_base (..., k, 4, 4): the poses of a floating base, None for a fixed one. A row of a batch that
     ended early is NaN from then on.
 
@@ -75,6 +77,7 @@ class Simulation:
     qd: Array
     tau: Array
     energy: Array
+    momentum: Array
     T_world_base: Array | None
     stopped: Array
     ended: Flags
@@ -91,8 +94,9 @@ class Simulation:
     def __call__(self, t: float) -> tuple[Array, ...]:
         """The state at any time within the simulation.
 
-        Of the adaptive method it is that of its own interpolation, with errors of the size of its tolerance.
-        Otherwise it is the cubic through the recorded positions and velocities before and after t.
+        Of the adaptive method with dense steps it is that of its own interpolation, with errors of the size
+        of its tolerance. Otherwise it is the cubic through the recorded positions and velocities before and
+        after t.
 
         t [s]. Returns q (..., n) and qd (..., dof), and T_world_base (..., 4, 4) of a floating base.
         Raises InputError for a time outside of the simulation.

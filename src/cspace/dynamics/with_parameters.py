@@ -38,6 +38,8 @@ def with_parameters(robot: Model, pi: ArrayLike) -> Model:
     """
     check_robot(robot)
     counts = [count_parameters(robot._assembly, friction) for friction in (True, False)]
+    if np.ndim(pi) == 1 and np.isnan(np.asarray(pi, dtype=float)).any():
+        raise InputError("pi holds NaN, as where data do not determine a parameter; identify(physical=True)")
     row = one_array(pi, "pi", (None,), "the parameters of the robot")
     if len(row) not in counts:
         raise InputError(

@@ -3,14 +3,16 @@ motion."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from time import perf_counter
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cspace.arrays import Array, as_floats, as_generator, leading_axes, whole_number
+from cspace.arrays import Array, as_floats, as_generator, leading_axes, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.loop_constraints import LoopConstraints
@@ -97,7 +99,8 @@ class LoopMotion:
     """The motion of a mechanism along values of its driven coordinates; falsy if it stops before the last.
 
     q (k, n) [rad or m]: a configuration for each value reached. stop (n,): where the motion stopped, the last
-    configuration if it did not. reason: "complete", or "dead point: …" with the driven coordinates.
+    configuration if it did not. reason: "complete", "time limit", or "dead point: …" with the driven
+    coordinates.
     """
 
     q: Array
@@ -200,7 +203,9 @@ def find_assembly_modes(
     return AssemblyModes(pick_modes(constraints, q[closed], passive), False, 0.0, "found")
 
 
-def follow_loops(constraints: LoopConstraints, driven: Driven, start: ArrayLike) -> LoopMotion:
+def follow_loops(
+    constraints: LoopConstraints, driven: Driven, start: ArrayLike, *, time_limit: float | None = None
+) -> LoopMotion:
     """The motion of a mechanism while its driven coordinates go through given values.
 
     A predictor along the tangent and Newton's corrector, with strides as long as the correction stays small,
@@ -208,7 +213,7 @@ def follow_loops(constraints: LoopConstraints, driven: Driven, start: ArrayLike)
     stops.
 
     driven: coordinate → values (k,) [rad or m], passed one after the other in straight lines. start (n,): a
-    configuration near the first values, which is closed there.
+    configuration near the first values, which is closed there. time_limit [s]: of the computation.
 
     Returns a LoopMotion. Raises InputError for a start that cannot be closed, a wrong shape or NaN;
     UnknownNameError for an unknown coordinate.
@@ -218,6 +223,8 @@ def follow_loops(constraints: LoopConstraints, driven: Driven, start: ArrayLike)
         raise InputError(
             f"driven values have shape {lead}, expected (k,): one value per configuration of the motion"
         )
+    limit = math.inf if time_limit is None else positive_number(time_limit, "time_limit")
+    deadline = perf_counter() + limit
     n = len(constraints.robot.joint_names)
     first = close_loops(
         constraints,
@@ -232,31 +239,43 @@ def follow_loops(constraints: LoopConstraints, driven: Driven, start: ArrayLike)
     passive = np.setdiff1d(np.arange(n), numbers)
     q, rows, stride = first.q, [first.q], 1.0
     for goal in values[1:]:
-        q, arrived, stride = step_towards(constraints, q, numbers, passive, goal, stride)
+        q, arrived, stride = step_towards(constraints, q, numbers, passive, goal, stride, deadline)
         if not arrived:
-            return LoopMotion(np.array(rows), q, name_dead_point(constraints, q, numbers))
+            is_late = perf_counter() > deadline
+            reason = "time limit" if is_late else name_dead_point(constraints, q, numbers)
+            return LoopMotion(np.array(rows), q, reason)
         rows.append(q)
     return LoopMotion(np.array(rows), q, "complete")
 
 
 def step_towards(
-    constraints: LoopConstraints, q: Array, numbers: Numbers, passive: Numbers, goal: Array, stride: float
+    constraints: LoopConstraints,
+    q: Array,
+    numbers: Numbers,
+    passive: Numbers,
+    goal: Array,
+    stride: float,
+    deadline: float,
 ) -> tuple[Array, bool, float]:
     """Follow the loops until the driven coordinates are at their goal: where, whether it was reached, the
     stride.
 
-    stride: the share of the way that the first step tries.
+    stride: the share of the way that the first step tries. It stops where shorter steps do not help, and
+    after the deadline.
     """
     begin, done = q[numbers].copy(), 0.0
     share = min(stride, 1.0)
     unit = find_column_scale(constraints)[constraints.robot.dof - len(constraints.robot.joint_names) :]
+    way = max(1.0, np.abs((goal - begin) / unit[numbers]).max(initial=0.0))
     while done < 1.0:
+        if perf_counter() > deadline:
+            return q, False, share
         part = min(share, 1.0 - done)
         target = goal if done + part >= 1.0 else begin + (done + part) * (goal - begin)
         moved = try_step(constraints, q, numbers, passive, target, unit)
         if moved is None:
             share = 0.5 * part
-            if share < SHORTEST_PART:
+            if share * way < SHORTEST_PART:
                 return q, False, share
             continue
         q, done = moved, done + part

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, one_array, positive_number
+from cspace.arrays import Array, one_array, one_number, positive_number
 from cspace.errors import InputError
 from cspace.mobile import Odometry, TimedPoses
 from cspace.mobile.timed_poses import read_rows, read_times
@@ -161,6 +161,7 @@ class Scans:
 
     times (n,) [s], increasing. ranges (n, b) float32 [m]. angles (b,) [rad] of the beams in the frame of the
     laser. most [m]: a range that is NaN, infinite or not below it is no return. T_base_laser (3, 3).
+    time_increment [s]: from one beam to the next, the first one at the time of the scan; 0: all at once.
     """
 
     times: Array
@@ -168,6 +169,7 @@ class Scans:
     angles: Array
     most: float = 80.0
     T_base_laser: Array = field(default_factory=lambda: np.eye(3))
+    time_increment: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "times", read_times(self.times))
@@ -181,6 +183,7 @@ class Scans:
         object.__setattr__(self, "ranges", ranges)
         object.__setattr__(self, "most", positive_number(self.most, "most"))
         object.__setattr__(self, "T_base_laser", as_pose_2d(self.T_base_laser, "T_base_laser"))
+        object.__setattr__(self, "time_increment", one_number(self.time_increment, "time_increment"))
 
     def __len__(self) -> int:
         """How many scans there are."""

@@ -7,31 +7,34 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array, as_generator, positive_number
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.localization.filters.measurements import see_point
-from cspace.localization.log import Landmarks, Log, Readings
-from cspace.localization.sensors import RangeBearing
+from cspace.localization.filters.rows import follow_rows
+from cspace.localization.log import Landmarks, Log, Readings, Scans
+from cspace.localization.sensors import LaserScanner, RangeBearing
+from cspace.maps import cast_rays
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile import MotionNoise, Odometry, RandomWalk, TimedPoses
-from cspace.spatial import exp_se2, log_se2
+from cspace.spatial import exp_se2, log_se2, pose_2d
 
 
 def simulate(
     run: Any,
-    landmarks: Landmarks,
+    landmarks: Any,
+    sensor: RangeBearing | LaserScanner | None = None,
     *,
-    sensor: RangeBearing | None = None,
     noise: MotionNoise | None = None,
     period: float = 0.5,
     rng: int | np.random.Generator | None = None,
 ) -> Log:
-    """The log of a robot that drove a run: noisy odometry, and readings of the landmarks in view.
+    """The log of a robot that drove a run: noisy odometry, and what its sensor saw.
 
-    run: anything with times (n,) [s] and poses (n, 3), such as that of navigation.follow. Readings
-    come at the run's times, every `period` [s], with the biases, deviations and delay of the sensor. The true
-    step is the measured one with noise added, as the filters assume. rng: int, Generator or None.
+    run: anything with times (n,) [s] and poses (n, 3), such as that of navigation.follow. landmarks: those in
+    view are read by a RangeBearing; or a grid, which is scanned by a LaserScanner. Measurements come at the
+    run's times, every `period` [s], with the biases, deviations and delay of the sensor. The true step is the
+    measured one with noise added, as the filters assume. rng: int, Generator or None.
     """
-    generator, model = as_generator(rng), sensor or RangeBearing()
+    generator = as_generator(rng)
     truth = TimedPoses(run.times, run.poses)
     if not len(truth):
         raise InputError("the run has no poses; simulate needs one at least")
@@ -40,8 +43,16 @@ def simulate(
     )
     marks = np.arange(truth.times[0], truth.times[-1], positive_number(period, "period"))
     rows = np.unique(np.searchsorted(truth.times, marks))
-    readings = draw_readings(truth.times[rows], truth.poses[rows], landmarks, model, generator)
-    return Log(odometry, readings=readings, landmarks=landmarks, truth=truth)
+    times, poses = truth.times[rows], truth.poses[rows]
+    if isinstance(landmarks, Landmarks):
+        if isinstance(sensor, LaserScanner):
+            raise InputTypeError("sensor is a LaserScanner; landmarks are read by a RangeBearing")
+        readings = draw_readings(times, poses, landmarks, sensor or RangeBearing(), generator)
+        return Log(odometry, readings=readings, landmarks=landmarks, truth=truth)
+    if isinstance(sensor, RangeBearing):
+        raise InputTypeError("sensor is a RangeBearing; a grid is scanned by a LaserScanner")
+    scans = draw_scans(times, poses, landmarks, sensor or LaserScanner(), generator)
+    return Log(odometry, scans=scans, truth=truth)
 
 
 def disturb_odometry(true: Odometry, noise: MotionNoise, rng: np.random.Generator) -> Odometry:
@@ -64,3 +75,21 @@ def draw_readings(
     ranges = r[at, which] + sensor.range_bias + sensor.range_sigma * noise[:, 0]
     bearings = b[at, which] + sensor.bearing_bias + sensor.bearing_sigma * noise[:, 1]
     return Readings(times[at] + sensor.delay, landmarks.names[which], np.abs(ranges), wrap_angle(bearings))
+
+
+def draw_scans(
+    times: Array, poses: Array, grid: Any, scanner: LaserScanner, rng: np.random.Generator
+) -> Scans:
+    """Scans (k, readings) of a grid from poses (k, 3) at times (k,): the beam model, drawn."""
+    lasers = follow_rows(poses, np.array(scanner.mount))
+    most = scanner.most_range
+    walls = cast_rays(grid.to_grid(), lasers[:, None, :2], lasers[:, 2:] + scanner.angles, most)
+    none = walls >= most
+    ranges = np.where(none, np.inf, np.abs(walls + scanner.range_sigma * rng.standard_normal(walls.shape)))
+    kind = rng.choice(4, size=walls.shape, p=scanner.shares)
+    # Exponential up to the wall, by the inverse of its distribution.
+    share = rng.random(walls.shape)
+    before = -np.log1p(share * np.expm1(-scanner.short_rate * walls)) / scanner.short_rate
+    ranges = np.select([kind == 1, kind == 2, kind == 3], [before, np.inf, share * most], ranges)
+    mount = pose_2d(xytheta=np.array(scanner.mount))
+    return Scans(times, ranges.astype(np.float32), scanner.angles, most, mount)

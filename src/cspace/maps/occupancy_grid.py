@@ -11,8 +11,10 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, one_number, positive_number
+from cspace.arrays import Array, as_floats, guard_memory, one_number, positive_number
 from cspace.errors import InputError, InputTypeError, shown, suggest
+from cspace.maps.byte_field import ByteField
+from cspace.maps.likelihood_field import LIKELIHOOD_FLOOR, SIGMA, check_hit_model
 from cspace.maps.points import as_path, as_point, check_inflation
 from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CELLS
 
@@ -77,7 +79,8 @@ class OccupancyGrid(_core.GridBase):
         if unknown not in ("blocked", "free"):
             raise suggest("choice of unknown=", unknown, ("blocked", "free"))
         read = read_ros(path)
-        return cls(read.cells != 0 if unknown == "blocked" else read.cells == 1, read.resolution, read.origin)
+        blocked = read.cells != 0 if unknown == "blocked" else read.cells == 1
+        return cls(blocked, read.resolution, read.origin)
 
     @classmethod
     def from_image(
@@ -191,11 +194,31 @@ class OccupancyGrid(_core.GridBase):
             raise InputTypeError(f"the grid has cells of {self.resolution:g} m; they cannot be resampled")
         return self
 
+    def likelihood_field(self, sigma: float = SIGMA, floor: float = LIKELIHOOD_FLOOR) -> ByteField:
+        """How likely a laser beam ends in each cell, by the distance d from its centre to that of the
+        nearest blocked cell.
+
+        The likelihood is p = (1 − floor) exp(−d² / 2 sigma²) + floor, and the score 255 · (1 − log p / log
+        floor): 255 on a wall, and 0 far from all of them and outside the grid. sigma [m]: the standard
+        deviation of d. floor: the likelihood of a beam that ends anywhere, over that of one that ends on a
+        wall. InputError for values that are not above zero, or a floor of 1 or more. Thrun, Burgard and Fox
+        2005, section 6.4.
+        """
+        wide, least = check_hit_model(sigma, floor, self.resolution)
+        with guard_memory(
+            "the grid",
+            f"of {self.rows} × {self.columns} cells",
+            float(self.rows * self.columns),
+            "make it smaller",
+        ):
+            return ByteField(_core._likelihood_field(self, wide, least), self.resolution, self.origin)
+
     def save_ros(self, path: str | os.PathLike[str]) -> None:
         """Writes a ROS map: a YAML file at the path, which ends in .yaml, and a PGM image next to it."""
         from cspace.maps.ros_map import write_ros
 
-        write_ros(path, self.blocked, self.resolution, self._x, self._y)
+        grey = np.where(self.blocked, np.uint8(0), np.uint8(254))
+        write_ros(path, grey, self.resolution, self._x, self._y, "trinary")
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Cells, resolution and origin: the data that pickle stores."""

@@ -55,9 +55,12 @@ class FourBar(Mechanism):
     @property
     def kind(self) -> str:
         """What turns around, by Grashof's law: "crank-rocker" (the crank), "rocker-crank" (the rocker),
-        "double-crank" (both), "double-rocker" (the coupler), "triple-rocker" (none), or "change-point"."""
+        "double-crank" (both), "double-rocker" (the coupler), "triple-rocker" (none), or "change-point".
+        "impossible" if the longest link is longer than the others together."""
         sizes = self.lengths
         ordered = sorted(sizes.values())
+        if ordered[3] > ordered[0] + ordered[1] + ordered[2]:
+            return "impossible"
         excess = ordered[0] + ordered[3] - ordered[1] - ordered[2]
         if abs(excess) <= LOOP_CLOSED * ordered[3]:
             return "change-point"

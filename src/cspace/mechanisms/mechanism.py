@@ -99,25 +99,27 @@ class Mechanism:
         """
         return kinematics.find_assembly_modes(self.constraints, driven, starts=starts, rng=rng)
 
-    def follow(self, driven: Driven, start: ArrayLike) -> LoopMotion:
-        """The motion while driven coordinates go through values (k,), from start (n,); see
-        kinematics.follow_loops. Returns a LoopMotion with q (k, n)."""
-        return kinematics.follow_loops(self.constraints, driven, start)
+    def follow(self, driven: Driven, start: ArrayLike, *, time_limit: float | None = None) -> LoopMotion:
+        """The motion while driven coordinates go through values (k,), from start (n,), within
+        time_limit [s]; see kinematics.follow_loops. Returns a LoopMotion with q (k, n)."""
+        return kinematics.follow_loops(self.constraints, driven, start, time_limit=time_limit)
 
-    def velocities(self, q: ArrayLike, driven: Driven) -> Array:
+    def velocities(self, q: ArrayLike, driven: Driven, *, out: Array | None = None) -> Array:
         """The velocities (..., dof) of all joints at q (..., n) when the driven ones move at given rates
         (...); see dynamics.loop_velocities."""
-        return dynamics.loop_velocities(self.constraints, q, driven)
+        return dynamics.loop_velocities(self.constraints, q, driven, out=out)
 
-    def accelerations(self, q: ArrayLike, qd: ArrayLike, driven: Driven) -> Array:
+    def accelerations(
+        self, q: ArrayLike, qd: ArrayLike, driven: Driven, *, out: Array | None = None
+    ) -> Array:
         """The accelerations (..., dof) of all joints at q (..., n) and qd (..., dof) when the driven ones
         accelerate at given rates (...); see dynamics.loop_accelerations."""
-        return dynamics.loop_accelerations(self.constraints, q, qd, driven)
+        return dynamics.loop_accelerations(self.constraints, q, qd, driven, out=out)
 
     def forward_dynamics(self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, **acts: Any) -> Array:
         """The accelerations (..., dof) under torques tau (..., dof), at q (..., n) and qd (..., dof).
 
-        acts: gravity, wrenches, expressed_in, friction, T_world_base, threads. See
+        acts: gravity, wrenches, expressed_in, friction, T_world_base, out, threads. See
         dynamics.constrained_forward_dynamics, which also names the errors.
         """
         return dynamics.constrained_forward_dynamics(self.constraints, q, qd, tau, **acts)

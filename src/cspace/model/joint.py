@@ -81,8 +81,8 @@ class Joint:
     joint feels it, n² J behind a gear of ratio n [kg·m² or kg], None where unknown. mimic: the joint it
     follows.
 
-    Raises InputError for limits upside down, a zero axis, NaN, a negative armature; UnknownNameError for an
-    unknown type.
+    Raises InputError for limits upside down, a zero axis, NaN, negative damping, friction or armature;
+    UnknownNameError for an unknown type.
     """
 
     name: str
@@ -121,8 +121,8 @@ class Joint:
             value = getattr(self, name)
             if value is not None:
                 store(self, name, finite_number(value, f"{name} of {subject}"))
-        if self.armature is not None and self.armature < 0.0:
-            raise InputError(f"armature of {subject} is {self.armature:g}; it must not be negative")
+                if getattr(self, name) < 0.0:
+                    raise InputError(f"{name} of {subject} is {value:g}; it must not be negative")
         self._check_limits(subject)
 
     def _check_limits(self, subject: str) -> None:

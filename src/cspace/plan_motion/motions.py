@@ -73,10 +73,10 @@ def move(
     and rounded corners with 0.3 mm and more to spare. velocity, acceleration, jerk, torque, speed, turn_rate:
     as of time_parametrize; torque=True takes the efforts of the robot.
 
-    Returns a Motion; falsy, with reason, where no way was found or the limits cannot be kept. Raises as plan
-    and time_parametrize do.
+    Returns a Motion, of zero length where the start is the goal; falsy, with reason, where no way was found
+    or the limits cannot be kept. Raises as plan and time_parametrize do.
     """
-    allowed = bounded_number(deviation, "deviation", 0.0, "it must be 0 or more")
+    bounded_number(deviation, "deviation", 0.0, "it must be 0 or more")
     found = plan(robot, start, goal, scene, planner=planner, margin=margin, rng=rng, **options)
     limits: dict[str, Any] = {
         "velocity": velocity,
@@ -86,12 +86,29 @@ def move(
         "speed": speed,
         "turn_rate": turn_rate,
     }
+    return time_plan(robot, found, scene, deviation=deviation, margin=margin, **limits)
+
+
+def time_plan(
+    robot: Robot,
+    found: Plan,
+    scene: Scene | None = None,
+    *,
+    deviation: float = 0.2,
+    margin: float = 0.0,
+    **limits: Any,
+) -> Motion:
+    """The motion along a plan: what move does after planning.
+
+    found: of this robot, scene and margin. deviation: as of move. limits: as of time_parametrize.
+    """
+    allowed = bounded_number(deviation, "deviation", 0.0, "it must be 0 or more")
     if not found:
         return _refuse(robot, found, found.reason)
     if len(found.path) < 2 or found.cost == 0.0:
-        return _refuse(robot, found, "the start is the goal: nothing moves")
+        return _refuse(robot, found, "")  # the start is the goal: a motion of zero length
     path, deviations = round_corners(robot, found.path, scene, margin, allowed)
-    timed = time_parametrize(path, robot, **limits)
+    timed = time_parametrize(path, robot, positions=False, **limits)
     if not timed:
         return Motion(timed, found, deviations, 0)
     checked, fault = check_once_more(robot, timed, scene)
@@ -147,6 +164,7 @@ def check_once_more(robot: Robot, timed: TimedPath, scene: Scene | None) -> tupl
 
 
 def _refuse(robot: Robot, found: Plan, reason: str) -> Motion:
+    """No motion: it stays at the start."""
     q = found.path[0] if len(found.path) else np.zeros(robot.dof)
     timed = stand_still(q, 1.0, reason, np.nan, robot.joint_names)
     return Motion(timed, found, np.zeros(len(found.path)), 0)

@@ -9,7 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array, whole_number
 from cspace.errors import InputError
-from cspace.plot import colors, worlds
+from cspace.plot import colors
 from cspace.plot.axes import flat_axes
 from cspace.plot.ellipses import find_rings, turn_to_map
 from cspace.plot.files import Steps
@@ -25,20 +25,6 @@ BODY: Final = 0.025
 """Length of the triangle that shows the robot, over the larger side of the picture."""
 TRIANGLE: Final = np.array([[1.0, 0.0], [-0.6, 0.55], [-0.6, -0.55]])
 TINTS: Final = {"lost": LOST, "ambiguous": AMBIGUOUS}
-
-
-def animation(moving: Any, *, ax: Any = None, frames: int | None = None, **shown: Any) -> Any:
-    """A search or a localisation as it happened: a matplotlib FuncAnimation, which `cs.plot.save` writes as a
-    GIF.
-
-    moving: what cs.navigate answers: its search grows, then its path. Or a localisation, whose drive grows
-    with its ellipse; shown: truth= (TimedPoses), world= (a grid or Landmarks), scans= (of its log), drawn
-    where the answer places them. frames: into how many pictures the events of the trace, or the time, are
-    divided. Raises InputTypeError for other objects.
-    """
-    if hasattr(moving, "poses") and hasattr(moving, "times"):
-        return animate_run(moving, ax=ax, frames=PICTURES if frames is None else frames, **shown)
-    return worlds.animation(moving, ax=ax, frames=worlds.FRAMES if frames is None else frames, **shown)
 
 
 def animate_run(

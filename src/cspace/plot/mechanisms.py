@@ -26,6 +26,8 @@ PIN: Final = {
     "ms": 5,
     "zorder": 5,
 }
+TICKS: Final = 4
+"""Numbers along each axis in space, where more would run into each other."""
 FADED: Final = 0.65
 """How much white the colours of further configurations have."""
 
@@ -71,6 +73,7 @@ def mechanism(drawn: Mechanism, q: ArrayLike, *, ax: Any = None, title: str = ""
         axes.set(aspect="equal", xlabel="x [m]", ylabel="z [m]")
     else:
         axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]", aspect="equal")
+        axes.locator_params(nbins=TICKS)
     return artists + write_title(axes, title)
 
 
@@ -104,7 +107,7 @@ def find_parts(drawn: Mechanism, q: Array) -> Parts:
         zip(robot.frames, robot.fk_all(q, T_world_base=np.eye(4) if robot.floating else None), strict=True)
     )
     description = robot.description
-    solid = {link.name for link in description.links if link.inertial is not None} | {robot.base}
+    solid = [link.name for link in description.links if link.inertial is not None or link.name == robot.base]
     ends: dict[str, list[Array]] = {name: [] for name in solid if name in frames}
     rods, rails, pins = [], [], []
     for joint in description.joints:

@@ -13,7 +13,7 @@ from cspace.trajectory.splines import b_spline, spline
 from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
 from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_motion import TimedMotion
-from cspace.trajectory.timed_path import TimedPath
+from cspace.trajectory.timed_path import SlowStretch, TimedPath
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
 from cspace.trajectory.trajectory_files import from_csv, from_json, to_csv, to_json, to_ros
 
@@ -27,6 +27,7 @@ __all__ = [
     "Path",
     "PolynomialTrajectory",
     "Samples",
+    "SlowStretch",
     "TimedMotion",
     "TimedPath",
     "Trajectory",

@@ -156,6 +156,16 @@ def pose_path(
     return CartesianPath(pieces, stops)
 
 
+def is_repeated(T: Array, other: Array) -> bool:
+    """Whether two poses (4, 4) are the same to rounding, so that nothing moves from one to the other."""
+    return bool(np.abs(_step_between(T, other)).max() <= REPEATED_POSE)
+
+
+def _step_between(T: Array, other: Array) -> Array:
+    """Displacement and rotation vector (6,) from one pose to another, in base axes."""
+    return np.concatenate([other[:3, 3] - T[:3, 3], log_so3(other[:3, :3] @ T[:3, :3].T)])
+
+
 class _Legs:
     """The straight lines between different poses: directions (count, 6) per unit of s, and lengths."""
 
@@ -165,7 +175,7 @@ class _Legs:
         for k in range(1, len(T)):
             last = T[rows[-1]]
             _check_turn(last, T[k], f"poses {rows[-1]} and {k}")
-            step = np.concatenate([T[k, :3, 3] - last[:3, 3], log_so3(T[k, :3, :3] @ last[:3, :3].T)])
+            step = _step_between(last, T[k])
             if np.abs(step).max() > REPEATED_POSE:
                 rows.append(k)
                 steps.append(step)

@@ -67,6 +67,23 @@ class CartesianPath:
         """The largest value of s."""
         return float(self.breaks[-1])
 
+    def part(self, end: float) -> CartesianPath:
+        """The path up to the parameter `end`, above 0. Raises InputError for one that is not on the path."""
+        piece, u, _ = self._locate(end)
+        if not end > 0.0:
+            raise InputError(f"end is {end:g}; a part of a path needs a length")
+        last = int(piece[0]) if u[0] > 0.0 else int(piece[0]) - 1
+        made = CartesianPath.__new__(CartesianPath)
+        made.lengths = self.lengths[: last + 1].copy()
+        made.lengths[last] = end - self.breaks[last]
+        made.breaks = np.append(self.breaks[: last + 1], end)
+        made.stops = self.stops[self.stops < end]
+        made._point, made._turn = ([row[:, : last + 1] for row in rows] for rows in (self._point, self._turn))
+        made._R, made._axis, made._rate, made._arm = (
+            row[: last + 1] for row in (self._R, self._axis, self._rate, self._arm)
+        )
+        return made
+
     def __repr__(self) -> str:
         return one_line(
             type(self).__name__, f"{count_things(len(self.lengths), 'piece')}, length {self.length:.4g}"
@@ -121,6 +138,15 @@ class CartesianPath:
 
     def _rotated_arm(self, piece: Indices, u: Array) -> Array:
         return _rotate(self._axis[piece], self._rate[piece] * u, self._arm[piece])
+
+
+def stay_at(T: Array) -> CartesianPath:
+    """A path of no length at a pose (4, 4)."""
+    point = np.zeros((DEGREE + 1, 3))
+    point[0] = T[:3, 3]
+    zero = np.zeros(3)
+    axis = np.array([0.0, 0.0, 1.0])
+    return CartesianPath([CartesianPiece(0.0, point, 0.0 * point, T[:3, :3], axis, 0.0, zero)])
 
 
 def _rotate(axis: Array, angle: Array, arm: Array) -> Array:

@@ -9,9 +9,9 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.model.values import freeze_array
-from cspace.trajectory.path import Path, _powers_to_bernstein
+from cspace.trajectory.path import Path, _powers_to_bernstein, restrict_pieces
 from cspace.trajectory.piece_roots import find_piece_roots
-from cspace.trajectory.timed_path import Grid, Places, Ratios, TimedPath, restrict_pieces
+from cspace.trajectory.timed_path import Grid, Places, Ratios, TimedPath
 from cspace.trajectory.trajectory import Trajectory
 
 QUADRATIC, LAUNCH, LANDING = 0, 1, 2

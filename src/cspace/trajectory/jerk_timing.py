@@ -14,8 +14,8 @@ from cspace.errors import InputError
 from cspace.tolerances import BARRIER_GAP, LAUNCH_PART
 from cspace.trajectory.graded_grid import Section, divide_gradually
 from cspace.trajectory.jerk_timed_path import LANDING, LAUNCH, QUADRATIC
-from cspace.trajectory.path import Path
-from cspace.trajectory.timed_path import Grid, TimedPath, restrict_pieces
+from cspace.trajectory.path import Path, restrict_pieces
+from cspace.trajectory.timed_path import Grid, TimedPath
 
 LEAST_INTERVALS: Final = 24
 """Of a section between stops, beside those that lead up to its ends."""

@@ -15,7 +15,12 @@ from cspace.kinematics.batch import check_robot, limits_of
 from cspace.model import Limits
 from cspace.trajectory.limit_check import Violation
 from cspace.trajectory.polynomials import PolynomialTrajectory
-from cspace.trajectory.state_to_state import SYNCHRONIZE, TrajectoryBatch, state_to_state
+from cspace.trajectory.state_to_state import (
+    SYNCHRONIZE,
+    TrajectoryBatch,
+    move_plain_states,
+    state_to_state,
+)
 from cspace.trajectory.states import read_duration, read_states
 from cspace.trajectory.time_scaling import BOUNDARY_ORDERS, connect_states, find_duration
 
@@ -63,12 +68,24 @@ def move_to(
     check_known("profile", profile, PROFILES)
     check_known("synchronize", synchronize, SYNCHRONIZE)
     kept = limits_of(robot.limits, limits, robot.name)
+    given = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
+    if profile == "double_s" and synchronize == "time" and duration is cycle is None:
+        most = tuple(_choose_limit(robot, kind, value) for kind, value in given.items())
+        made = move_plain_states(
+            (start, start_velocity, start_acceleration, q_goal, goal_velocity, goal_acceleration),
+            most,
+            robot.joint_names,
+            (kept.lower, kept.upper),
+        )
+        if made is not None:
+            if not made[1]:
+                made[0].reason = find_position_violation(made[0], kept)
+            return made[0]
     n = len(robot.joint_names)
     first = read_states(start, start_velocity, start_acceleration, "start", n)
     last = read_states(q_goal, goal_velocity, goal_acceleration, "goal", n)
     if first.ndim != 2 or last.ndim != 2:
         raise InputError("move_to makes one motion; trajectory.state_to_state takes batches of states")
-    given = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
     if profile in BOUNDARY_ORDERS:
         if synchronize != "time":
             raise InputTypeError(
@@ -80,6 +97,12 @@ def move_to(
     if motion:
         motion.reason = find_position_violation(motion, kept)
     return motion
+
+
+def _choose_limit(robot: KinematicModel, kind: str, given: Any) -> Any:
+    """A limit that is given, or that of the robot."""
+    own = getattr(robot.limits, kind) if given is None else given
+    return require_limits(robot, kind) if given is None and own.max() == np.inf else own
 
 
 def fit_phases(

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
+from cspace._core import evaluate_path
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
@@ -146,12 +147,15 @@ class Path:
         slopes = np.abs(self._derivatives[1]).max(axis=1)
         return np.asarray(slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True))
 
+    @cached_property
     def turning_places(self) -> Array:
         """Breaks (m,) inside at which the slope of all joints vanishes and the second derivative jumps."""
-        slopes = np.linalg.norm(self._derivatives[1], axis=2)
-        small = SAME_WAYPOINT * np.maximum(slopes[:-1].max(axis=1), slopes[1:].max(axis=1))
-        vanish = (slopes[:-1, -1] <= small) & (slopes[1:, 0] <= small)
-        return np.asarray(self.breaks[1:-1][vanish & self._jumps(2)])
+        slopes = self._derivatives[1]
+        squares = np.einsum("kij,kij->ki", slopes, slopes)
+        small = SAME_WAYPOINT**2 * np.maximum(squares[:-1].max(axis=1), squares[1:].max(axis=1))
+        vanish = (squares[:-1, -1] <= small) & (squares[1:, 0] <= small)
+        inside = self.breaks[1:-1]
+        return freeze_array(inside[vanish & self._jumps(2)] if vanish.any() else inside[:0].copy())
 
     @cached_property
     def continuity(self) -> int:
@@ -209,6 +213,15 @@ class Path:
             weights[:, 0] *= rest
         return np.asarray(np.einsum("mi,mij->mj", weights, points))
 
+    def evaluate_motion(self, piece: Any, local: Array) -> tuple[Array, Array, Array]:
+        """Configurations (m, dof) and their first two derivatives, as of evaluate_pieces."""
+        pieces = np.ascontiguousarray(piece, dtype=np.int32)
+        return evaluate_path(self.control_points, self.lengths, self.stop_flags, pieces, local)
+
+    def slope_controls(self, piece: Any, begin: Array, end: Array) -> Array:
+        """Bernstein coefficients (k, degree, dof) of the slope on parts [begin, end] of pieces (k,)."""
+        return restrict_pieces(self._derivatives[1][piece], begin, end)
+
     @cached_property
     def excursion(self) -> Array:
         """How far each joint leaves the range between the ends of a piece, at most (dof,) [rad or m]."""
@@ -225,6 +238,27 @@ class Path:
             q = sum(c[..., i] * s**i for i in range(self.degree + 1))
             most = np.maximum(most, np.maximum(q - high, low - q).max(axis=0))
         return freeze_array(most)
+
+    def first_beyond(self, lower: Array, upper: Array) -> tuple[int, float, float] | None:
+        """The joint, the place s and the value where the path is first beyond bounds (dof,), if it is.
+
+        Of the places where a joint is farthest out on a piece, so that none is missed.
+        """
+        control = self.control_points
+        outside = (control.min(axis=1) < lower) | (control.max(axis=1) > upper)
+        if not outside.any():
+            return None
+        piece, joint = np.nonzero(outside)
+        c = self.coefficients[piece, :, joint]
+        h = self.lengths[piece]
+        roots = find_piece_roots(c[:, 1:] * np.arange(1.0, self.degree + 1.0), np.zeros_like(h), h)
+        places = np.concatenate([np.zeros((len(h), 1)), h[:, None], roots], axis=1)
+        local = np.where(np.isnan(places), 0.0, places)
+        values = np.sum(c[:, None, :] * local[..., None] ** np.arange(self.degree + 1.0), axis=2)
+        beyond = (values < lower[joint, None]) | (values > upper[joint, None])
+        s = np.where(beyond, self.breaks[piece, None] + local, np.inf)
+        at = np.unravel_index(int(np.argmin(s)), s.shape)
+        return (int(joint[at[0]]), float(s[at]), float(values[at])) if beyond.any() else None
 
     def reversed(self) -> Path:
         """The same path from its end to its start."""
@@ -262,6 +296,20 @@ def raise_degree(control_points: Array, degree: int) -> Array:
         padded = np.pad(control_points, ((0, 0), (1, 1), (0, 0)))
         control_points = share * padded[:, :-1] + (1.0 - share) * padded[:, 1:]
     return control_points
+
+
+def restrict_pieces(control_points: Array, begin: Array, end: Array) -> Array:
+    """Control points (k, degree + 1, dof) of parts [begin, end] of pieces, by two subdivisions."""
+    made = np.array(control_points)
+    degree = made.shape[1] - 1
+    t = end[:, None, None]
+    for level in range(1, degree + 1):
+        made[:, level:] = made[:, level - 1 : -1] + t * (made[:, level:] - made[:, level - 1 : -1])
+    t = (begin / end)[:, None, None]
+    for level in range(1, degree + 1):
+        kept = degree + 1 - level
+        made[:, :kept] = made[:, :kept] + t * (made[:, 1 : kept + 1] - made[:, :kept])
+    return made
 
 
 def hermite_quintics(h: Array, q: Array, slope: Array, bend: Array) -> Array:

@@ -14,7 +14,7 @@ from cspace.kinematics import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED
 from cspace.trajectory.path import Path
-from cspace.trajectory.timed_path import Places, TimedPath, move_along, move_along_path
+from cspace.trajectory.timed_path import FEED, Grid, Places, TimedPath, move_along, move_along_path
 
 CHECKED_PLACES: Final = 10
 """Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss."""
@@ -44,6 +44,14 @@ class TorqueLimits:
         with_friction, without = (self._torque(rest, moving, rest, each) for each in (True, False))
         return not np.array_equal(with_friction, without)
 
+    @cached_property
+    def dry(self) -> Array:
+        """The dry friction (dof,) of joints, which acts against their velocities."""
+        rest, moving = np.zeros((2, self.robot.dof)), np.array([[1.0], [2.0]]) + np.zeros(self.robot.dof)
+        once, twice = self._torque(rest, moving, rest, True) - self._torque(rest, moving, rest)
+        dry: Array = np.maximum(2.0 * once - twice, 0.0)
+        return dry
+
     def _torque(self, q: Array, qd: Array, qdd: Array, friction: bool = False) -> Array:
         return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity, friction=friction)
 
@@ -51,10 +59,20 @@ class TorqueLimits:
         """The torques (m, dof) of a motion (m, dof)."""
         return self._torque(q, qd, qdd, friction=True)
 
-    def terms(self, q: Array, slope: Array, bend: Array, squared_speed: Array) -> tuple[Array, ...]:
+    def find_reversals(self, path: Path, grid: Grid) -> Any:
+        """In which intervals which joints may reverse (k, dof), so that their dry friction jumps."""
+        if not self.resists or not self.dry.any():
+            return np.zeros((len(grid.piece), path.dof), dtype=bool)
+        slopes = path.slope_controls(grid.piece, grid.begin, grid.end)
+        return (slopes.min(axis=1) <= 0.0) & (slopes.max(axis=1) >= 0.0) & (self.dry > 0.0)
+
+    def terms(
+        self, q: Array, slope: Array, bend: Array, squared_speed: Array, reverses: Any
+    ) -> tuple[Array, ...]:
         """τ = along s̈ + across ṡ² + offset: the three terms, each (m, dof).
 
-        Damping is proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
+        Where a joint reverses (m, dof) its dry friction, which may act both ways, is left out. Damping is
+        proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
         """
         rest = np.zeros_like(q)
         rates = np.stack([rest, rest, slope]), np.stack([rest, slope, bend])
@@ -67,7 +85,7 @@ class TorqueLimits:
             self._torque(q, k * slope, bend, friction=True) - self._torque(q, k * slope, bend)
             for k in (1.0, 2.0)
         )
-        damping, dry = twice - once, 2.0 * once - twice
+        damping, dry = twice - once, np.where(reverses, 0.0, 2.0 * once - twice)
         x = squared_speed[:, None]
         root = np.sqrt(np.maximum(x, STANDING_SPEED * squared_speed.max(initial=1.0)))
         return along, across + 0.5 * damping / root, weight + dry + 0.5 * damping * root
@@ -75,12 +93,16 @@ class TorqueLimits:
 
 @dataclass
 class FrameLimits:
-    """Largest speed [m/s] and turn rate [rad/s] of a frame of a robot; inf where there is none."""
+    """Largest speed [m/s] and turn rate [rad/s] of a frame of a robot; inf where there is none.
+
+    is_feed: whether the speed is one that the frame is to have.
+    """
 
     robot: KinematicModel
     frame: str | None
     speed: float
     turn_rate: float
+    is_feed: bool = False
 
     def rates(self, q: Array, qd: Array) -> tuple[Array, Array]:
         """The speed and the turn rate (m,) at configurations and velocities (m, dof)."""
@@ -107,22 +129,41 @@ class SampledLimits:
     expected: tuple[Array, Array] | None = None
     margin: Array | None = None
     slower: Array | None = None
+    _last: tuple[tuple[Any, ...], tuple[Array | None, ...]] | None = None
 
     def __call__(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
         """The samples at the begin, the middle and the end of each interval, as the core wants them."""
+        along, across, offset, reversal, inverse = self._sample(piece, begin, end)
+        limit = None if self.torque is None else self.torque.limit
+        if inverse is not None and self.slower is not None:
+            inverse = inverse * self.slower[:, None]
+        margin = self.margin if reversal is None or self.margin is None else self.margin + reversal
+        return along, across, offset, reversal if margin is None else margin, limit, inverse
+
+    def _sample(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
+        """Along, across and offset of torques, dry friction (k, dof) of joints that reverse, inverse squares.
+
+        They are kept for the grid of the last call. Of damping they depend on the motion that is expected.
+        """
+        grid = (piece, begin, end)
+        if self._last is not None and all(map(np.array_equal, grid, self._last[0])):
+            return self._last[1]
         places = np.stack([begin, 0.5 * (begin + end), end], axis=1).ravel()
         pieces = np.repeat(piece, 3)
-        q, slope, bend = (self.path.evaluate_pieces(pieces, places, order) for order in range(3))
-        along = across = offset = limit = None
+        q, slope, bend = self.path.evaluate_motion(pieces, places)
+        along = across = offset = reversal = inverse = None
         if self.torque is not None:
-            along, across, offset = self.torque.terms(q, slope, bend, self._expected_at(pieces, places))
-            limit = self.torque.limit
-        inverse = None
+            reverses = self.torque.find_reversals(self.path, Grid(piece, begin, end))
+            reversal = np.where(reverses, self.torque.dry, 0.0) if reverses.any() else None
+            along, across, offset = self.torque.terms(
+                q, slope, bend, self._expected_at(pieces, places), np.repeat(reverses, 3, axis=0)
+            )
         if self.frame is not None:
             inverse = _inverse_squares(self.frame.shares(q, slope).reshape(-1, 3))
-            if self.slower is not None:
-                inverse = inverse * self.slower[:, None]
-        return along, across, offset, self.margin, limit, inverse
+        made = along, across, offset, reversal, inverse
+        if self.torque is None or not self.torque.resists:
+            self._last = grid, made
+        return made
 
     def _expected_at(self, pieces: Array, places: Array) -> Array:
         if self.expected is None:
@@ -137,8 +178,13 @@ class SampledLimits:
         q, qd, qdd = move_along_path(self.path, at)
         kept = True
         if self.torque is not None:
-            over = np.abs(self.torque.torques(q, qd, qdd)) - self.torque.limit
-            over = over.reshape(len(shares), -1, self.path.dof).max(axis=0)
+            tau = self.torque.torques(q, qd, qdd)
+            tau = tau.reshape(len(shares), -1, self.path.dof)
+            reverses = self.torque.find_reversals(self.path, timed.intervals)
+            if reverses.any():  # dry friction acts both ways there
+                dry = np.where(reverses, self.torque.dry, 0.0)
+                tau = np.abs(tau - dry * np.sign(qd).reshape(tau.shape)) + dry
+            over = (np.abs(tau) - self.torque.limit).max(axis=0)
             if (over > LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)).any():
                 kept = False
                 own = np.zeros_like(over) if self.margin is None else self.margin
@@ -189,7 +235,7 @@ class LimitShares:
         if self.frame is not None:
             speed, turn = self.frame.rates(q, qd)
             frame = self.frame.frame or "tip"
-            rows.append((frame, "speed", speed / self.frame.speed))
+            rows.append((frame, FEED if self.frame.is_feed else "speed", speed / self.frame.speed))
             rows.append((frame, "turn_rate", turn / self.frame.turn_rate))
         return rows
 

@@ -13,6 +13,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, guard_memory, leading_axes, whole_number
 from cspace.errors import InputError, InputTypeError, check_known
 from cspace.tables import one_line
+from cspace.tolerances import FARTHEST
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.states import (
     AxisLimits,
@@ -42,15 +43,18 @@ class TrajectoryBatch:
     def __init__(
         self,
         states: Array,
-        joint_names: Sequence[str] | None,
+        limits: AxisLimits,
         asked: Array,
+        synchronize: str,
+        joint_names: Sequence[str] | None = None,
     ) -> None:
         rows, dof = states.shape[0], states.shape[-1]
-        self._states, self._asked = states, asked
+        self._states, self._limits, self._asked = states, limits.rows, asked
+        self._mode = SYNCHRONIZE.index(synchronize)
         self.joint_names = None if joint_names is None else tuple(joint_names)
         self.durations, self.shortest = np.empty(rows), np.empty((rows, dof))
-        self._verdict, self._count = np.empty(rows, np.int32), np.empty((rows, dof), np.int32)
-        self._phases = np.empty((rows, dof, _core.PHASES_OF_AXIS, 3))
+        self._verdict = np.empty(rows, np.int32)
+        self._motions = np.empty((_core.NUMBERS_OF_MOTION, rows, dof))
 
     @property
     def possible(self) -> Any:
@@ -71,19 +75,18 @@ class TrajectoryBatch:
             f" the next one is {self.durations[i]:.6g} s"
         )
 
-    def _solve(self, limits: AxisLimits, cycle: float, synchronize: str, threads: int) -> None:
+    def _solve(self, cycle: float, threads: int) -> None:
         _core.solve_states(
             self._states,
-            limits.rows,
+            self._limits,
             self._asked,
             cycle,
-            SYNCHRONIZE.index(synchronize),
+            self._mode,
             threads,
             self._verdict,
             self.durations,
             self.shortest,
-            self._count,
-            self._phases,
+            self._motions,
         )
 
     def __bool__(self) -> bool:
@@ -95,22 +98,12 @@ class TrajectoryBatch:
     def __getitem__(self, index: int) -> PolynomialTrajectory:
         """The motion of one problem."""
         i = range(len(self))[index]
-        count = self._count[i]
-        dof, pieces = len(count), int(count.max(initial=1)) + 1  # one more for joints that end earlier
-        knots, origins = np.empty((dof, pieces + 1)), np.empty((dof, pieces))
-        coefficients = np.empty((dof, pieces, 4))
-        _core.fill_pieces(
-            self._states[i],
-            count,
-            self._phases[i],
-            float(self.durations[i]),
-            knots,
-            coefficients,
-            origins,
+        duration = float(self.durations[i])
+        motions = np.ascontiguousarray(self._motions[:, i])
+        pieces = _core.make_pieces(
+            self._states[i], self._limits, self.shortest[i], motions, duration, self._mode
         )
-        return PolynomialTrajectory._trusted(
-            knots, coefficients, origins, float(self.durations[i]), self.joint_names, self._reason_of(i)
-        )
+        return PolynomialTrajectory._trusted(*pieces, duration, self.joint_names, self._reason_of(i))
 
     def __iter__(self) -> Iterator[PolynomialTrajectory]:
         return (self[i] for i in range(len(self)))
@@ -162,6 +155,14 @@ def state_to_state(
     Kröger 2010 states the problem; Berscheid and Kröger 2021 solve it by polynomials of degree six.
     """
     check_known("synchronize", synchronize, SYNCHRONIZE)
+    if synchronize == "time" and duration is cycle is lowest_velocity is lowest_acceleration is None:
+        motion = move_plain_states(
+            (start, start_velocity, start_acceleration, goal, goal_velocity, goal_acceleration),
+            (velocity, acceleration, jerk),
+            None if joint_names is None else tuple(joint_names),
+        )
+        if motion is not None:
+            return motion[0]
     first = read_states(start, start_velocity, start_acceleration, "start")
     dof = first.shape[-1]
     last = read_states(goal, goal_velocity, goal_acceleration, "goal", dof)
@@ -182,6 +183,24 @@ def state_to_state(
     )
     batch.joint_names = None if joint_names is None else labels
     return batch if shape else batch[0]
+
+
+def move_plain_states(
+    states: tuple[Any, ...],
+    limits: tuple[Any, ...],
+    joint_names: tuple[str, ...] | None,
+    bounds: tuple[Any, ...] = (None, None),
+) -> tuple[PolynomialTrajectory, bool] | None:
+    """The fastest motion of plain arrays (n,), in one compiled call; None for all that is to be looked at.
+
+    states: start and goal, each with its velocity and acceleration. limits: velocity, acceleration, jerk.
+    bounds: lower and upper positions. Returns the motion and whether it keeps within bounds.
+    """
+    made = _core.move_plain(states, limits, bounds, FARTHEST)
+    if made is None or (joint_names is not None and len(joint_names) != len(made[0][0])):
+        return None
+    pieces, duration, keeps_within = made
+    return PolynomialTrajectory._trusted(*pieces, duration, joint_names, ""), keeps_within
 
 
 def read_durations(duration: ArrayLike | None, cycle: float | None, synchronize: str) -> Array:
@@ -218,13 +237,13 @@ def solve_batch(
 ) -> TrajectoryBatch:
     """The motions between checked states (..., 3, dof), as rows."""
     dof, rows = first.shape[-1], math.prod(shape)
-    with guard_memory("start", f"{rows} rows", 70.0 * rows * dof, "solve fewer at once"):
+    with guard_memory("start", f"{rows} rows", 200.0 * rows * dof, "solve fewer at once"):
         states = np.empty((*shape, 2, 3, dof))
         states[..., 0, :, :], states[..., 1, :, :] = first, last
         durations = np.empty(shape)
         durations[...] = asked
-        batch = TrajectoryBatch(states.reshape(rows, 2, 3, dof), None, durations.reshape(rows))
-    batch._solve(limits, cycle or 0.0, synchronize, threads)
+        batch = TrajectoryBatch(states.reshape(rows, 2, 3, dof), limits, durations.reshape(rows), synchronize)
+    batch._solve(cycle or 0.0, threads if rows > 1 else 1)
     check_parallel(batch, bool(shape))
     return batch
 

@@ -14,7 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.tables import join_words
-from cspace.tolerances import FARTHEST, TIMED_WITHIN
+from cspace.tolerances import FARTHEST, LIMIT_ROUNDING, TIMED_WITHIN
 from cspace.trajectory.jerk_timed_path import JerkTimedPath
 from cspace.trajectory.jerk_timing import (
     JerkLimits,
@@ -50,13 +50,15 @@ def time_parametrize(
     torque: ArrayLike | bool | None = None,
     speed: float | None = None,
     turn_rate: float | None = None,
+    feed: float | None = None,
     robot: KinematicModel | None = None,
     frame: str | None = None,
     gravity: ArrayLike = EARTH,
     start_speed: float = 0.0,
     end_speed: float = 0.0,
     grid: int | None = None,
-    tolerance: float = TIMED_WITHIN,
+    tolerance: float | None = None,
+    positions: bool = True,
 ) -> TimedPath:
     """The fastest motion along a path within limits of velocity, acceleration, torque and tip speed.
 
@@ -69,13 +71,15 @@ def time_parametrize(
     place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. jerk: likewise, per s², or True for
     those of limits; the acceleration is then continuous, and the motion rests at both ends. torque: one
     number, (dof,) [N·m or N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest
-    ones of the frame of robot, by default its tip. robot: whose dynamics and kinematics those need, by
+    ones of the frame of robot, by default its tip. feed [m/s]: the speed that it is to have, wherever the
+    limits allow it; `below_feed` lists where they do not. robot: whose dynamics and kinematics those need, by
     default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends.
     grid: about so many intervals; by default they are halved until that changes the duration by less than
-    `tolerance`, relative. Under jerk limits there are 30 of a piece, 150 or more.
+    `tolerance`, relative (0.001). Under jerk limits there are 30 of a piece, 150 or more, unless a tolerance
+    is given. positions: whether the path has to keep the limits of position of limits, too.
 
-    Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits or the
-    speeds at the ends are impossible.
+    Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits, the path
+    leaves those of position, or the speeds at the ends are impossible.
     Raises InputError for a wrong shape, NaN, negative limits, joints without a limit of acceleration, and
     jerk limits on a path whose second derivative jumps.
     Source: Pham and Pham 2018, with bounds over whole intervals; a barrier method under jerk limits.
@@ -86,14 +90,14 @@ def time_parametrize(
         )
     own, given = _choose_robot(robot, limits), getattr(limits, "limits", limits)
     if own is not None and own.floating:
-        _refuse_floating(own, torque, speed, turn_rate)
+        _refuse_floating(own, torque, speed, turn_rate, feed)
     labels = _label_joints(path, own)
     v = _read_limit("velocity", velocity, given, labels, required=False)
     a = _read_limit("acceleration", acceleration, given, labels, required=True)
     sampled = SampledLimits(
         path,
         _read_torque(torque, own, path, gravity),
-        _read_frame(speed, turn_rate, own, path, frame),
+        _read_frame(speed, turn_rate, feed, own, frame),
     )
     timer = _Timer(
         path,
@@ -102,11 +106,13 @@ def time_parametrize(
         sampled if sampled.torque is not None or sampled.frame is not None else None,
         bounded_number(start_speed, "start_speed", 0.0, "it must be 0 or more", FARTHEST),
         bounded_number(end_speed, "end_speed", 0.0, "it must be 0 or more", FARTHEST),
-        positive_number(tolerance, "tolerance"),
+        None if tolerance is None else positive_number(tolerance, "tolerance"),
         labels,
         None if own is None else own.joint_names,
         _read_jerk(jerk, given, labels),
     )
+    if positions and isinstance(given, Limits) and (left := timer.find_position_left(given)) is not None:
+        return left
     return timer.run(None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS))
 
 
@@ -121,7 +127,7 @@ class _Timer:
         sampled: SampledLimits | None,
         start: float,
         end: float,
-        tolerance: float,
+        tolerance: float | None,
         labels: tuple[str, ...],
         joint_names: tuple[str, ...] | None,
         jerk: Array | None,
@@ -142,31 +148,50 @@ class _Timer:
             return self.time_with_jerk(count)
         return self.time(None if count is None else Grid(*divide_path(*self.arrays, count)))
 
+    def find_position_left(self, limits: Limits) -> TimedPath | None:
+        """The answer where the path leaves the limits of position."""
+        lower, upper = (
+            bound + side * LIMIT_ROUNDING * np.maximum(1.0, np.abs(np.where(np.isinf(bound), 0.0, bound)))
+            for side, bound in ((-1.0, limits.lower), (1.0, limits.upper))
+        )
+        found = self.path.first_beyond(lower, upper)
+        if found is None:
+            return None
+        j, s, value = found
+        name, limit = ("upper", limits.upper[j]) if value > upper[j] else ("lower", limits.lower[j])
+        return self._refuse(
+            f"{self.labels[j]} is {value:.6g} at s = {s:.6g}, beyond its {name} limit {limit:.6g};"
+            " positions=False leaves these limits out",
+            s,
+        )
+
     def find_locked_joint(self) -> TimedPath | None:
         """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
-        moves = self.path.moving
         limits = {"velocity": self.velocity, "acceleration": self.acceleration}
         if self.jerk is not None:
             limits["jerk"] = self.jerk
+        moves = self.path.moving
         for name, limit in limits.items():
+            if limit.all():
+                continue
             locked = np.argwhere(moves & (limit == 0.0))
             if locked.size:
                 piece, j = map(int, locked[0])
                 s = float(self.path.breaks[piece])
                 return self._refuse(f"{self.labels[j]} moves from s = {s:.6g} on; its {name} limit is 0", s)
-        standing = np.flatnonzero(~moves.any(axis=1))
-        if standing.size:
+        if not moves.all() and (standing := np.flatnonzero(~moves.any(axis=1))).size:
             s = float(self.path.breaks[standing[0]])
             return self._refuse(f"nothing moves from s = {s:.6g} on; leave such pieces out of the path", s)
-        turning = self.path.turning_places()
-        if turning.size:
-            s = float(turning[0])
+        if self.path.turning_places.size:
+            s = float(self.path.turning_places[0])
             return self._refuse(
                 f"the slope vanishes at s = {s:.6g}, where the second derivative jumps; make the path in"
                 " parts that end there",
                 s,
             )
         limited = np.isfinite(self.velocity) | np.isfinite(self.acceleration)
+        if limited.all() and moves.all():
+            return None
         free = ~(moves & limited).any(axis=1)
         if self.sampled is None and free.any():
             s = float(self.path.breaks[np.flatnonzero(free)[0]])
@@ -228,7 +253,7 @@ class _Timer:
             self.velocity,
             self.acceleration,
             *self.ends,
-            self.tolerance,
+            TIMED_WITHIN if self.tolerance is None else self.tolerance,
             None if grid is None else (grid.piece, grid.begin, grid.end),
             sample,
         )
@@ -240,9 +265,9 @@ class _Timer:
             reason = f"{outcome}_speed is {speed:.6g}; from {least:.6g} to {most:.6g} are possible"
             s = 0.0 if outcome == "start" else self.path.length
             return self._refuse(reason, s, (least, most))
-        standing = np.flatnonzero((squared_speed[:-1] == 0.0) & (squared_speed[1:] == 0.0))
-        if standing.size:
-            s = self._parameter(used, int(standing[0]))
+        rests = squared_speed == 0.0
+        if (rests[:-1] & rests[1:]).any():
+            s = self._parameter(used, int(np.flatnonzero(rests[:-1] & rests[1:])[0]))
             return self._refuse(f"the motion stands at s = {s:.6g}; pass a finer grid=", s)
         return TimedPath(
             self.path,
@@ -300,11 +325,12 @@ def _choose_robot(robot: Any, limits: Any) -> KinematicModel | None:
     return limits if isinstance(limits, KinematicModel) else None
 
 
-def _refuse_floating(robot: KinematicModel, torque: Any, speed: Any, turn_rate: Any) -> None:
+def _refuse_floating(robot: KinematicModel, torque: Any, *rates: Any) -> None:
     """InputError for limits that need the pose of the base."""
-    if not (torque is None or torque is False) or speed is not None or turn_rate is not None:
+    if not (torque is None or torque is False) or any(rate is not None for rate in rates):
         raise InputError(
-            f"the base of {robot.name} is floating; torque=, speed= and turn_rate= need one that stands"
+            f"the base of {robot.name} is floating; torque=, speed=, turn_rate= and feed="
+            " need one that stands"
         )
 
 
@@ -339,8 +365,8 @@ def _read_limit(
             raise InputError(f"limits is of {len(own)} joints, the path of {n}")
     else:
         raise InputTypeError(f"limits is a {type(limits).__name__}; give Limits or a robot")
-    absent = [label for label, limit in zip(labels, own, strict=True) if np.isinf(limit)]
-    if required and absent:
+    if required and np.isinf(own).any():
+        absent = [label for label, limit in zip(labels, own, strict=True) if np.isinf(limit)]
         which = "" if len(absent) == n else f" of {join_words(absent)}"
         raise InputError(f"there are no {name} limits{which}; pass {argument or name}=, with inf for none")
     return own
@@ -376,13 +402,17 @@ def _read_torque(
 
 
 def _read_frame(
-    speed: Any, turn_rate: Any, robot: KinematicModel | None, path: Path, frame: str | None
+    speed: Any, turn_rate: Any, feed: Any, robot: KinematicModel | None, frame: str | None
 ) -> FrameLimits | None:
-    if speed is None and turn_rate is None:
+    given = {"speed": speed, "turn_rate": turn_rate, "feed": feed}
+    if all(value is None for value in given.values()):
         return None
     if robot is None:
-        raise InputTypeError("speed= and turn_rate= need the kinematics of a robot; pass robot=")
+        raise InputTypeError("speed=, turn_rate= and feed= need the kinematics of a robot; pass robot=")
     rule = "it must be one positive number"
-    fastest = np.inf if speed is None else positive_number(speed, "speed", rule)
-    turns = np.inf if turn_rate is None else positive_number(turn_rate, "turn_rate", rule)
-    return FrameLimits(robot, frame, fastest, turns)
+    fastest, turns, held = (
+        np.inf if value is None else positive_number(value, name, rule) for name, value in given.items()
+    )
+    if speed is not None and held < np.inf and held > fastest:
+        raise InputError(f"feed is {held:g}, more than speed, which is {fastest:g}; leave one of them out")
+    return FrameLimits(robot, frame, min(fastest, held), turns, held < np.inf)

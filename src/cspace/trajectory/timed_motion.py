@@ -9,7 +9,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.trajectory.limit_check import BindingLimit
 from cspace.trajectory.path import Path
-from cspace.trajectory.timed_path import Grid, TimedPath
+from cspace.trajectory.timed_path import Grid, SlowStretch, TimedPath
 from cspace.trajectory.trajectory import Trajectory
 
 
@@ -57,6 +57,10 @@ class TimedMotion(Trajectory):
         """When which limit binds, as of the TimedPath."""
         return self.timed.binding(limits)
 
+    def below_feed(self) -> tuple[SlowStretch, ...]:
+        """When the tip is slower than its feed, as of the TimedPath."""
+        return self.timed.below_feed()
+
     def scaled(self, factor: float) -> TimedPath:
         """The same path, slower by a factor."""
         return self.timed.scaled(factor)
@@ -76,15 +80,15 @@ class TimedMotion(Trajectory):
 
 
 def stand_still(q: Array, length: float, reason: str, place: float, joint_names: Any) -> TimedPath:
-    """No motion along a path of that length: it stays at q (dof,), with the reason."""
+    """No motion: it stays at q (dof,). Without a reason that is what was asked for."""
     still = Path([0.0, length], np.nan_to_num(np.stack([q, q]))[None])
     empty = Grid(np.zeros(0, dtype=np.int32), np.zeros(0), np.zeros(0))
     return TimedPath(
         still,
         empty,
         np.zeros(0),
-        proved=False,
-        converged=False,
+        proved=not reason,
+        converged=not reason,
         reason=reason,
         place=place,
         joint_names=joint_names,

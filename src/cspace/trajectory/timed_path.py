@@ -10,16 +10,35 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
+from cspace.errors import InputError
 from cspace.model.values import freeze_array
 from cspace.tables import count_things, one_line, shown
 from cspace.trajectory.limit_check import BindingLimit
-from cspace.trajectory.path import HIGHEST_ORDER, Path, _powers_to_bernstein
+from cspace.trajectory.path import HIGHEST_ORDER, Path, _powers_to_bernstein, restrict_pieces
 from cspace.trajectory.piece_roots import find_piece_roots
 from cspace.trajectory.trajectory import Trajectory
 
 NEAR_LIMIT: Final = 0.99
 """Share of a limit from which on it binds: an interval attains its limit at one place and keeps below it
 elsewhere, by as much as its acceleration changes."""
+
+
+FEED: Final = "feed"
+"""The name of the speed that a frame is to have."""
+
+
+class SlowStretch(NamedTuple):
+    """A stretch of time on which a frame is slower than its feed.
+
+    begin, end [s]. slowest [m/s]: its least speed, at three places of each interval. joint, limit: what
+    slows it down, of which most is used.
+    """
+
+    begin: float
+    end: float
+    slowest: float
+    joint: str
+    limit: str
 
 
 class Grid(NamedTuple):
@@ -179,24 +198,53 @@ class TimedPath(Trajectory):
         """Which limit determines the speed, when: on each interval the one of which most is used.
 
         Without limits those that the path was timed with; their names are "velocity", "acceleration",
-        "jerk", "torque", "speed" and "turn_rate", the last two of a frame. Intervals that use no limit
-        fully are left out. With limits (Limits or a robot) as of Trajectory.binding. Returns BindingLimits.
+        "jerk", "torque", "speed" or "feed", and "turn_rate", the last ones of a frame. Intervals that use
+        no limit fully are left out. With limits (Limits or a robot) as of Trajectory.binding. Returns
+        BindingLimits.
         """
         if limits is not None or self._ratios is None:
             return super().binding(limits)
         if len(self._times) == 1:
             return ()
-        used = self._ratios(self.path, self._look_at((0.0, 0.5, 1.0)))
-        share = np.array([ratio.reshape(3, -1).max(axis=0) for _, _, ratio in used])
-        most = share.argmax(axis=0)
-        most[share.max(axis=0) < NEAR_LIMIT] = -1
-        begins = np.flatnonzero(np.append(True, np.diff(most) != 0))
-        ends = np.append(begins[1:], len(most))
+        used, shares = self._use_limits()
+        most = _find_binding(shares.max(axis=1))
         return tuple(
             BindingLimit(used[most[a]][0], used[most[a]][1], float(self._times[a]), float(self._times[b]))
-            for a, b in zip(begins, ends, strict=True)
+            for a, b in _find_runs(most)
             if most[a] >= 0
         )
+
+    def below_feed(self) -> tuple[SlowStretch, ...]:
+        """When the frame is slower than the feed that the motion was timed with, and which limit slows it.
+
+        Returns SlowStretches in order; the first and the last are those from and to rest.
+        Raises InputError without a feed.
+        """
+        used, shares = self._use_limits() if self._ratios is not None and len(self._times) > 1 else ([], None)
+        row = next((k for k, each in enumerate(used) if each[1] == FEED), None)
+        if row is None or shares is None:
+            raise InputError("the motion was timed without a feed; pass feed= to time_parametrize")
+        held = shares[row].min(axis=0)
+        others = shares.max(axis=1)
+        others[row] = 0.0
+        most = np.where(held < NEAR_LIMIT, others.argmax(axis=0), row)
+        feed = self._ratios.frame.speed  # type: ignore[union-attr]
+        return tuple(
+            SlowStretch(
+                float(self._times[a]),
+                float(self._times[b]),
+                feed * float(held[a:b].min()),
+                *used[most[a]][:2],
+            )
+            for a, b in _find_runs(most)
+            if most[a] != row
+        )
+
+    def _use_limits(self) -> tuple[list[tuple[str, str, Array]], Array]:
+        """The limits, and their shares (limits, 3, k) in use at three places of every interval."""
+        assert self._ratios is not None
+        used = self._ratios(self.path, self._look_at((0.0, 0.5, 1.0)))
+        return used, np.array([ratio.reshape(3, -1) for _, _, ratio in used])
 
     def _look_at(self, shares: Sequence[float]) -> Places:
         """Places at shares of the length of every interval, share by share."""
@@ -250,6 +298,19 @@ class TimedPath(Trajectory):
         )
 
 
+def _find_binding(shares: Array) -> npt.NDArray[np.intp]:
+    """The limit (k,) of which most is used on each interval, of shares (limits, k); −1 where none binds."""
+    most: npt.NDArray[np.intp] = shares.argmax(axis=0)
+    most[shares.max(axis=0) < NEAR_LIMIT] = -1
+    return most
+
+
+def _find_runs(values: npt.NDArray[np.intp]) -> list[tuple[int, int]]:
+    """Begins and ends of the runs of equal values (k,)."""
+    begins = np.flatnonzero(np.append(True, np.diff(values) != 0))
+    return list(zip(begins.tolist(), np.append(begins[1:], len(values)).tolist(), strict=True))
+
+
 def move_along(path: Path, at: Places, order: int) -> Array:
     """A derivative by time (m, dof) of a motion along a path, by the chain rule."""
     if order == 0:
@@ -268,20 +329,6 @@ def move_along(path: Path, at: Places, order: int) -> Array:
 
 def move_along_path(path: Path, at: Places) -> tuple[Array, Array, Array]:
     """Positions, velocities and accelerations (m, dof) of a motion along a path."""
-    q, slope, bend = (path.evaluate_pieces(at.piece, at.local, order) for order in range(3))
+    q, slope, bend = path.evaluate_motion(at.piece, at.local)
     v, u = at.speed[:, None], at.acceleration[:, None]
     return q, slope * v, bend * (v * v) + slope * u
-
-
-def restrict_pieces(control_points: Array, begin: Array, end: Array) -> Array:
-    """Control points (k, degree + 1, dof) of parts [begin, end] of pieces, by two subdivisions."""
-    made = np.array(control_points)
-    degree = made.shape[1] - 1
-    t = end[:, None, None]
-    for level in range(1, degree + 1):
-        made[:, level:] = made[:, level - 1 : -1] + t * (made[:, level:] - made[:, level - 1 : -1])
-    t = (begin / end)[:, None, None]
-    for level in range(1, degree + 1):
-        kept = degree + 1 - level
-        made[:, :kept] = made[:, :kept] + t * (made[:, 1 : kept + 1] - made[:, :kept])
-    return made

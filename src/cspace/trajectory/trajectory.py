@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats, positive_number, whole_number
+from cspace.arrays import Array, as_floats, one_number, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
 from cspace.tables import count_things, one_line, show_fields, shown
 from cspace.tolerances import CONTINUITY_ROUNDING, TIME_ROUNDING
@@ -112,6 +112,15 @@ class Trajectory(ABC):
         order = whole_number(order, "order", 0, HIGHEST_ORDER)
         times = self._check_times(as_floats(t, "t"))
         return self._evaluate(times.ravel(), order).reshape((*times.shape, self.dof))
+
+    def state(self, t: float) -> tuple[Array, Array, Array]:
+        """Positions, velocities and accelerations (dof,) at any time [s], at rest before 0 and after the
+        end."""
+        time = min(max(one_number(t, "t"), 0.0), self.duration)
+        q = self(time)
+        if time != t:
+            return q, np.zeros_like(q), np.zeros_like(q)
+        return q, self(time, 1), self(time, 2)
 
     def _check_times(self, times: Array) -> Array:
         slack = TIME_ROUNDING * self.duration

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/optimizer.hpp"
 
 namespace cspace::localization {
@@ -85,6 +86,39 @@ class FalseLoopSolver {
         return settle(state, find_kept(weights));
     }
 
+    // The same in the order of time: measurements come in batches by the last of their poses, and the poses
+    // to come follow by dead reckoning. Drift is small that way where it is large at the end of dead
+    // reckoning; new measurements begin with wider kernels.
+    RobustAnswer<Space> scale_in_time(const State& start, double width) {
+        constexpr std::size_t most_batches = 40;
+        constexpr int most_steps = 4;        // per width
+        constexpr double least_step = 1e-2;  // [m or rad]
+        constexpr double widths[] = {30, 10, 3, 1};
+        State state = start;
+        const std::vector<int> times = find_times();
+        std::vector<int> ends = find_batches(times, most_batches);
+        std::vector<double> weights(graph_.factors(), 1.0);
+        int begin = 0;
+        for (int end : ends) {
+            reckon_after(begin, state);
+            for (double share : widths) {
+                for (int step = 0; step < most_steps; ++step) {
+                    measure_squares(graph_, state, options_.residual, squares_);
+                    for (std::size_t k = 0; k < weights.size(); ++k) {
+                        const double own = times[k] > begin ? share * width : width;
+                        weights[k] = times[k] > end ? 0.0
+                                     : trusted_[k]
+                                         ? 1.0
+                                         : evaluate_kernel(RobustKernel::dcs, squares_[k], own).weight;
+                    }
+                    if (!(step_with(weights, state) > least_step)) break;
+                }
+            }
+            begin = end;
+        }
+        return scale_covariances(state, width);
+    }
+
     // Graduated non-convexity of truncated least squares.
     RobustAnswer<Space> graduate(const State& start) {
         constexpr int most_rounds = 60, steps_per_round = 2, least_rounds = 4;
@@ -117,7 +151,46 @@ class FalseLoopSolver {
         return cost;
     }
 
+    // How many doubted measurements an answer keeps, and how many there are.
+    std::size_t count_kept(const RobustAnswer<Space>& answer) const {
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < trusted_.size(); ++k)
+            kept += std::size_t(!trusted_[k] && answer.is_used[k]);
+        return kept;
+    }
+    std::size_t count_doubted() const { return std::size_t(std::count(trusted_.begin(), trusted_.end(), 0)); }
+
   private:
+    // The last pose of each measurement.
+    std::vector<int> find_times() const {
+        std::vector<int> times;
+        times.reserve(graph_.factors());
+        for (const auto& edge : graph_.edges) times.push_back(std::max(edge.from, edge.to));
+        for (const auto& seen : graph_.sightings) times.push_back(seen.pose);
+        return times;
+    }
+    // The last times of batches with about as many doubted measurements each; the last one takes everything.
+    std::vector<int> find_batches(const std::vector<int>& times, std::size_t most) const {
+        std::vector<int> doubted;
+        for (std::size_t k = 0; k < times.size(); ++k) {
+            if (!trusted_[k]) doubted.push_back(times[k]);
+        }
+        std::sort(doubted.begin(), doubted.end());
+        std::vector<int> ends;
+        for (std::size_t batch = 1; batch < most && !doubted.empty(); ++batch) {
+            const int end = doubted[batch * doubted.size() / most];
+            if (ends.empty() || end > ends.back()) ends.push_back(end);
+        }
+        const int last = int(graph_.start.poses.size());
+        if (ends.empty() || ends.back() < last) ends.push_back(last);
+        return ends;
+    }
+    // Moves the poses after one along trusted measurements.
+    void reckon_after(int time, State& state) const {
+        std::vector<char> is_known(graph_.is_held);
+        for (int k = 0; k <= time && k < int(is_known.size()); ++k) is_known[std::size_t(k)] = 1;
+        reckon_from(graph_, std::move(is_known), state);
+    }
     static double graduated_weight(double square, double limit, double convexity) {
         if (square <= convexity / (convexity + 1) * limit) return 1;
         if (square >= (convexity + 1) / convexity * limit) return 0;
@@ -157,17 +230,19 @@ class FalseLoopSolver {
         return optimizer_.take_step(state);
     }
 
-    // χ² per degree of freedom of these measurements, between the bounds of a scale.
+    // χ² per degree of freedom of these measurements, between the bounds of a scale; towards 1 where few
+    // doubted measurements count, which say little.
     double find_scale(const std::vector<char>& is_used) const {
-        constexpr double least = 0.1;  // errors have heavier tails than the quantile knows
-        double sum = 0;
-        std::ptrdiff_t numbers = -unknowns_;
+        constexpr double least = 0.1;    // errors have heavier tails than the quantile knows
+        constexpr double belief = 0.05;  // in 1, as a share of the numbers of all doubted measurements
+        double sum = 0, doubted = 0, numbers = -double(unknowns_);
         for (std::size_t k = 0; k < is_used.size(); ++k) {
-            if (!is_used[k]) continue;
-            sum += squares_[k];
-            numbers += k < graph_.edges.size() ? Space::freedom : Space::dimension;
+            const double own = k < graph_.edges.size() ? Space::freedom : Space::dimension;
+            if (!trusted_[k]) doubted += own;
+            if (is_used[k]) sum += squares_[k], numbers += own;
         }
-        return numbers > 0 ? std::clamp(sum / double(numbers), least, 1.0) : 1.0;
+        if (!(numbers > 0)) return 1;
+        return std::clamp((sum + belief * doubted) / (numbers + belief * doubted), least, 1.0);
     }
 
     // Solves with the measurements within their limits, until these stay the same. is_kept: those that count

@@ -56,6 +56,8 @@ class LinearGraph {
         for (auto& side : sides_) solver_.solve(side.data());
         return true;
     }
+    SparseCholesky<Fronts>& solver() { return solver_; }
+    std::vector<double>& values() { return values_; }
     const double* solution(int side, int block) const {
         return sides_[std::size_t(side)].data() + solver_.row_of(block);
     }
@@ -173,17 +175,16 @@ void place_landmarks(const PoseGraph<Space>& graph, GraphState<Space>& state) {
     place_by_bearings(graph, state, is_placed);
 }
 
-// Dead reckoning from the held poses: along trusted edges as far as they reach, then along the others.
+// Dead reckoning from known poses of a state: along trusted edges as far as they reach, then along the
+// others.
 template <class Space>
-GraphState<Space> reckon_poses(const PoseGraph<Space>& graph) {
-    GraphState<Space> state = graph.start;
+void reckon_from(const PoseGraph<Space>& graph, std::vector<char> is_known, GraphState<Space>& state) {
     const std::size_t n = state.poses.size();
     std::vector<std::vector<std::size_t>> touching(n);
     for (std::size_t k = 0; k < graph.edges.size(); ++k) {
         touching[std::size_t(graph.edges[k].from)].push_back(k);
         touching[std::size_t(graph.edges[k].to)].push_back(k);
     }
-    std::vector<char> is_known(graph.is_held);
     std::deque<std::size_t> trusted, others;
     const auto leave_pose = [&](std::size_t pose) {
         for (std::size_t k : touching[pose]) (graph.is_trusted[k] ? trusted : others).push_back(k);
@@ -203,6 +204,13 @@ GraphState<Space> reckon_poses(const PoseGraph<Space>& graph) {
         is_known[found] = 1;
         leave_pose(found);
     }
+}
+
+// Dead reckoning from the held poses, and landmarks where their first sighting has them.
+template <class Space>
+GraphState<Space> reckon_poses(const PoseGraph<Space>& graph) {
+    GraphState<Space> state = graph.start;
+    reckon_from(graph, graph.is_held, state);
     place_landmarks(graph, state);
     return state;
 }

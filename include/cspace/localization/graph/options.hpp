@@ -6,7 +6,8 @@
 
 namespace cspace::localization {
 
-enum class ResidualKind { twist, g2o };
+// chordal: an angle θ counts as 2 sin(θ/2).
+enum class ResidualKind { twist, g2o, chordal };
 enum class RobustKernel { none, huber, cauchy, geman_mcclure, tukey, dcs };
 // Against false loops: a kernel alone, dynamic covariance scaling, graduated non-convexity, or the better of
 // both.
@@ -31,6 +32,13 @@ struct GraphOptions {
 struct GraphStats {
     int iterations = 0, factorizations = 0, analyses = 0;
     std::vector<double> costs;  // of each linearisation
+};
+
+// Whether a global optimum of the chordal problem was found from an answer. The bound is below the χ² of all
+// states; cost is that of the optimum next to the chordal one.
+struct CertificateResult {
+    bool is_proved = false;
+    double bound = 0, cost = 0;
 };
 
 }  // namespace cspace::localization

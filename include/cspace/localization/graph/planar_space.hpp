@@ -86,6 +86,14 @@ struct PlanarSpace {
     // The residual of g2o, [x, y, θ] of E, and its derivative as above (Kümmerle et al. 2011).
     static Twist g2o_residual(const Pose& pose) { return {pose.x, pose.y, std::atan2(pose.s, pose.c)}; }
     static Square g2o_jacobian(const Pose& pose) { return {pose.c, -pose.s, 0, pose.s, pose.c, 0, 0, 0, 1}; }
+    // The residual of the chordal problem, [x, y, 2 sin(θ/2)], and its derivative.
+    static Twist chordal_residual(const Pose& pose) {
+        return {pose.x, pose.y, 2 * std::sin(std::atan2(pose.s, pose.c) / 2)};
+    }
+    static Square chordal_jacobian(const Pose& pose) {
+        const double half = std::cos(std::atan2(pose.s, pose.c) / 2);
+        return {pose.c, -pose.s, 0, pose.s, pose.c, 0, 0, 0, half};
+    }
     // The adjoint of X on twists.
     static Square adjoint(const Pose& pose) {
         return {pose.c, -pose.s, pose.y, pose.s, pose.c, -pose.x, 0, 0, 1};

@@ -61,7 +61,9 @@ EdgeError<Space> evaluate_edge(const RelativePose<Space>& edge, const GraphState
     EdgeError<Space> found;
     found.motion = Space::between(state.poses[std::size_t(edge.from)], state.poses[std::size_t(edge.to)]);
     found.error = Space::between(edge.z, found.motion);
-    found.e = kind == ResidualKind::twist ? Space::logarithm(found.error) : Space::g2o_residual(found.error);
+    found.e = kind == ResidualKind::twist ? Space::logarithm(found.error)
+              : kind == ResidualKind::g2o ? Space::g2o_residual(found.error)
+                                          : Space::chordal_residual(found.error);
     return found;
 }
 
@@ -86,8 +88,9 @@ EdgeModel<Space> linearize_edge(const RelativePose<Space>& edge, const GraphStat
                                 ResidualKind kind) {
     constexpr std::size_t n = Space::freedom;
     const EdgeError<Space> found = evaluate_edge(edge, state, kind);
-    const typename Space::Square J =
-        kind == ResidualKind::twist ? Space::log_jacobian(found.e) : Space::g2o_jacobian(found.error);
+    const typename Space::Square J = kind == ResidualKind::twist ? Space::log_jacobian(found.e)
+                                     : kind == ResidualKind::g2o ? Space::g2o_jacobian(found.error)
+                                                                 : Space::chordal_jacobian(found.error);
     typename Space::Square A = Space::adjoint(Space::inverse(found.motion));
     for (double& x : A) x = -x;  // dξⱼ = −Ad(Xⱼ⁻¹ Xᵢ) dξᵢ
     const typename Space::Square WJ = multiply<n, n, n>(edge.W, J);

@@ -155,6 +155,17 @@ struct SpatialSpace {
         }
         return J;
     }
+    // The residual of the chordal problem: the vector of the quaternion counts twice.
+    static Twist chordal_residual(const Pose& pose) {
+        Twist e = g2o_residual(pose);
+        for (std::size_t k = 3; k < 6; ++k) e[k] *= 2;
+        return e;
+    }
+    static Square chordal_jacobian(const Pose& pose) {
+        Square J = g2o_jacobian(pose);
+        for (std::size_t k = 18; k < 36; ++k) J[k] *= 2;
+        return J;
+    }
     static Square adjoint(const Pose& pose) {
         const Mat3d TR = skew(pose.t) * pose.R;
         Square A{};

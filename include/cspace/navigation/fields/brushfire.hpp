@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/maps/clearance.hpp"
 #include "cspace/math/interrupts.hpp"
-#include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/fields/pieces.hpp"
 #include "cspace/navigation/fields/thinning.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
@@ -49,7 +49,7 @@ class Diagram {
 
     const maps::BitGrid& grid() const { return grid_; }
     // Without the nearest blocked cells: mark() says more.
-    const Clearance& clearance() const { return clearance_; }
+    const maps::Clearance& clearance() const { return clearance_; }
     const Pieces& pieces() const { return pieces_; }
     // The place of the boundary nearest to a free cell.
     Pieces::Mark mark(std::uint32_t cell) const { return Pieces::Mark(mark_[cell]); }
@@ -69,7 +69,7 @@ class Diagram {
 
   private:
     maps::BitGrid grid_;
-    Clearance clearance_;
+    maps::Clearance clearance_;
     Pieces pieces_;
     std::vector<Fate> fate_;
     // In reused memory: new pages take longer than writing to them.

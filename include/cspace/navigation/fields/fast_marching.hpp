@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
+#include "cspace/maps/clearance.hpp"
 #include "cspace/maps/grid_frame.hpp"
 #include "cspace/math/interrupts.hpp"
-#include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/route.hpp"
 #include "cspace/search/best_first.hpp"
 #include "cspace/tolerances.hpp"
@@ -23,7 +23,8 @@ inline constexpr double never = std::numeric_limits<double>::infinity();
 class Front {
   public:
     // slow_within: nearer to walls than this the speed falls with the clearance [cells]; 0: it is 1.
-    Front(const maps::BitGrid& grid, const Clearance* clearance, double slow_within, std::uint32_t until)
+    Front(const maps::BitGrid& grid, const maps::Clearance* clearance, double slow_within,
+          std::uint32_t until)
         : grid_(grid),
           clearance_(clearance),
           slow_within_(slow_within),
@@ -60,7 +61,7 @@ class Front {
 
   private:
     const maps::BitGrid& grid_;
-    const Clearance* clearance_;
+    const maps::Clearance* clearance_;
     double slow_within_;
     std::uint32_t until_;
     std::vector<double> time_;
@@ -201,8 +202,8 @@ struct MarchAnswer {
 };
 
 inline MarchAnswer march_front(const maps::BitGrid& grid, const maps::GridFrame& frame,
-                               const Clearance* clearance, double slow_within, Point start, maps::Cell from,
-                               Point goal, maps::Cell to, Trace* trace) {
+                               const maps::Clearance* clearance, double slow_within, Point start,
+                               maps::Cell from, Point goal, maps::Cell to, Trace* trace) {
     MarchAnswer answer;
     std::vector<std::uint32_t> order;
     Front front(grid, clearance, slow_within, grid.number(from));

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/maps/clearance.hpp"
 #include "cspace/math/interrupts.hpp"
-#include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/fields/factor_level.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/navigation/grid/moves.hpp"
@@ -33,7 +33,8 @@ namespace cspace::navigation {
 
 class HittingSolver {
   public:
-    HittingSolver(const maps::BitGrid& grid, const Clearance& clearance, maps::Cell goal) : grid_(grid) {
+    HittingSolver(const maps::BitGrid& grid, const maps::Clearance& clearance, maps::Cell goal)
+        : grid_(grid) {
         number_cells(clearance, goal);
         join_cells();
         make_levels();
@@ -84,7 +85,7 @@ class HittingSolver {
     bool is_blocked(std::uint32_t n) const { return grid_.blocked(grid_.cell(n)); }
 
     // Cells in the order of a first guess: half the decay along a corridor as wide as the clearance allows.
-    void number_cells(const Clearance& clearance, maps::Cell goal) {
+    void number_cells(const maps::Clearance& clearance, maps::Cell goal) {
         auto far = filled_vector(grid_.numbers(), std::numeric_limits<double>::infinity());
         InterruptPoll poll(512);
         using Entry = std::pair<double, std::uint32_t>;
@@ -214,8 +215,8 @@ class HittingSolver {
 
 class HarmonicField : public HittingSolver {
   public:
-    HarmonicField(const maps::BitGrid& grid, const Clearance& clearance, maps::Cell goal, double residual,
-                  int most_cycles)
+    HarmonicField(const maps::BitGrid& grid, const maps::Clearance& clearance, maps::Cell goal,
+                  double residual, int most_cycles)
         : HittingSolver(grid, clearance, goal) {
         solve(residual, most_cycles);
         visit_range(1, size(), [&](std::size_t i) { rests_ += uphill(cell(i)) == cell(i); });

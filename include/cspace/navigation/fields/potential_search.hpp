@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "cspace/navigation/fields/clearance.hpp"
+#include "cspace/maps/clearance.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/navigation/grid/search.hpp"
 #include "cspace/search/best_first.hpp"
@@ -24,7 +24,7 @@ struct PotentialGains {
 
 // The order of the search.
 struct PotentialOrder {
-    const Clearance& clearance;
+    const maps::Clearance& clearance;
     const PotentialGains& gains;
     maps::Cell goal;
 
@@ -47,7 +47,7 @@ struct PotentialOrder {
 };
 
 // A cell that a shorter way reaches is settled again; a greedy search looks at each cell once.
-inline void find_by_potential(const maps::BitGrid& grid, const Clearance& clearance,
+inline void find_by_potential(const maps::BitGrid& grid, const maps::Clearance& clearance,
                               const PotentialGains& gains, Corners corners, maps::Cell start, maps::Cell goal,
                               GridAnswer& answer) {
     PagedNodes<Steps> nodes;

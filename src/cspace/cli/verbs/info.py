@@ -13,6 +13,7 @@ from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Output, Table
 from cspace.cli.robot import gripper_note, load_chosen
+from cspace.cli.state import loop_words
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -92,6 +93,7 @@ def robot_document(robot: Robot, task: tuple[str, int]) -> dict[str, Any]:
         "leaves": list(robot.leaves),
         "joints": [joint_document(robot, k) for k in range(len(robot.joint_names))],
         "frames": list(robot.frames),
+        "loops": loop_words(robot),
         "poses": {name: dict(values) for name, values in robot.description.poses.items()},
         "geometry": geometry_document(robot),
         "freedoms": {
@@ -147,6 +149,10 @@ def print_facts(out: Output, robot: Robot, facts: dict[str, Any], note: str, *, 
     lines["base"] = facts["base"]
     lines["tip"] = (tip or f"not chosen; one of {', '.join(facts['leaves'])}") + (note and f" ({note})")
     lines["frames"] = ", ".join(facts["frames"])
+    if facts["loops"]:
+        lines["closed loops"] = (
+            f"{', '.join(facts['loops'])}; kinematics and limits here are those of the tree"
+        )
     lines["poses"] = ", ".join(facts["poses"])
     lines["geometry"] = facts["geometry"]["text"] if facts["geometry"] else ""
     lines["freedoms"] = freedom_text(freedoms)

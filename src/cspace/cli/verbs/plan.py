@@ -19,6 +19,7 @@ from cspace.cli.arguments import (
     named_value,
     read_angle,
     read_length,
+    read_number,
     read_radians,
     read_seed,
     split_numbers,
@@ -37,11 +38,13 @@ from cspace.cli.robot import (
     need_chain,
     read_configuration,
 )
+from cspace.cli.samples_files import check_samples_file, write_samples
 from cspace.cli.verbs.planners import options_given, typed_value
 from cspace.errors import InputError, InputTypeError
 
 if TYPE_CHECKING:
     from cspace.collision import Scene
+    from cspace.plan_motion import Motion
     from cspace.planning import Plan
     from cspace.robot import Robot
 
@@ -52,10 +55,13 @@ cspace plan ur5e --from up --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
 cspace plan panda --spheres spheres.json --from ready --to 0 0 0 -pi/2 0 pi/2 0 --scene cell.toml -o way.yaml
 cspace plan ur5e --xyz 0.4 0.2 0.4 --direction 0 0 -1 --margin 5mm --json
 cspace plan ur5e --xyz 0.4 0.2 0.4 --box 0.1 0.1 0 --direction 0 0 -1 --within 20deg
+cspace plan panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --trajectory move.yaml --plot move.gif
 cspace plan arm.urdf --from 0 0 0 0 0 0 --to 1 0 0 0 0 0 --to -1 0 0 0 0 0 --scene cell.toml --seed 7
 """
 HOME: Final = "home"
 """The named pose where a path starts unless another start is given."""
+FILM_DPI: Final = 80.0
+"""Pixels per inch of a film: a fifth of a megabyte for a second."""
 MOST_CORNERS: Final = 20
 """The longest path of which every corner is printed without --details."""
 
@@ -74,7 +80,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_option(parser, "--verify", text, choices=("mesh",))
     add_option(parser, "--details", "all corners of a long path, and the statistics of the search")
     add_option(parser, "-o --output FILE", "write the path (.yaml, .json, .csv)", Path)
-    add_option(parser, "--plot FILE", "draw the motion in its scene (.png, .svg, .pdf)", Path)
+    text = "draw the motion in its scene (.png, .svg, .pdf; with --trajectory also .gif, a film)"
+    add_option(parser, "--plot FILE", text, Path)
+    add_timing(parser)
     add_degrees(parser)
     add_chain(parser)
 
@@ -108,6 +116,17 @@ def add_planner(parser: argparse.ArgumentParser) -> None:
     add_option(group, "--seed N", "the seed of its samples (default: 0)", read_seed, default=0)
 
 
+def add_timing(parser: argparse.ArgumentParser) -> None:
+    """The words of the motion in time."""
+    group = parser.add_argument_group("trajectory")
+    text = "round the corners, time the path, and write samples: .yaml for ROS (JointTrajectory), or .csv"
+    add_option(group, "--trajectory FILE", text, Path)
+    add_option(group, "--rate HZ", "samples per second (default: 100)", read_number, default=100.0)
+    for name, unit in (("acceleration", "rad/s²"), ("jerk", "rad/s³")):
+        text = f"largest {name} of all joints [{unit}, or m] (default: that of the robot)"
+        add_option(group, f"--{name} V", text, read_number)
+
+
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print the corners of the path, or why there is none; faults name the options, not the keywords."""
     check_targets(args)
@@ -117,31 +136,57 @@ def run(args: argparse.Namespace, out: Output) -> int:
     try:
         start, goal = start_of(args, robot), goal_given(args, robot)
         plan, seconds = find_plan(args, robot, start, goal, scene, options)
+        motion = time_found(args, robot, plan, scene)
     except (InputError, InputTypeError) as error:
         raise UsageError(name_options(str(error))) from error
-    written = write_files(args, robot, plan)
+    written = write_files(args, robot, plan, motion, scene)
     if out.as_json:
-        out.document(plan_document(args, robot, start, goal, plan, seconds, written))
+        out.document(plan_document(args, robot, start, goal, plan, seconds, written, motion))
     else:
         print_plan(args, out, robot, plan, seconds)
+        if motion is not None:
+            out.sentence(f"trajectory: {motion.reason or f'{motion.duration:.4g} s'}")
         for path in written:
             out.line(f"wrote {path}")
         out.hint(gripper_note(args, robot))
         typed = [*start, *(goal.flat if isinstance(goal, np.ndarray) else ())]
         out.hint(degrees_note(args, robot, typed))
-    return Exit.DONE if plan else Exit.NEGATIVE
+    return Exit.DONE if plan and (motion is None or motion) else Exit.NEGATIVE
 
 
 def check_targets(args: argparse.Namespace) -> None:
     """Refuse files that cannot be written, before any computation."""
     if args.plot is not None:
-        check_format(args.plot)
+        if not (is_film(args.plot) and args.trajectory is not None):
+            check_format(args.plot)
         check_writable(args.plot)
+    if args.trajectory is not None:
+        check_samples_file(args.trajectory, "--trajectory")
+    elif args.acceleration is not None or args.jerk is not None:
+        raise UsageError("--acceleration and --jerk are of --trajectory; give the file it is written to")
     if args.output is not None:
         from cspace.planning.plan_files import check_ending
 
         check_ending(args.output)
         check_writable(args.output)
+
+
+def is_film(path: Path) -> bool:
+    """Whether the name of a file is that of a film."""
+    return path.suffix.lower() == ".gif"
+
+
+def time_found(args: argparse.Namespace, robot: Robot, plan: Plan, scene: Scene | None) -> Motion | None:
+    """The motion along a plan, if --trajectory asks for one; within the jerk limits of the robot, if it has
+    them."""
+    if args.trajectory is None or not plan:
+        return None
+    from cspace.plan_motion import time_plan
+
+    has_jerk = bool(np.isfinite(robot.limits.jerk).all())
+    jerk = args.jerk if args.jerk is not None else has_jerk
+    with show_progress("timing the path"):
+        return time_plan(robot, plan, scene, margin=args.margin, acceleration=args.acceleration, jerk=jerk)
 
 
 def options_of_planner(args: argparse.Namespace) -> dict[str, Any]:
@@ -253,13 +298,25 @@ def goal_wanted(args: argparse.Namespace, goal: Array | Goal) -> Any:
     )
 
 
-def write_files(args: argparse.Namespace, robot: Robot, plan: Plan) -> list[Path]:
-    """Write the path and the picture that were requested, of a failed descent the picture; the files."""
+def write_files(
+    args: argparse.Namespace, robot: Robot, plan: Plan, motion: Motion | None, scene: Scene | None
+) -> list[Path]:
+    """Write what was requested, of a failed descent the picture; the files."""
     written = []
     if args.output is not None and plan:
         plan.save(args.output)
         written.append(args.output)
-    if args.plot is not None and (plan or "rest" in plan.stats):
+    if motion:
+        write_samples(motion, args.trajectory, args.rate)
+        written.append(args.trajectory)
+    if args.plot is not None and is_film(args.plot):
+        if motion:
+            from cspace import plot
+
+            with show_progress("drawing the film"):
+                plot.save(plot.animation(motion, robot=robot, scene=scene), args.plot, dpi=FILM_DPI)
+            written.append(args.plot)
+    elif args.plot is not None and (plan or "rest" in plan.stats):
         from cspace import plot
 
         with show_progress("drawing the motion"):
@@ -276,6 +333,7 @@ def plan_document(
     plan: Plan,
     seconds: float,
     written: list[Path],
+    motion: Motion | None,
 ) -> dict[str, Any]:
     """The plan as JSON data [rad, m]; numbers that do not exist are null."""
     tip_goal = goal if isinstance(goal, Goal) else Goal()
@@ -307,6 +365,7 @@ def plan_document(
         "clearance": finite_number(plan.clearance),
         "seconds": seconds,
         "stats": {name: name_fields(value) for name, value in plan.stats.items()},
+        "duration": motion.duration if motion else None,
         "written": [str(path) for path in written],
     }
 

@@ -28,6 +28,7 @@ from cspace.cli.robot import (
     load_chosen,
     need_chain,
 )
+from cspace.cli.samples_files import check_samples_file, write_samples
 from cspace.cli.verbs.plan import start_of, typed_configuration
 
 if TYPE_CHECKING:
@@ -43,9 +44,6 @@ cspace traj panda --from ready --line 0.4 0.2 0.4 --speed 25cm --turn-rate 1
 
 PROFILES: Final = ("double_s", "trapezoidal", "cubic", "quintic", "septic", "minimum_jerk")
 """Of motions from one configuration to another."""
-
-ENDINGS: Final = (".yaml", ".yml", ".csv")
-"""Of files of samples."""
 
 ROWS: Final = 10
 """How many states a table shows."""
@@ -109,9 +107,7 @@ def check_files(args: argparse.Namespace) -> None:
         check_format(args.plot)
         check_writable(args.plot)
     if args.output is not None:
-        if args.output.suffix not in ENDINGS:
-            raise UsageError(f"-o {args.output} ends with {args.output.suffix!r}; it must be .yaml or .csv")
-        check_writable(args.output)
+        check_samples_file(args.output, "-o")
 
 
 def find_motion(args: argparse.Namespace, robot: Robot) -> Trajectory:
@@ -167,7 +163,7 @@ def time_waypoints(args: argparse.Namespace, robot: Robot, limits: dict[str, Any
 
     waypoints = read_waypoint_file(args.waypoints, robot.dof, degrees=args.deg)
     path = spline(waypoints) if args.blend is None else blend(waypoints, args.blend)
-    motion = time_parametrize(path, robot, **limits)
+    motion = time_parametrize(path, robot, positions=False, **limits)
     if motion and not (check := motion.check(Limits(robot.limits.lower, robot.limits.upper))):
         advice = "; --blend keeps between the waypoints" if args.blend is None else ""
         motion.reason = check.reason + advice
@@ -209,10 +205,7 @@ def write_files(args: argparse.Namespace, robot: Robot, motion: Trajectory) -> l
     """Write the samples and the picture that were requested; the files."""
     written = []
     if args.output is not None:
-        from cspace.trajectory import to_csv, to_ros
-
-        write = to_csv if args.output.suffix == ".csv" else to_ros
-        write(motion, args.output, rate=args.rate)
+        write_samples(motion, args.output, args.rate)
         written.append(args.output)
     if args.plot is not None:
         from cspace import plot

@@ -1,8 +1,9 @@
-"""Localisation on a map of landmarks: the front of the filters."""
+"""Localisation along a log: the front of the filters."""
 
 from __future__ import annotations
 
 from time import perf_counter
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -22,55 +23,86 @@ from cspace.localization.filters.run import Localization, LocalizationStats
 from cspace.localization.filters.timeline import KINDS, Timeline, lay_timeline
 from cspace.localization.filters.updates import UPDATES
 from cspace.localization.log import UNKNOWN, Landmarks, Log
-from cspace.localization.sensors import Compass, Gps, RangeBearing, read_share
+from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing, read_share
 from cspace.mobile import MotionNoise, RandomWalk
 from cspace.spatial import as_pose_2d, to_xytheta
 
-FILTERS = tuple(UPDATES)
+if TYPE_CHECKING:
+    from cspace.localization.particles import MapLocalization
+
+MAP_FILTERS: Final = ("mcl", "histogram")
+"""Those that may have several modes."""
+FILTERS = (*UPDATES, *MAP_FILTERS)
 START_DEVIATIONS = (0.01, 0.01, 0.01)
 """Standard deviations of a start [m, m, rad] unless given: one that somebody measured."""
 
 
 def localize(
     log: Log,
-    landmarks: Landmarks | None = None,
+    landmarks: Any | None = None,
     *,
     filter: str = "ekf",
     start: npt.ArrayLike | None = None,
     start_covariance: npt.ArrayLike | None = None,
-    sensor: RangeBearing | None = None,
+    sensor: RangeBearing | LaserScanner | None = None,
     compass: Compass | None = None,
     gps: Gps | None = None,
     noise: MotionNoise | None = None,
     gate: float = 0.999,
+    n: int | None = None,
+    most: int | None = None,
+    threads: int = 1,
+    rng: int | np.random.Generator | None = None,
     time_limit: float | None = None,
-) -> Localization:
-    """Where a robot was during a log, by a Kalman filter on a map of landmarks.
+) -> Localization | MapLocalization:
+    """Where a robot was during a log, on a map.
 
-    landmarks: the map; unless given, that of the log. filter: "ekf" (extended), "iekf" (iterated), "ukf"
-    (unscented) or "information". start: pose x, y, θ (3,) or (3, 3) at the first time of the odometry; unless
-    given, that of log.truth. start_covariance (3, 3) of ξ in T exp ξ, which may be zero; unless given, 1 cm
-    and 0.01 rad. sensor, compass, gps: models of readings, headings and fixes. noise: of the odometry, a
-    RandomWalk unless given. gate: the share of χ² beyond which a measurement is rejected. Readings without a
-    name are associated with the landmark that most likely made them. time_limit [s]: TimeLimitError beyond
-    it. Raises InputError for a log without odometry, a start that is unknown, or a landmark that is not on
-    the map. Source: Thrun, Burgard & Fox 2005, chapters 3 and 7.
+    landmarks: the map; unless given, that of the log. filter: a Kalman filter on Landmarks, "ekf" (extended),
+    "iekf" (iterated), "ukf" (unscented) or "information"; or on a grid "mcl" (a ParticleFilter, also on
+    Landmarks) or "histogram" (a HistogramFilter), which answer a MapLocalization. start: pose x, y, θ (3,) or
+    (3, 3) at the first time of the odometry; unless given, that of log.truth for Kalman filters, and anywhere
+    for the others. start_covariance (3, 3) of ξ in T exp ξ; unless given, 1 cm and 0.01 rad, 10 cm and 0.05
+    rad for "mcl" and "histogram". sensor, compass, gps: models of readings or scans, headings and fixes.
+    noise: of the odometry, a RandomWalk unless given. gate: the share of χ² beyond which a measurement is
+    rejected. Readings without a name are associated with the landmark that most likely made them. n, most,
+    rng: particles, as of ParticleFilter. threads: at most, for "mcl" and "histogram". time_limit [s]:
+    TimeLimitError beyond it. Raises InputError for a log without odometry, a start that is unknown, or a
+    landmark that is not on the map. Source: Thrun, Burgard & Fox 2005, chapters 3, 7 and 8.
     """
     begun = perf_counter()
     if not isinstance(log, Log):
         raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
-    if filter not in UPDATES:
+    if filter not in FILTERS:
         raise suggest("filter", filter, FILTERS)
-    model = sensor or RangeBearing()
     known = landmarks if landmarks is not None else log.landmarks
+    limit = None if time_limit is None else positive_number(time_limit, "time_limit")
+    if not len(log.odometry.times):
+        raise InputError("the log has no odometry; a filter needs its times, at least one")
+    if filter in MAP_FILTERS:
+        from cspace.localization.particles.run import run_map_filter
+
+        shared = {"motion": noise, "sensor": sensor, "start": start, "start_covariance": start_covariance}
+        sizes = {"n": n, "most": most, "rng": rng} if filter == "mcl" else {}
+        return run_map_filter(filter, log, known, {**shared, **sizes, "threads": threads}, limit)
+    model = check_landmarks(known, sensor, filter)
     pose, P = read_start(log, start, start_covariance)
     reader = Reader(log, known, model, compass or Compass(), gps or Gps())
     timeline = lay_timeline(log, model, noise or RandomWalk())
     reader.timeline = timeline
-    limit = None if time_limit is None else positive_number(time_limit, "time_limit")
     run = Pass(timeline, UPDATES[filter], read_share(gate, "gate"), limit)
     passed = run.run(pose, P, reader.read)
     return report_run(filter, timeline, passed, perf_counter() - begun)
+
+
+def check_landmarks(known: Any, sensor: Any, filter: str) -> RangeBearing:
+    """The sensor of a Kalman filter. Raises InputTypeError for a map or a sensor that it has no use for."""
+    if known is not None and not isinstance(known, Landmarks):
+        raise InputTypeError(
+            f"the map is a {type(known).__name__}, and filter={filter!r} needs Landmarks; give filter='mcl'"
+        )
+    if sensor is not None and not isinstance(sensor, RangeBearing):
+        raise InputTypeError(f"sensor is a {type(sensor).__name__}; filter={filter!r} needs a RangeBearing")
+    return sensor or RangeBearing()
 
 
 class Reader:
@@ -126,15 +158,19 @@ def read_start(
     log: Log, start: npt.ArrayLike | None, covariance: npt.ArrayLike | None
 ) -> tuple[Array, Array]:
     """The first pose (3,) and its covariance (3, 3)."""
-    if not len(log.odometry.times):
-        raise InputError("the log has no odometry; a filter needs its times, at least one")
-    if start is not None:
-        shape = np.shape(start)
-        pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
-    else:
-        pose = find_start(log)
-    if covariance is None:
-        return pose, np.diag(np.square(START_DEVIATIONS))
+    pose = read_pose(start) if start is not None else find_start(log)
+    return pose, np.diag(np.square(START_DEVIATIONS)) if covariance is None else read_covariance(covariance)
+
+
+def read_pose(start: npt.ArrayLike) -> Array:
+    """A first pose (3,), given as x, y, θ (3,) or (3, 3)."""
+    if np.shape(start) == (3, 3):
+        return np.ascontiguousarray(to_xytheta(as_pose_2d(start, "start")))
+    return one_array(start, "start", (3,))
+
+
+def read_covariance(covariance: npt.ArrayLike) -> Array:
+    """The covariance (3, 3) of a first pose, symmetrised; InputError for one that is none."""
     P = one_array(covariance, "start_covariance", (3, 3))
     least = float(np.linalg.eigvalsh(P)[0])
     if (
@@ -145,7 +181,7 @@ def read_start(
             f"start_covariance is not symmetric and positive semi-definite (least eigenvalue {least:.3g});"
             " give variances on the diagonal, np.diag(...)"
         )
-    return pose, 0.5 * (P + P.T)
+    return 0.5 * (P + P.T)
 
 
 def find_start(log: Log) -> Array:

@@ -38,14 +38,11 @@ class LocalizationStats:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Localization:
+class EstimatedPoses:
     """Where a robot was, a row per time; truthy if it is localised at the end.
 
-    times (n,) [s], those of the odometry and of the measurements. poses (n, 3): x, y [m], θ [rad].
-    covariances (n, 3, 3) of the disturbance ξ of T exp ξ, in base. filter: the name of what made it. status:
-    "localised", or "lost" after ten measurements in a row that contradict the filter, or without any. lost
-    (n,): where that was so. Per measurement: nis (k,) and its degrees of freedom dof (k,), innovations (k, 2)
-    with NaN for a second number that is not there, rejected (k,), measured (k,): the row of each in `times`.
+    times (n,) [s]. poses (n, 3): x, y [m], θ [rad]. covariances (n, 3, 3) of the disturbance ξ of T exp ξ, in
+    base. filter: the name of what made it. status: "localised", or what else it is at the end.
     """
 
     times: Array
@@ -53,15 +50,6 @@ class Localization:
     covariances: Array
     filter: str
     status: str
-    lost: Mask
-    nis: Array
-    dof: Ids
-    innovations: Array
-    rejected: Mask
-    measured: Ids
-    stats: LocalizationStats
-    _timeline: Timeline = field(repr=False)
-    _passed: Passed = field(repr=False)
 
     def __bool__(self) -> bool:
         return self.status == "localised"
@@ -72,17 +60,12 @@ class Localization:
 
     def __repr__(self) -> str:
         text = f"{self.filter}, {count_things(len(self), 'pose')}: {self.status}, {self.reason}"
-        return one_line("Localization", text)
+        return one_line(type(self).__name__, text)
 
     @property
     def reason(self) -> str:
         """The status as one sentence."""
-        s = self.stats
-        if self.status == "lost":
-            if not s.updates:
-                return "no measurement was used; the poses are dead reckoning"
-            return f"the last {REJECTIONS} measurements or more contradict the filter"
-        return f"{s.updates} measurements used, {s.rejected} rejected, mean NIS per dof {s.mean_nis:.2f}"
+        return f"{count_things(len(self), 'pose')} by {self.filter}"
 
     def at(self, times: npt.ArrayLike) -> Array:
         """The poses at times, interpolated: (...) [s] → (..., 3); NaN outside of the log."""
@@ -96,9 +79,7 @@ class Localization:
             raise suggest("frame", frame, FRAMES)
         if frame == "base":
             return self.covariances
-        turn = np.zeros((len(self), 3, 3))
-        turn[:, :2, :2], turn[:, 2, 2] = rotation_2d(self.poses[:, 2]), 1.0
-        return np.asarray(turn @ self.covariances @ np.swapaxes(turn, -1, -2))
+        return turn_covariances(self.poses, self.covariances)
 
     def nees(self, truth: TimedPoses) -> Array:
         """ξᵀ P⁻¹ ξ with T exp ξ the true pose, χ² with 3 degrees of freedom for a consistent filter.
@@ -109,6 +90,38 @@ class Localization:
         return np.asarray(
             np.einsum("ni,nij,nj->n", error, np.linalg.pinv(self.covariances, hermitian=True), error)
         )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Localization(EstimatedPoses):
+    """Where a robot was, a row per time; truthy if it is localised at the end.
+
+    times (n,) [s], those of the odometry and of the measurements. poses (n, 3): x, y [m], θ [rad].
+    covariances (n, 3, 3) of the disturbance ξ of T exp ξ, in base. filter: the name of what made it. status:
+    "localised", or "lost" after ten measurements in a row that contradict the filter, or without any. lost
+    (n,): where that was so. Per measurement: nis (k,) and its degrees of freedom dof (k,), innovations (k, 2)
+    with NaN for a second number that is not there, rejected (k,), measured (k,): the row of each in `times`.
+    """
+
+    lost: Mask
+    nis: Array
+    dof: Ids
+    innovations: Array
+    rejected: Mask
+    measured: Ids
+    stats: LocalizationStats
+    _timeline: Timeline = field(repr=False)
+    _passed: Passed = field(repr=False)
+
+    @property
+    def reason(self) -> str:
+        """The status as one sentence."""
+        s = self.stats
+        if self.status == "lost":
+            if not s.updates:
+                return "no measurement was used; the poses are dead reckoning"
+            return f"the last {REJECTIONS} measurements or more contradict the filter"
+        return f"{s.updates} measurements used, {s.rejected} rejected, mean NIS per dof {s.mean_nis:.2f}"
 
     def smoothed(self, *, lag: float | None = None) -> Localization:
         """The poses given later measurements too: all of them, or those up to a lag [s] after each pose.
@@ -127,6 +140,13 @@ class Localization:
             poses, covariances = smooth_lag(self._timeline, self._passed, positive_number(lag, "lag"))
             name = f"{self.filter}, lag {lag:g} s" + SMOOTHED
         return replace(self, poses=poses, covariances=covariances, filter=name)
+
+
+def turn_covariances(poses: Array, covariances: Array) -> Array:
+    """Covariances (n, 3, 3) in base turned into axes of the map, at poses (n, 3)."""
+    turn = np.zeros_like(covariances)
+    turn[:, :2, :2], turn[:, 2, 2] = rotation_2d(poses[:, 2]), 1.0
+    return np.asarray(turn @ covariances @ np.swapaxes(turn, -1, -2))
 
 
 SMOOTHED = ", smoothed"

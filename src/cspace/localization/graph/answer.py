@@ -14,6 +14,7 @@ import numpy.typing as npt
 from cspace.arrays import Array, whole_number
 from cspace.errors import InputError, Renamed, suggest
 from cspace.tables import one_line, shown
+from cspace.tolerances import SAME_CHI2
 
 if TYPE_CHECKING:
     from cspace._core import GraphSolver
@@ -38,6 +39,22 @@ class RejectedLoop(NamedTuple):
     """The squared error up to which it would have counted."""
 
 
+class Certificate(NamedTuple):
+    """What the dual of a pose graph says about an answer; truthy if it is the global optimum."""
+
+    certified: bool
+    """Whether the answer is the optimum next to the proved one of the chordal problem."""
+    bound: float
+    """No state has a smaller χ²; 0 where nothing was proved."""
+    gap: float
+    """χ² of the answer minus the bound."""
+    reason: str
+    """The verdict in words."""
+
+    def __bool__(self) -> bool:
+        return self.certified
+
+
 def list_rejected(
     graph: GraphArrays, squares: Array, is_rejected: npt.NDArray[np.bool_], scale: float
 ) -> tuple[RejectedLoop, ...]:
@@ -48,6 +65,14 @@ def list_rejected(
         RejectedLoop(int(k), int(ids[k, 0]), int(ids[k, 1]), float(squares[k]), limit)
         for k in np.flatnonzero(is_rejected)
     )
+
+
+def turn_to_map(pose: Array) -> Array:
+    """The matrix that turns disturbances of a pose into the axes of the map; angles of the plane stay."""
+    if pose.ndim == 2:
+        return np.asarray(np.kron(np.eye(2), pose[:3, :3]), dtype=np.float64)
+    c, s = np.cos(pose[2]), np.sin(pose[2])
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -111,26 +136,56 @@ class GraphAnswer(Renamed):
         found: Array = self._read_covariances(a, b, self._size(rows[0]), self._size(rows[1]))[0]
         if frame == "base":
             return found
-        first, second = (self._turn(row) for row in rows)
+        first, second = (turn_to_map(self.poses[row]) for row in rows)
         turned: Array = first @ found @ second.T
         return turned
+
+    def certificate(self) -> Certificate:
+        """Whether the answer is the global optimum, proved by the dual of the chordal problem, in which an
+        angle θ counts as 2 sin(θ/2).
+
+        The information of each measurement must be isotropic, one number for positions and one for angles;
+        otherwise, and where the proof fails, the certificate is false and says why (Carlone et al. 2015,
+        Rosen et al. 2019). One factorisation, and a few steps to the chordal optimum.
+        """
+        reason = self._explain_no_dual()
+        if reason:
+            return Certificate(False, 0.0, self.chi2, f"not certified: {reason}")
+        with self._lock:
+            is_proved, bound, least = self._solver.certify()
+        if not is_proved:
+            reason = "not certified: the dual matrix is not positive semidefinite, so that there may be a better optimum"
+            return Certificate(False, 0.0, self.chi2, reason)
+        is_found = abs(self.chi2 - least) <= SAME_CHI2 * max(least, 1.0)
+        if not is_found:
+            reason = f"not certified: the global optimum is next to a state of chi2 {least:.9g}"
+        else:
+            reason = f"no state has a chi2 below {bound:.9g}, that of the chordal optimum next to the answer"
+        return Certificate(is_found, bound, self.chi2 - bound, reason)
 
     def to_graph(self) -> GraphArrays:
         """The graph with the answer as its start."""
         return self.graph.with_poses(self.poses, self.landmarks)
+
+    def _explain_no_dual(self) -> str:
+        """Why the problem has no dual that we know; empty where it has one."""
+        if self.stats["residual"] != "twist":
+            return 'χ² is not that of twists; optimize with residual="twist"'
+        if self.stats["kernel"] is not None:
+            return "a robust kernel weighs the measurements; optimize without one"
+        if len(self.graph.fixed) + len(self.graph.fixed_landmarks) != 1 or self.graph.parts.any():
+            return "the graph must be in one part, with one pose fixed"
+        row = self._solver.anisotropic_measurement
+        edges = len(self.graph.edges)
+        if row >= edges:
+            return f"sighting {row - edges} has a range, a bearing, or information that is not isotropic"
+        return f"the information of edge {row} is not isotropic" if row >= 0 else ""
 
     def _size(self, row: int) -> int:
         """The numbers of a variable, poses before landmarks."""
         if row >= len(self.poses):
             return self.graph.dimension
         return 6 if self.graph.is_spatial else 3
-
-    def _turn(self, row: int) -> Array:
-        """The matrix that turns disturbances of a pose into the axes of the map; angles of the plane stay."""
-        if self.graph.is_spatial:
-            return np.asarray(np.kron(np.eye(2), self.poses[row, :3, :3]), dtype=np.float64)
-        c, s = np.cos(self.poses[row, 2]), np.sin(self.poses[row, 2])
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
     def _read_covariances(
         self, first: npt.NDArray[np.int32], second: npt.NDArray[np.int32], rows: int, columns: int

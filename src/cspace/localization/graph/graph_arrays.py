@@ -16,6 +16,7 @@ from cspace.localization.graph.checks import (
     Ids,
     Mask,
     Rows,
+    check_points,
     freeze_array,
     read_ids,
     read_information,
@@ -115,34 +116,11 @@ class GraphArrays:
             ranged = np.array(self.ranged, dtype=bool)
         if ranged.shape != (len(rows),):
             raise InputError(f"ranged has shape {ranged.shape}, expected ({len(rows)},): one per sighting")
-        self._check_points(points, ranged)
+        check_points(points, ranged, "points")
         self._set("points", np.array(points))
         self._set("ranged", ranged)
         information = self.point_information if len(rows) else np.zeros((0, d, d))
         self._set("point_information", read_information(information, "point_information", len(rows), d))
-
-    def _check_points(self, points: Array, ranged: Mask) -> None:
-        if self.is_spatial and ranged.any():
-            raise InputError(
-                "ranged is true in space; sightings in space are points, in the frame of the pose"
-            )
-        missing = np.isnan(points)
-        bad = np.flatnonzero(
-            missing.all(axis=1) | (missing.any(axis=1) & ~ranged) | np.isinf(points).any(axis=1)
-        )
-        if len(bad):
-            raise InputError(
-                f"points holds {points[bad[0]]} at row {bad[0]}; all must be finite, and NaN stands"
-                " only for a"
-                " range or a bearing that was not measured"
-            )
-        bearings = points[ranged & ~missing[:, -1], -1] if len(points) else np.zeros(0)
-        if len(bearings) and (np.abs(bearings) > 2 * np.pi).all():
-            raise InputError(
-                f"the bearing of the first ranged sighting is {bearings[0]:g} and all others lie"
-                " beyond ±2π too;"
-                " give radians"
-            )
 
     @property
     def is_spatial(self) -> bool:

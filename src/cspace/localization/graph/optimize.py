@@ -201,6 +201,8 @@ def make_answer(
         "costs": tuple(costs),
         "seconds": seconds,
         "start": request.start if solver.found_start else "given",
+        "residual": request.residual,
+        "kernel": request.kernel,
     }
     rejected_numbers = int((~used[:k]).sum()) * (6 if graph.is_spatial else 3)
     rejected_numbers += int(graph.measured[~used[k:]].sum())

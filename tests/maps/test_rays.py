@@ -1,4 +1,4 @@
-"""The range sensor against the intersection of every ray with every cell."""
+"""Rays on grids against the intersection of every ray with every cell."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 import cspace as cs
 from cspace.errors import InputError, InputTypeError
 
-nav = cs.navigation
+maps = cs.maps
 
 
 def slabs(point, direction, blocked, resolution, origin):
@@ -28,37 +28,41 @@ def test_rays_end_at_the_first_cell_that_they_enter(seed):
     grid = cs.OccupancyGrid(blocked, resolution=resolution, origin=origin)
     points = origin + rng.uniform(0, 1, (200, 2)) * blocked.shape[::-1] * resolution
     angles = rng.uniform(-7, 7, 200)
-    got = nav.cast_rays(grid, points, angles)
+    got = maps.cast_rays(grid, points, angles)
     for p, angle, distance in zip(points, angles, got, strict=True):
         wanted = slabs(p, np.array([np.cos(angle), np.sin(angle)]), blocked, resolution, origin)
         assert distance == pytest.approx(wanted, abs=1e-9)
-    np.testing.assert_array_equal(nav.cast_rays(grid, points, angles, 0.7), np.minimum(got, 0.7))
+    np.testing.assert_array_equal(maps.cast_rays(grid, points, angles, 0.7), np.minimum(got, 0.7))
 
 
 def test_rays_along_borders_and_through_corners():
     blocked = np.zeros((6, 6), bool)
     blocked[2, 4] = True
     grid = cs.OccupancyGrid(blocked)
-    assert nav.cast_rays(grid, (0.5, 2.0), 0.0) == 5.5  # along the side of the cell
-    assert nav.cast_rays(grid, (0.5, 2.5), 0.0) == 3.5
+    assert maps.cast_rays(grid, (0.5, 2.0), 0.0) == 5.5  # along the side of the cell
+    assert maps.cast_rays(grid, (0.5, 2.5), 0.0) == 3.5
     blocked[1, 4] = True
-    assert nav.cast_rays(cs.OccupancyGrid(blocked), (0.5, 2.0), 0.0) == 3.5  # both sides blocked
+    assert maps.cast_rays(cs.OccupancyGrid(blocked), (0.5, 2.0), 0.0) == 3.5  # both sides blocked
     corner = np.zeros((6, 6), bool)
     corner[2, 3] = corner[3, 2] = True  # they touch in (3, 3)
     grid = cs.OccupancyGrid(corner)
     angle = np.arctan2(1.0, 1.0)
     if np.cos(angle) == np.sin(angle):
-        assert nav.cast_rays(grid, (1.0, 1.0), angle) == pytest.approx(np.sqrt(8))
-    assert nav.cast_rays(grid, (2.5, 3.5), 1.0) == 0.0  # inside
-    assert nav.cast_rays(grid, (-1.0, 3.5), 1.0) == 0.0  # outside
+        assert maps.cast_rays(grid, (1.0, 1.0), angle) == pytest.approx(np.sqrt(8))
+    assert maps.cast_rays(grid, (2.5, 3.5), 1.0) == 0.0  # inside
+    assert maps.cast_rays(grid, (-1.0, 3.5), 1.0) == 0.0  # outside
 
 
 def test_what_is_no_ray_is_refused():
     grid = cs.OccupancyGrid(np.zeros((3, 3), bool))
     with pytest.raises(InputTypeError, match="OccupancyGrid"):
-        nav.cast_rays(np.zeros((3, 3)), (1, 1), 0.0)
+        maps.cast_rays(np.zeros((3, 3)), (1, 1), 0.0)
     with pytest.raises(InputError, match="max_range"):
-        nav.cast_rays(grid, (1, 1), 0.0, 0.0)
+        maps.cast_rays(grid, (1, 1), 0.0, 0.0)
     with pytest.raises(InputError, match="points"):
-        nav.cast_rays(grid, (1, 1, 1), 0.0)
-    assert nav.cast_rays(grid, np.ones((4, 1, 2)), np.zeros(5)).shape == (4, 5)
+        maps.cast_rays(grid, (1, 1, 1), 0.0)
+    assert maps.cast_rays(grid, np.ones((4, 1, 2)), np.zeros(5)).shape == (4, 5)
+
+
+def test_the_old_name_stays():
+    assert cs.navigation.cast_rays is maps.cast_rays

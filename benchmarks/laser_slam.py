@@ -1,0 +1,78 @@
+"""Laser SLAM on the public logs, and the time of a scan match.
+
+Usage: python benchmarks/laser_slam.py [--save FILE]. Prints a row per log: the error of each stage against
+the corrected poses of the log (RMSE after alignment, `cs.ate`) and the wall time on one core; from the raw
+odometry of the log. The corrected poses are those of another program, not a truth. The data are found
+through $CSPACE_DATA.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+import cspace as cs
+
+DATA = Path(os.environ.get("CSPACE_DATA", "../shared/data")) / "localization/carmen"
+LOGS = ("intel", "freiburg-079")
+MATCHES = 200
+
+
+def measure_log(name: str) -> dict[str, Any]:
+    """Errors [m] by stage, relative errors, and seconds."""
+    log = cs.read_log(DATA / f"{name}-corrected.log.gz")
+    begin = perf_counter()
+    found = cs.slam(log)
+    seconds = perf_counter() - begin
+    row: dict[str, Any] = {"log": name, "scans": len(found), "seconds": seconds}
+    row |= {stage: cs.ate(poses, log.truth, align="se2").rmse for stage, poses in found.stages.items()}
+    row |= {f"rpe_{d}": cs.rpe(found, log.truth, delta=float(d), unit="m").rmse for d in (1, 10)}
+    return row | {"accepted": found.stats.accepted, "rejected": found.stats.rejected}
+
+
+def measure_matches() -> dict[str, Any]:
+    """Milliseconds of a match within ±0.8 m and ±15° on the map of other scans, and how many are right."""
+    log = cs.read_log(DATA / "intel-corrected.log.gz")
+    poses = log.truth.at(log.scans.times)
+    known = np.isfinite(poses[:, 0])
+    held_out = np.arange(len(poses)) % 10 == 5
+    grid = cs.maps.EvidenceGrid.from_scans(
+        log.scans.subset(known & ~held_out), poses[known & ~held_out], 0.05
+    )
+    field = grid.likelihood_field(0.1)
+    rng, times, right = np.random.default_rng(1), [], 0
+    rows = np.flatnonzero(known & held_out)[:MATCHES]
+    for row in rows:
+        points = log.scans.points(row)
+        guess = poses[row] + rng.uniform(-1, 1, 3) * [0.6, 0.6, 0.2]
+        begin = perf_counter()
+        match = cs.match_scan(points, field, guess=guess, window=(0.8, np.radians(15)))
+        times.append(1e3 * (perf_counter() - begin))
+        right += bool(np.hypot(*(match.pose - poses[row])[:2]) < 0.15)
+    return {
+        "matches": len(rows),
+        "right": right,
+        "median_ms": float(np.median(times)),
+        "p95_ms": float(np.percentile(times, 95)),
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--save", type=Path)
+    save = parser.parse_args().save
+    rows = [measure_log(name) for name in LOGS] + [measure_matches()]
+    for row in rows:
+        print("  ".join(f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items()))
+    if save:
+        save.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

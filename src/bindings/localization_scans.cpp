@@ -1,0 +1,121 @@
+// Scan matching and laser SLAM, for cspace.localization.
+#include "library/localization_scans.hpp"
+
+#include <nanobind/stl/unique_ptr.h>
+
+#include "maps_points.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace cspace::localization;
+using cspace::Point;
+using cspace::maps::ByteField;
+
+namespace {
+
+ByteField read_field(const cspace::maps::CellBytes& scores, double resolution, const Point& origin,
+                     int outside) {
+    ByteField field;
+    field.frame.resolution = resolution, field.frame.origin = origin;
+    field.rows = scores.rows, field.columns = scores.columns;
+    field.outside = std::uint8_t(outside);
+    field.scores.assign(scores.data, scores.data + std::size_t(scores.rows) * std::size_t(scores.columns));
+    return field;
+}
+// Found, ambiguous, pose, covariance, score, second.
+nb::tuple write_match(const ScanMatchResult& found) {
+    return nb::make_tuple(found.is_found, found.is_ambiguous, make_array<PoseRow>({{found.pose}}),
+                          make_array<SquareRow>({{found.covariance}}), found.score, found.second);
+}
+nb::tuple write_relations(const std::vector<ScanRelation>& relations) {
+    cspace::Table<std::int32_t> ends{{}, 2};
+    cspace::Table<PoseRow> poses;
+    cspace::Table<SquareRow> covariances;
+    cspace::Table<double> scores{{}, 2};
+    cspace::Table<std::int32_t> verdicts;
+    for (const ScanRelation& relation : relations) {
+        ends.values.insert(ends.values.end(), {relation.from, relation.to});
+        poses.values.push_back(relation.pose);
+        covariances.values.push_back(relation.covariance);
+        scores.values.insert(scores.values.end(), {relation.score, relation.second});
+        verdicts.values.push_back(relation.verdict);
+    }
+    return nb::make_tuple(std::move(ends), std::move(poses), std::move(covariances), std::move(scores),
+                          std::move(verdicts));
+}
+
+}  // namespace
+
+void bind_localization_scans(nb::module_& m) {
+    m.def(
+        "match_points",
+        [](const cspace::maps::CellBytes& scores, double resolution, const Point& origin, int outside,
+           std::span<const Point> points, const PoseRow& guess, double reach, double turn, bool refines) {
+            ScanMatchResult found;
+            {
+                const nb::gil_scoped_release released;
+                found = match_points(read_field(scores, resolution, origin, outside), points, guess, reach,
+                                     turn, refines);
+            }
+            return write_match(found);
+        },
+        "scores"_a, "resolution"_a, "origin"_a, "outside"_a, "points"_a, "guess"_a, "reach"_a, "turn"_a,
+        "refines"_a, "Found, ambiguous, pose, covariance, score and second score of a correlative match.");
+    m.def(
+        "match_point_lines",
+        [](const cspace::maps::CellBytes& scores, double resolution, const Point& origin, int outside,
+           std::span<const Point> reference, std::span<const Point> points, const PoseRow& guess,
+           double reach) {
+            ScanMatchResult found;
+            {
+                const nb::gil_scoped_release released;
+                found = match_point_lines(read_field(scores, resolution, origin, outside), reference, points,
+                                          guess, reach);
+            }
+            return write_match(found);
+        },
+        "scores"_a, "resolution"_a, "origin"_a, "outside"_a, "reference"_a, "points"_a, "guess"_a, "reach"_a,
+        "The same by point-to-line ICP.");
+    m.def(
+        "make_field_of_points",
+        [](std::span<const Point> points, double resolution, double sigma) {
+            ByteField field = make_field_of_points(points, resolution, sigma);
+            const Point origin = field.frame.origin;
+            return nb::make_tuple(
+                cspace::Table<std::uint8_t>{std::move(field.scores), std::size_t(field.columns)}, origin.x,
+                origin.y);
+        },
+        "points"_a, "resolution"_a, "sigma"_a, "The scores and the origin of a field of bells about points.");
+    m.def(
+        "thin_scans",
+        [](std::span<const Point> points, std::span<const std::int32_t> first, int most) {
+            std::vector<std::int32_t> begins(first.begin(), first.end());
+            std::vector<Point> kept;
+            {
+                const nb::gil_scoped_release released;
+                kept = thin_scans(points, begins, most);
+            }
+            return nb::make_tuple(cspace::Table<Point>{std::move(kept)},
+                                  cspace::Table<std::int32_t>{std::move(begins)});
+        },
+        "points"_a, "first"_a, "most"_a, "At most so many points of each scan, and where each scan begins.");
+    nb::class_<LaserSlamRun>(m, "LaserSlamRun", "Laser SLAM on a pose graph, as far as it is done.")
+        .def(nb::new_([](std::span<const Point> points, std::span<const std::int32_t> first,
+                         std::span<const PoseRow> steps, double resolution, double sigma, bool finds_loops) {
+                 return make_laser_slam(points, first, steps, {resolution, sigma, finds_loops});
+             }),
+             "points"_a, "first"_a, "steps"_a, "resolution"_a, "sigma"_a, "finds_loops"_a)
+        .def("advance", &LaserSlamRun::advance, "scans"_a, WithoutLock(),
+             "Works on so many scans more; False when all are done.")
+        .def_prop_ro("done", &LaserSlamRun::done)
+        .def_prop_ro("tried", &LaserSlamRun::tried)
+        .def_prop_ro("optimizations", &LaserSlamRun::optimizations)
+        .def_prop_ro("poses", [](const LaserSlamRun& run) { return make_array<PoseRow>({run.poses()}); })
+        .def_prop_ro("matched", [](const LaserSlamRun& run) { return make_array<PoseRow>({run.matched()}); })
+        .def_prop_ro(
+            "edges", [](const LaserSlamRun& run) { return write_relations(run.edges()); },
+            "Ends, poses, covariances, scores with second scores, and verdicts.")
+        .def_prop_ro(
+            "loops", [](const LaserSlamRun& run) { return write_relations(run.loops()); },
+            "The same of all loops that were found.");
+}

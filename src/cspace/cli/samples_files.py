@@ -1,0 +1,30 @@
+"""Files of samples of a motion: what several verbs write."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from cspace.cli.exits import UsageError
+from cspace.cli.output import check_writable
+
+if TYPE_CHECKING:
+    from cspace.trajectory import Trajectory
+
+ENDINGS: Final = (".yaml", ".yml", ".csv")
+"""Of files of samples."""
+
+
+def check_samples_file(path: Path, option: str) -> None:
+    """Refuse a file that cannot be written, before any computation."""
+    if path.suffix not in ENDINGS:
+        raise UsageError(f"{option} {path} ends with {path.suffix!r}; it must be .yaml or .csv")
+    check_writable(path)
+
+
+def write_samples(motion: Trajectory, path: Path, rate: float) -> None:
+    """Write a motion: a CSV file, or a JointTrajectory of ROS."""
+    from cspace.trajectory import to_csv, to_ros
+
+    write = to_csv if path.suffix == ".csv" else to_ros
+    write(motion, path, rate=rate)

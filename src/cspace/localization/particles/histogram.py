@@ -1,0 +1,302 @@
+"""The histogram filter: the probability of every cell of x, y and θ."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import _core
+from cspace.arrays import Array, bounded_number, one_array, positive_number, whole_number
+from cspace.errors import InputError, InputTypeError
+from cspace.localization.filters.rows import (
+    adjoin_rows,
+    carry_covariance,
+    find_twist,
+    follow_rows,
+    move_pose,
+    relate_rows,
+)
+from cspace.localization.particles.models import FEWEST_BEAMS, ScanModel
+from cspace.localization.particles.particle_filter import (
+    FULL_STEP,
+    OTHER_SHARE,
+    STANDING,
+    measure_step,
+    read_motion,
+)
+from cspace.localization.particles.placing import FreePlaces
+from cspace.localization.particles.state import FilterEvent, PoseMode
+from cspace.localization.sensors import LaserScanner
+from cspace.maps import ByteField
+from cspace.spatial import as_pose_2d, log_se2, pose_2d, rotation_2d, to_xytheta
+from cspace.tables import count_things, one_line
+
+MOST_CELLS: Final = 4_000_000
+"""The most cells: a second per update with 60 beams."""
+MODE_REACH: Final = (1.5, 0.6)
+"""How far around its best cell a mode reaches [m] and [rad]."""
+LISTED_MODES: Final = 5
+"""The most modes that are listed."""
+LEAST_SHARE: Final = 0.01
+"""Share of the probability from which a mode is listed."""
+UNIFORM: Final = 1e-6
+"""Share of the probability that each update spreads over all free cells, so that a robot that was carried
+away is found again."""
+BLUR_REACH: Final = 3.0
+"""Standard deviations at which the blur of a step is cut off."""
+NARROWEST_BLUR: Final = 0.3
+"""Standard deviation [cells] below which a blur moves nothing to the next cell."""
+
+
+class HistogramFilter:
+    """Where a robot is, as the probability of each cell of x, y and θ.
+
+    grid: an OccupancyGrid or an EvidenceGrid. motion, sensor: as of ParticleFilter, without the beam model.
+    resolution [m], headings: the sides of cells, and how many sectors the heading has. start: pose (3,) or
+    (3, 3), or None where the robot may be anywhere; start_covariance (3, 3), 10 cm and 0.05 rad unless given.
+    An update takes cells × beams × 0.6 ns, 40 ms for 31 m × 31 m with 0.25 m, 72 headings and 60 beams; a
+    step some 20 ns per cell. Raises InputError for too many cells. Source: Thrun, Burgard & Fox 2005,
+    section 8.2.
+    """
+
+    def __init__(
+        self,
+        grid: Any,
+        *,
+        motion: Any | None = None,
+        sensor: LaserScanner | None = None,
+        resolution: float = 0.25,
+        headings: int = 72,
+        start: npt.ArrayLike | None = None,
+        start_covariance: npt.ArrayLike | None = None,
+        threads: int = 1,
+    ) -> None:
+        if isinstance(grid, ByteField) or not hasattr(grid, "likelihood_field"):
+            raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid or an EvidenceGrid")
+        self.grid, self.noise = grid, read_motion(motion)
+        self.side = positive_number(resolution, "resolution")
+        self.sectors = whole_number(headings, "headings", 8, 720)
+        self.threads = whole_number(threads, "threads", 0, 1024)
+        self._places = FreePlaces(grid, np.inf)
+        self._lay_cells(sensor or LaserScanner())
+        self._pending, self._since, self._seconds = np.zeros(3), np.zeros(3), 0.0
+        self._given: Array | None = None
+        self._found: list[PoseMode] | None = None
+        self.updates, self.score, self._is_known = 0, float("nan"), start is not None
+        self.belief = self._free / self._free.sum()
+        if start is not None:
+            self._put_start(start, start_covariance)
+
+    def _lay_cells(self, sensor: LaserScanner) -> None:
+        """The centres of the cells, which of them are free, and the field for their size."""
+        if sensor.model != "likelihood_field":
+            raise InputError("the histogram filter has no beam model; give model='likelihood_field'")
+        low, high = np.asarray(self._places.low), np.asarray(self._places.high)
+        columns, rows = np.ceil((high - low) / self.side).astype(int)
+        if rows * columns * self.sectors > MOST_CELLS:
+            raise InputError(
+                f"{rows} × {columns} × {self.sectors} cells are more than {MOST_CELLS}; give a coarser resolution"
+                " or fewer headings"
+            )
+        x, y = low[0] + self.side * (np.arange(columns) + 0.5), low[1] + self.side * (np.arange(rows) + 0.5)
+        theta = (np.arange(self.sectors) + 0.5) * (2 * np.pi / self.sectors) - np.pi
+        self._axes = theta, y, x
+        free = self._places.find_coarse_cells(self.side, (int(rows), int(columns)))
+        self._free = np.repeat(free[None].astype(np.float64), self.sectors, axis=0)
+        sigma = float(np.hypot(sensor.sigma, 0.5 * self.side))
+        self.model = ScanModel(self.grid.likelihood_field(sigma, sensor.floor), sensor)
+        t, v, u = np.meshgrid(theta, y, x, indexing="ij")
+        self._centers = np.stack([u.ravel(), v.ravel(), t.ravel()], axis=-1)
+        self._cloud = _core.ParticleCloud(len(self._centers), 0)
+        self._cloud.place(self._centers)
+
+    def _put_start(self, start: npt.ArrayLike, covariance: npt.ArrayLike | None) -> None:
+        shape = np.shape(start)
+        pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
+        self._places.check_start(pose)
+        P = (
+            np.diag([0.01, 0.01, 0.0025])
+            if covariance is None
+            else one_array(covariance, "start_covariance", (3, 3))
+        )
+        cell = 2 * np.pi / self.sectors
+        P = P + np.diag([self.side**2, self.side**2, cell**2]) / 12
+        xi = find_twist(pose, self._centers)
+        log = -0.5 * np.einsum("ni,ij,nj->n", xi, np.linalg.inv(P), xi)
+        self.belief = np.exp(log - log.max()).reshape(self._free.shape)
+        self.belief /= self.belief.sum()
+
+    def predict(
+        self, increment: npt.ArrayLike, dt: float = 0.0, *, covariance: npt.ArrayLike | None = None
+    ) -> None:
+        """Moves the probability by odometry, as ParticleFilter.predict; steps below a cell are kept until
+        the next update."""
+        step = to_xytheta(as_pose_2d(increment, "increment")) if np.shape(increment) == (3, 3) else increment
+        row = one_array(step, "increment", (3,))
+        if covariance is not None:
+            A = adjoin_rows(relate_rows(row, np.zeros(3)))
+            Q = np.zeros((3, 3)) if self._given is None else self._given
+            self._given = carry_covariance(A, Q) + one_array(covariance, "covariance", (3, 3))
+        self._pending, self._since = follow_rows(self._pending, row), follow_rows(self._since, row)
+        self._seconds += bounded_number(dt, "dt", 0.0, "give seconds, not below zero")
+        self._found = None
+        if measure_step(self._pending) > self.side:
+            self._move()
+
+    def _move(self) -> None:
+        if measure_step(self._pending) < STANDING:
+            return
+        xi = log_se2(pose_2d(xytheta=self._pending))
+        Q = self.noise.covariance(xi, self._seconds) if self._given is None else self._given
+        theta = self._axes[0]
+        moved = np.empty_like(self.belief)
+        for k, angle in enumerate(theta):
+            dx, dy = rotation_2d(angle) @ self._pending[:2]
+            R = rotation_2d(angle + self._pending[2])
+            P = R @ Q[:2, :2] @ R.T
+            plane = shift_axis(self.belief[k], dy / self.side, 0)
+            plane = shift_axis(plane, dx / self.side, 1)
+            plane = blur_axis(plane, np.sqrt(P[1, 1]) / self.side, 0)
+            moved[k] = blur_axis(plane, np.sqrt(P[0, 0]) / self.side, 1)
+        sector = 2 * np.pi / self.sectors
+        turned = shift_axis(moved, self._pending[2] / sector, 0, wraps=True)
+        self.belief = blur_axis(turned, np.sqrt(Q[2, 2]) / sector, 0, wraps=True)
+        self.belief /= self.belief.sum()
+        self._pending, self._seconds, self._given = np.zeros(3), 0.0, None
+
+    def update(self, scan: Any) -> None:
+        """Multiplies by the likelihood of a scan (one row of Scans, or ends of beams in base (m, 2))."""
+        self._move()
+        share = 1.0 if not self.updates else min(1.0, measure_step(self._since) / FULL_STEP)
+        ends = self.model.read_ends(scan)
+        if len(ends) < FEWEST_BEAMS:
+            return
+        used, exponent = self.model.choose_ends(ends)
+        scores = self._cloud.score(self.model.map, used, self.threads).reshape(self.belief.shape)
+        self.score, self.updates, self._found = float(scores[self._free > 0].max()), self.updates + 1, None
+        if share <= STANDING / FULL_STEP:
+            return
+        self._since = np.zeros(3)
+        prior = (1 - UNIFORM) * self.belief + UNIFORM * self._free / self._free.sum()
+        logs = share * exponent * self.model.nats * 255.0 * len(used) * (scores - scores.max())
+        self.belief = prior * np.exp(logs) * np.where(self._free > 0, 1.0, UNIFORM)
+        self.belief /= self.belief.sum()
+
+    @property
+    def modes(self) -> tuple[PoseMode, ...]:
+        """The best cells with what lies around them, of at least 1 % of the probability, the heaviest first."""
+        if self._found is None:
+            self._found = find_modes(self.belief, self._centers)
+        return tuple(self._found)
+
+    @property
+    def pose(self) -> Array:
+        """The mean of the heaviest mode, x, y [m], θ [rad] (3,)."""
+        return self.modes[0].pose
+
+    @property
+    def covariance(self) -> Array:
+        """The covariance (3, 3) of the heaviest mode, of ξ in T exp ξ, in base."""
+        return self.modes[0].covariance
+
+    @property
+    def particles(self) -> Array:
+        """The centres of the cells with the most probability, (k, 3), in place of particles."""
+        rows = np.argsort(self.belief.ravel())[::-1][:SHOWN_CELLS]
+        return self._centers[rows]
+
+    @property
+    def events(self) -> tuple[FilterEvent, ...]:
+        """None: this filter never searches."""
+        return ()
+
+    @property
+    def status(self) -> str:
+        """ "localised", "ambiguous" where other modes have much of the probability, "lost" before the first
+        scan."""
+        if not self.updates and not self._is_known:
+            return "lost"
+        first, *others = self.modes
+        if any(mode.share >= OTHER_SHARE for mode in others) or first.share < LEAST_MAIN_SHARE:
+            return "ambiguous"
+        return "localised"
+
+    @property
+    def reason(self) -> str:
+        """The status as one sentence."""
+        return f"{count_things(len(self.modes), 'mode')}, the heaviest with {self.modes[0].share:.0%} of the probability"
+
+    def __bool__(self) -> bool:
+        return self.status == "localised"
+
+    def __len__(self) -> int:
+        """How many cells there are."""
+        return self.belief.size
+
+    def __repr__(self) -> str:
+        return one_line("HistogramFilter", f"{len(self)} cells: {self.status}, {self.reason}")
+
+
+SHOWN_CELLS: Final = 2000
+"""Cells that stand for particles."""
+LEAST_MAIN_SHARE: Final = 0.5
+"""Share of the probability that the heaviest mode needs."""
+
+
+def shift_axis(values: Array, by: float, axis: int, *, wraps: bool = False) -> Array:
+    """Values moved by a number of cells along an axis, shared between two cells; zeros come in, or the others
+    end."""
+    whole = int(np.floor(by))
+    part = by - whole
+    return (1 - part) * roll_axis(values, whole, axis, wraps) + part * roll_axis(
+        values, whole + 1, axis, wraps
+    )
+
+
+def roll_axis(values: Array, by: int, axis: int, wraps: bool) -> Array:
+    """Values moved by whole cells."""
+    if wraps:
+        return np.roll(values, by, axis=axis)
+    moved = np.zeros_like(values)
+    n = values.shape[axis]
+    if abs(by) < n:
+        to, of = [slice(None)] * values.ndim, [slice(None)] * values.ndim
+        to[axis], of[axis] = slice(max(by, 0), n + min(by, 0)), slice(max(-by, 0), n + min(-by, 0))
+        moved[tuple(to)] = values[tuple(of)]
+    return moved
+
+
+def blur_axis(values: Array, sigma: float, axis: int, *, wraps: bool = False) -> Array:
+    """Values blurred by a normal distribution of a standard deviation in cells."""
+    if not sigma > NARROWEST_BLUR:
+        return values
+    reach = int(np.ceil(BLUR_REACH * sigma))
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    weights /= weights.sum()
+    return np.asarray(sum(w * roll_axis(values, k - reach, axis, wraps) for k, w in enumerate(weights)))
+
+
+def find_modes(belief: Array, poses: Array) -> list[PoseMode]:
+    """The best cell with those around it, then the best of the others, and so on."""
+    rows = np.flatnonzero(belief.ravel() > LEAST_OF_BEST * belief.max())
+    weights, poses = belief.ravel()[rows], poses[rows]
+    modes: list[PoseMode] = []
+    while len(modes) < LISTED_MODES and len(weights):
+        best = int(np.argmax(weights))
+        xi = find_twist(poses[best], poses)
+        near = (np.hypot(xi[:, 0], xi[:, 1]) < MODE_REACH[0]) & (np.abs(xi[:, 2]) < MODE_REACH[1])
+        share = float(weights[near].sum())
+        if modes and share < LEAST_SHARE:
+            break
+        w = weights[near] / share
+        pose = move_pose(poses[best], w @ xi[near])
+        away = find_twist(pose, poses[near])
+        modes.append(PoseMode(pose, (w[:, None] * away).T @ away, share))
+        weights, poses = weights[~near], poses[~near]
+    return sorted(modes, key=lambda mode: -mode.share)
+
+
+LEAST_OF_BEST: Final = 1e-4
+"""Probability over that of the best cell below which a cell belongs to no mode."""

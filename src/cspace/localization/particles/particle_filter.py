@@ -1,0 +1,329 @@
+"""The particle filter: moves particles by odometry, weighs them by measurements, and finds the robot again."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import _core
+from cspace.arrays import Array, as_generator, bounded_number, one_array, whole_number
+from cspace.errors import InputError, InputTypeError
+from cspace.localization.filters.rows import follow_rows
+from cspace.localization.particles.models import (
+    BEAM_MODEL_PARTICLES,
+    ScanModel,
+    make_model,
+)
+from cspace.localization.particles.placing import FreePlaces, spread_poses
+from cspace.localization.particles.recovery import GAIN, LEAST_SCORE, ScoreMonitor
+from cspace.localization.particles.state import FilterEvent, PoseMode
+from cspace.localization.sensors import LaserScanner, RangeBearing
+from cspace.mobile import MotionNoise, RandomWalk
+from cspace.spatial import as_pose_2d, log_se2, pose_2d, to_xytheta
+from cspace.tables import count_things, one_line
+
+PARTICLES: Final = 1000
+"""The least number of particles unless given."""
+MOST_PARTICLES: Final = 4_000_000
+"""The most particles: a quarter of a gigabyte."""
+GROWTH: Final = 10
+"""How many times the least number of particles the most is, unless given."""
+GROWN_PARTICLES: Final = 100_000
+"""The most particles, unless given or fewer than n."""
+SIZE_ERROR: Final = 0.05
+"""Divergence of the histogram of the particles from the posterior that their number is made for."""
+SIZE_QUANTILE: Final = 2.326
+"""The normal quantile of the probability of that, 99 %."""
+FULL_STEP: Final = 0.1
+"""After this distance [m], or turn [rad], a measurement counts wholly; after less for less: the errors of
+measurements from one place are the same."""
+STANDING: Final = 1e-3
+"""A distance [m] or turn [rad] below which the robot stands: the jitter of odometry at rest."""
+LONGEST_STEP: Final = 0.1
+"""Length [m] or turn [rad] of odometry that is added to particles at once."""
+START_DEVIATIONS: Final = (0.1, 0.1, 0.05)
+"""Standard deviations of a start [m, m, rad] unless given, and around places found on the map."""
+OTHER_SHARE: Final = 0.1
+"""Share of the weight of a second mode from which the place is ambiguous."""
+LISTED_SHARE: Final = 0.01
+"""Share of the weight from which a mode is listed."""
+WIDEST: Final = (1.0, 0.5)
+"""Standard deviations of the position [m] and heading [rad] beyond which the place is ambiguous."""
+FRESH_UPDATES: Final = 3
+"""Measurements after a search that count wholly, even where the robot stands."""
+
+
+class ParticleFilter:
+    """Where a robot is, as weighted poses: predict with odometry, update with scans or readings.
+
+    grid: an OccupancyGrid or an EvidenceGrid, a ByteField, or Landmarks. motion: the noise of the odometry
+    (RandomWalk unless given), or a vehicle, for which it is that. sensor: a LaserScanner, or a RangeBearing
+    for Landmarks. n: the least number of particles; most: the most, 10 n unless given (KLD sampling decides,
+    Fox 2003). start: pose x, y, θ (3,) or (3, 3), or None where the robot may be anywhere;
+    start_covariance (3, 3) of ξ in T exp ξ, 10 cm and 0.05 rad unless given. recover: whether to search the
+    map at the start and where the measurements stop to fit. threads: at most; the answer does not depend on
+    them. rng: int, Generator or None; the same seed gives the same particles on every machine.
+
+    Raises InputError for too many particles, a map without free cells, a start off the map or in a wall.
+    Source: Thrun, Burgard & Fox 2005, chapter 8.
+    """
+
+    def __init__(
+        self,
+        grid: Any,
+        *,
+        motion: Any | None = None,
+        sensor: LaserScanner | RangeBearing | None = None,
+        n: int | None = None,
+        most: int | None = None,
+        start: npt.ArrayLike | None = None,
+        start_covariance: npt.ArrayLike | None = None,
+        recover: bool = True,
+        threads: int = 1,
+        rng: int | np.random.Generator | None = None,
+    ) -> None:
+        self.grid, self.model = grid, make_model(grid, sensor)
+        self.noise = read_motion(motion)
+        self.least, largest = read_sizes(self.model, n, most)
+        self.threads = whole_number(threads, "threads", 0, 1024)
+        self.recover = bool(recover)
+        self._rng = as_generator(rng)
+        reach = sensor.most_range if isinstance(sensor, RangeBearing) else np.inf
+        self._places = FreePlaces(grid, reach)
+        self._cloud = _core.ParticleCloud(largest, int(self._rng.integers(2**63)))
+        self._monitor = ScoreMonitor(self.model.threshold)
+        self._pending, self._since, self._seconds, self._path = np.zeros(3), np.zeros(3), 0.0, 0.0
+        self._fresh = FRESH_UPDATES
+        self._found: list[PoseMode] | None = None
+        self.updates, self.score = 0, float("nan")
+        self._events: list[FilterEvent] = []
+        self._was = ""
+        self.is_searching = start is None
+        self._place_first(start, start_covariance)
+
+    def _place_first(self, start: npt.ArrayLike | None, covariance: npt.ArrayLike | None) -> None:
+        if start is None:
+            self._cloud.place(self._places.draw(self.least, self._rng))
+            return
+        shape = np.shape(start)
+        pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
+        self._places.check_start(pose)
+        P = np.diag(np.square(START_DEVIATIONS))
+        if covariance is not None:
+            P = one_array(covariance, "start_covariance", (3, 3))
+        self._cloud.place(spread_poses(self._cloud, pose[None], P, self._places, self.least))
+
+    # --- the two steps of the filter --------------------------------------------------------------------
+
+    def predict(
+        self, increment: npt.ArrayLike, dt: float = 0.0, *, covariance: npt.ArrayLike | None = None
+    ) -> None:
+        """Moves the particles by odometry: the pose of the next base in the last one, (3,) x, y [m], θ [rad],
+        or (3, 3), that took dt [s], with noise. covariance (3, 3) of w in T D exp w, in the new base; unless
+        given, that of the model of the motion. While the robot stands nothing happens.
+        """
+        shape = np.shape(increment)
+        if shape == (3, 3):
+            step = to_xytheta(as_pose_2d(increment, "increment"))
+        else:
+            step = one_array(increment, "increment", (3,))
+        seconds = bounded_number(dt, "dt", 0.0, "give seconds, not below zero")
+        Q = None if covariance is None else one_array(covariance, "covariance", (3, 3))
+        if Q is not None:
+            self._move()
+        self._pending, self._since = follow_rows(self._pending, step), follow_rows(self._since, step)
+        self._path += float(np.hypot(step[0], step[1]) + abs(step[2]))
+        self._seconds += seconds
+        self._found = None
+        if Q is not None or self._path > LONGEST_STEP:
+            self._move(Q)
+
+    def _move(self, covariance: Array | None = None) -> None:
+        """Applies the odometry that was not yet, unless the robot stands."""
+        self._path = 0.0
+        if measure_step(self._pending) < STANDING:
+            self._seconds = 0.0
+            return
+        if covariance is None:
+            xi = log_se2(pose_2d(xytheta=self._pending))
+            covariance = self.noise.covariance(xi, self._seconds)
+        self._cloud.move(self._pending, np.ascontiguousarray(covariance).ravel(), self.threads)
+        self._pending, self._seconds = np.zeros(3), 0.0
+        self._found = None
+
+    def update(self, scan: Any) -> None:
+        """Weighs the particles by a measurement: one scan of Scans, ends of beams in base (m, 2), or Readings.
+
+        Looks for other places where it fits nowhere, and resamples where few particles have the weight. A scan
+        without returns changes nothing.
+        """
+        self._move()
+        share = min(1.0, measure_step(self._since) / FULL_STEP)
+        if self._fresh:
+            share = 1.0
+        share = share if share > STANDING / FULL_STEP else 0.0
+        score = self.model.weigh(self._cloud, scan, share, self.threads)
+        if score is None:
+            return
+        self.updates += 1
+        self.score, self._found = score, None
+        self._fresh = max(self._fresh - 1, 0)
+        if share > 0:
+            self._since = np.zeros(3)
+        if self.recover and (self.is_searching or self._monitor.wants_search(score)):
+            self._search(scan, score)
+        elif share > 0:
+            self._resample()
+        self._monitor.add(score, share > 0 and self.status == "localised")
+        self._note_status()
+
+    def _resample(self) -> None:
+        cloud = self._cloud
+        if cloud.effective_count() < 0.5 * len(cloud):
+            cloud.resample(self.least, SIZE_ERROR, SIZE_QUANTILE)
+
+    def _search(self, scan: Any, score: float) -> None:
+        """Puts half of the particles on the best other places, at the start all of them."""
+        is_start, self.is_searching = self.is_searching, False
+        above = LEAST_SCORE if is_start else max(LEAST_SCORE, score + GAIN)
+        poses = self.model.search(scan, above, self._rng)
+        self._monitor.note_search(len(poses))
+        self._events.append(
+            FilterEvent(self.updates, "search" if len(poses) else "no place", score, len(poses))
+        )
+        if not len(poses):
+            self.is_searching = is_start
+            return
+        cloud = self._cloud
+        P = np.diag(np.square(START_DEVIATIONS))
+        if is_start:
+            cloud.place(spread_poses(cloud, poses, P, self._places, self.least))
+            self.model.weigh(cloud, scan, 1.0, self.threads)
+        else:
+            cloud.resample(self.least, SIZE_ERROR, SIZE_QUANTILE)
+            kept = cloud.poses()[::2]
+            added = spread_poses(cloud, poses, P, self._places, len(cloud) - len(kept))
+            cloud.place(np.ascontiguousarray(np.concatenate([kept, added])))
+        self._fresh = FRESH_UPDATES
+        self._found = None
+
+    def _note_status(self) -> None:
+        status = self.status
+        if status != self._was and self._was and status in ("lost", "localised"):
+            self._events.append(FilterEvent(self.updates, status, self.score))
+        self._was = status
+
+    # --- what it found ----------------------------------------------------------------------------------
+
+    @property
+    def modes(self) -> tuple[PoseMode, ...]:
+        """The clusters of the particles with at least 1 % of the weight, the heaviest first."""
+        if self._found is None:
+            poses, covariances, shares = self._cloud.find_modes()
+            poses = follow_rows(poses, self._pending)
+            P = covariances.reshape(-1, 3, 3)
+            listed = [PoseMode(*each) for each in zip(poses, P, map(float, shares), strict=True)]
+            self._found = [mode for k, mode in enumerate(listed) if not k or mode.share >= LISTED_SHARE]
+        return tuple(self._found)
+
+    @property
+    def pose(self) -> Array:
+        """The mean of the heaviest mode, x, y [m], θ [rad] (3,)."""
+        return self.modes[0].pose
+
+    @property
+    def covariance(self) -> Array:
+        """The covariance (3, 3) of the heaviest mode, of ξ in T exp ξ, in base."""
+        return self.modes[0].covariance
+
+    @property
+    def particles(self) -> Array:
+        """The particles, (k, 3): x, y [m], θ [rad]."""
+        return follow_rows(self._cloud.poses(), self._pending)
+
+    @property
+    def weights(self) -> Array:
+        """The weights of the particles, (k,), of sum 1."""
+        return self._cloud.weights()
+
+    @property
+    def events(self) -> tuple[FilterEvent, ...]:
+        """Searches of the map and changes of the status, in order."""
+        return tuple(self._events)
+
+    @property
+    def status(self) -> str:
+        """ "localised", "ambiguous" where there are several modes or a wide one, "lost" where measurements do
+        not fit."""
+        if (self.is_searching and (self.updates or self.recover)) or self._monitor.is_lost:
+            return "lost"
+        first, *others = self.modes
+        far, turned = first.spread
+        if any(mode.share >= OTHER_SHARE for mode in others) or far > WIDEST[0] or turned > WIDEST[1]:
+            return "ambiguous"
+        return "localised"
+
+    @property
+    def reason(self) -> str:
+        """The status as one sentence."""
+        status, first = self.status, self.modes[0]
+        if status == "lost":
+            if not self.updates:
+                return "nothing was measured yet, and the start is unknown"
+            return f"the best particle scores {self.score:.2f}, below {self._monitor.threshold:.2f}"
+        if status == "ambiguous":
+            return (
+                f"{count_things(len(self.modes), 'mode')}, the heaviest with {first.share:.0%} of the weight"
+            )
+        far, turned = first.spread
+        return f"within {far:.2f} m and {np.degrees(turned):.1f}° (1σ), score {self.score:.2f}"
+
+    def __bool__(self) -> bool:
+        return self.status == "localised"
+
+    def __len__(self) -> int:
+        """How many particles there are."""
+        return len(self._cloud)
+
+    def __repr__(self) -> str:
+        return one_line("ParticleFilter", f"{len(self)} particles: {self.status}, {self.reason}")
+
+
+def measure_step(row: Array) -> float:
+    """How far a step x, y [m], θ [rad] goes: distance and turn added."""
+    return float(np.hypot(row[0], row[1]) + abs(row[2]))
+
+
+def read_motion(motion: Any | None) -> MotionNoise:
+    """A model of noise. Raises InputTypeError for what is neither one nor a vehicle."""
+    if motion is None or hasattr(motion, "twist"):
+        return RandomWalk()
+    if not hasattr(motion, "covariance"):
+        raise InputTypeError(
+            f"motion is a {type(motion).__name__}; give a model of noise such as cspace.mobile.RandomWalk, or a vehicle"
+        )
+    model: MotionNoise = motion
+    return model
+
+
+def read_sizes(model: Any, n: int | None, most: int | None) -> tuple[int, int]:
+    """The least and the most number of particles."""
+    limit = MOST_PARTICLES
+    if isinstance(model, ScanModel) and model.table is not None:
+        limit = BEAM_MODEL_PARTICLES
+    note = (
+        "the beam model casts a ray per beam; model='likelihood_field' takes more"
+        if limit < PARTICLES
+        else ""
+    )
+    least = whole_number(min(PARTICLES, limit) if n is None else n, "n", 1, limit, note or "fewer are enough")
+    if most is None:
+        return least, max(least, min(GROWTH * least, GROWN_PARTICLES, limit))
+    largest = whole_number(most, "most", 1, limit, note)
+    if largest < least:
+        raise InputError(
+            f"most is {largest} and n {least}; the most particles cannot be fewer than the least"
+        )
+    return least, largest

@@ -1,0 +1,102 @@
+"""Where particles are put: around poses, and anywhere on the free cells of a map."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.localization.filters.rows import move_pose
+from cspace.localization.log import Landmarks
+from cspace.maps import ByteField
+
+START_SLACK: Final = 0.3
+"""How far from the free cells a start may lie [m]: the thickness of a wall drawn too thick."""
+LANDMARK_REACH: Final = 10.0
+"""How far around landmarks particles are put [m] where the range of the sensor is not limited."""
+
+
+class FreePlaces:
+    """The places where a robot may be."""
+
+    def __init__(self, grid: Any, reach: float) -> None:
+        self.blocked: npt.NDArray[np.bool_] | None = None
+        if isinstance(grid, Landmarks):
+            far = reach if np.isfinite(reach) else LANDMARK_REACH
+            self.low, self.high = grid.points.min(axis=0) - far, grid.points.max(axis=0) + far
+            return
+        if isinstance(grid, ByteField):
+            self.blocked = np.zeros(grid.scores.shape, dtype=bool)
+            self.side, self.low = grid.resolution, np.asarray(grid.origin)
+        else:
+            cells = grid.to_grid()
+            self.blocked, self.side, self.low = cells.blocked, cells.resolution, cells.origin
+        if self.blocked.all():
+            raise InputError("the map has no free cells; a robot can be nowhere on it")
+        rows, columns = self.blocked.shape
+        self.high = self.low + self.side * np.array([columns, rows])
+
+    def draw(self, count: int, rng: np.random.Generator) -> Array:
+        """Poses (count, 3) anywhere, with any heading."""
+        if self.blocked is None:
+            points = rng.uniform(self.low, self.high, (count, 2))
+        else:
+            free = np.flatnonzero(~self.blocked.ravel())
+            rows, columns = np.divmod(free[rng.integers(len(free), size=count)], self.blocked.shape[1])
+            points = self.low + self.side * (np.stack([columns, rows], axis=-1) + rng.random((count, 2)))
+        return np.column_stack([points, rng.uniform(-np.pi, np.pi, count)])
+
+    def are_free(self, points: Array) -> npt.NDArray[np.bool_]:
+        """Whether points (k, 2) lie in free cells: (k,)."""
+        if self.blocked is None:
+            return np.ones(len(points), dtype=bool)
+        cells = np.floor((points - self.low) / self.side)[:, ::-1]
+        inside = ((cells >= 0) & (cells < self.blocked.shape)).all(axis=1)
+        rows, columns = np.where(inside[:, None], cells, 0).astype(int).T
+        return inside & ~self.blocked[rows, columns]
+
+    def find_coarse_cells(self, side: float, shape: tuple[int, int]) -> npt.NDArray[np.bool_]:
+        """Which larger cells of a side [m], from the same corner, hold a free cell: (rows, columns)."""
+        assert self.blocked is not None
+        rows, columns = np.nonzero(~self.blocked)
+        coarse = np.zeros(shape, dtype=bool)
+        at = [
+            np.minimum(((k + 0.5) * self.side / side).astype(int), n - 1)
+            for k, n in zip((rows, columns), shape, strict=True)
+        ]
+        coarse[at[0], at[1]] = True
+        return coarse
+
+    def check_start(self, pose: Array) -> None:
+        """InputError for a start off the map, or deep in a wall."""
+        x, y = pose[:2]
+        if self.blocked is None:
+            return
+        if not ((pose[:2] >= self.low) & (pose[:2] <= self.high)).all():
+            spans = f"x {self.low[0]:g} … {self.high[0]:g}, y {self.low[1]:g} … {self.high[1]:g} [m]"
+            raise InputError(
+                f"start ({x:g}, {y:g}) is off the map, which spans {spans}; give start=None to search"
+            )
+        reach = np.arange(-START_SLACK, START_SLACK + self.side, min(self.side, START_SLACK))
+        around = np.stack(np.meshgrid(reach, reach), axis=-1).reshape(-1, 2)
+        near = pose[:2] + around[np.hypot(*around.T) <= START_SLACK]
+        if not self.are_free(np.concatenate([pose[None, :2], near])).any():
+            raise InputError(
+                f"start ({x:g}, {y:g}) lies in a wall, {START_SLACK:g} m or more from the free cells; move it, or"
+                " give start=None to search"
+            )
+
+
+def spread_poses(
+    cloud: _core.ParticleCloud, centers: Array, covariance: Array, places: FreePlaces, count: int
+) -> Array:
+    """Poses (count, 3) around centers (k, 3) in turn, T exp(w) with w normal; in walls the center instead."""
+    around = np.resize(centers, (count, 3))
+    values, vectors = np.linalg.eigh(covariance)
+    w = cloud.draw_normals(count) * np.sqrt(np.maximum(values, 0.0)) @ vectors.T
+    moved = move_pose(around, w)
+    return np.where(places.are_free(moved[:, :2])[:, None], moved, around)

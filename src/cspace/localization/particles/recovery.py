@@ -1,0 +1,65 @@
+"""When a particle filter doubts its place: scores of the best particle against those it had while localised."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+FIRST_SCORES: Final = 20
+"""Scores after which their median replaces the threshold of the sensor."""
+KEPT_SCORES: Final = 200
+"""Scores of which the median is taken: the log's first minutes, and later its last ones."""
+SHARE_OF_MEDIAN: Final = 0.8
+"""A score below this part of the median is suspicious, even where the sensor's threshold lies higher."""
+LOST_UPDATES: Final = 3
+"""Suspicious scores in a row after which the filter says that it is lost."""
+LOST_SHARE: Final = 0.8
+"""Part of the threshold below which scores count for that."""
+LONGEST_WAIT: Final = 8
+"""Most updates between two searches of the map that find nothing better."""
+GAIN: Final = 0.05
+"""By how much the score of another place must exceed that of the best particle."""
+LEAST_SCORE: Final = 0.4
+"""The least score of another place."""
+
+
+class ScoreMonitor:
+    """Remembers scores, and decides when to search the map."""
+
+    def __init__(self, threshold: float) -> None:
+        self.first = threshold
+        self.scores: list[float] = []
+        self.bad = 0
+        self._threshold = threshold
+        self._wait, self._pause = 0, 1
+
+    @property
+    def threshold(self) -> float:
+        """The score below which another place is looked for."""
+        return self._threshold
+
+    def add(self, score: float, is_localised: bool) -> None:
+        """Takes note of the score of an update."""
+        self.bad = self.bad + 1 if score < LOST_SHARE * self._threshold else 0
+        self._wait = max(self._wait - 1, 0)
+        if is_localised and score >= self._threshold:
+            self._pause = 1
+        if is_localised:
+            self.scores = [*self.scores, score][-KEPT_SCORES:]
+            if len(self.scores) >= FIRST_SCORES:
+                self._threshold = min(self.first, SHARE_OF_MEDIAN * float(np.median(self.scores)))
+
+    def wants_search(self, score: float) -> bool:
+        """Whether to search now."""
+        return score < self._threshold and self._wait == 0
+
+    def note_search(self, found: int) -> None:
+        """After a search; one that found nothing lets the next wait twice as long."""
+        self._pause = 1 if found else min(2 * self._pause, LONGEST_WAIT)
+        self._wait = self._pause
+
+    @property
+    def is_lost(self) -> bool:
+        """Whether the scores were suspicious for some updates."""
+        return self.bad >= LOST_UPDATES

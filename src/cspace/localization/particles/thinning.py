@@ -1,0 +1,36 @@
+"""Which beams of a scan a filter uses: ends spread evenly along what the scan saw."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.localization.log import Ids, Scans
+
+LONGEST_GAP: Final = 0.5
+"""Between the ends of two beams [m] what counts as seen: the rest of a longer gap was not."""
+
+
+def read_ends(scan: Scans, row: int, least: float, most: float) -> tuple[Array, Ids]:
+    """The ends of the beams of a scan in base (m, 2) [m] whose ranges lie between two bounds, in the order of
+    their angles, and which beams they are (m,)."""
+    ranges = scan.ranges[row]
+    beams = np.flatnonzero((ranges >= least) & (ranges < min(most, scan.most)))
+    reach, angles = ranges[beams].astype(np.float64), scan.angles[beams]
+    in_laser = np.stack([reach * np.cos(angles), reach * np.sin(angles)], axis=-1)
+    return in_laser @ scan.T_base_laser[:2, :2].T + scan.T_base_laser[:2, 2], beams
+
+
+def thin_ends(ends: Array, most: int) -> Ids:
+    """At most so many of ends (m, 2) in order, evenly along the line through them: (k,) rows.
+
+    Near walls have more ends per metre than far ones, so every k-th beam would weigh them more.
+    """
+    if len(ends) <= most:
+        return np.arange(len(ends))
+    steps = np.minimum(np.hypot(*np.diff(ends, axis=0).T), LONGEST_GAP)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    rows = np.searchsorted(along, np.linspace(0.0, along[-1], most))
+    return np.unique(np.minimum(rows, len(ends) - 1))

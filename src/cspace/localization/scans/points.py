@@ -1,0 +1,64 @@
+"""Points of scans in base: read, thinned along the walls, and put right for the motion during a scan."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace._core import thin_scans
+from cspace.arrays import Array, one_array
+from cspace.errors import InputError
+from cspace.localization.log import Scans
+from cspace.mobile import Odometry
+from cspace.spatial import exp_se2
+
+MOST_BEAMS: Final = 180
+"""Points of a scan that are matched: more of them cost time and tell hardly anything new."""
+NEAREST: Final = 0.1
+"""Ranges below this [m] are reflections within the housing or on the robot."""
+
+
+def read_scan(scan: Any, subject: str) -> Array:
+    """The points (m, 2) of one scan, or points as they are; InputError for others, or none."""
+    if isinstance(scan, Scans):
+        if len(scan) != 1:
+            raise InputError(f"{subject} has {len(scan)} scans; give one, such as log.scans[7]")
+        points = scan.points(0)
+    else:
+        points = one_array(scan, subject, (None, 2), "rows x, y of points in base")
+    if not len(points):
+        raise InputError(f"{subject} has no points; a scan without returns cannot be matched")
+    return np.ascontiguousarray(points)
+
+
+def thin_scan(points: Array, most: int) -> Array:
+    """At most so many points of one scan (m, 2) in the order of its beams, evenly spread along the walls."""
+    kept, _ = thin_scans(points, np.array([0, len(points)], np.int32), most)
+    return np.asarray(kept)
+
+
+def place_beams(scans: Scans, odometry: Odometry, max_range: float) -> tuple[Array, npt.NDArray[np.int32]]:
+    """The points of all scans in base at their times (M, 2), and the row at which each scan begins (n + 1,).
+
+    Where the beams of a scan follow one another by scans.time_increment, each is moved by the twist of the
+    odometry from its own time to that of the scan. Points beyond max_range [m] are left out.
+    """
+    near = scans.returns & (scans.ranges <= max_range) & (scans.ranges > NEAREST)
+    first = np.concatenate([[0], np.cumsum(near.sum(axis=1))]).astype(np.int32)
+    row, beam = np.nonzero(near)
+    ranges, angles = scans.ranges[row, beam].astype(np.float64), scans.angles[beam]
+    in_laser = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=-1)
+    points = in_laser @ scans.T_base_laser[:2, :2].T + scans.T_base_laser[:2, 2]
+    if scans.time_increment and len(odometry):
+        T = exp_se2(find_twists(odometry, scans.times)[row] * (scans.time_increment * beam)[:, None])
+        points = np.einsum("kij,kj->ki", T[:, :2, :2], points) + T[:, :2, 2]
+    kept, begins = thin_scans(np.ascontiguousarray(points), first, MOST_BEAMS)
+    return np.asarray(kept).reshape(-1, 2), np.asarray(begins, dtype=np.int32)
+
+
+def find_twists(odometry: Odometry, times: Array) -> Array:
+    """The body twists (k, 3) of the steps of odometry in which times (k,) lie."""
+    step = np.searchsorted(odometry.times, times, side="right") - 1
+    return np.asarray(odometry.twists[np.clip(step, 0, len(odometry) - 1)])

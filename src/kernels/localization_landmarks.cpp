@@ -1,0 +1,12 @@
+#include "localization_landmarks.hpp"
+
+#include "cspace/localization/landmarks/covariance_panels.hpp"
+
+namespace cspace::localization::inline CSPACE_ISA {
+
+void add_panel_products(double* panels, int first, int last, const double* X, const double* Y,
+                        std::ptrdiff_t stride, int rank) {
+    add_products(panels, first, last, X, Y, stride, rank);
+}
+
+}  // namespace cspace::localization::inline CSPACE_ISA

@@ -1,0 +1,12 @@
+#pragma once
+#include "cspace/localization/particles/beam_scores.hpp"
+#include "cspace/localization/particles/move.hpp"
+#include "dispatch.hpp"
+
+// See cspace/localization/particles/.
+CSPACE_NARROW_KERNEL(cspace::localization, void, move_particles,
+                     (const MotionStep& step, std::uint64_t first, int count, double* x, double* y,
+                      Heading* headings))
+CSPACE_NARROW_KERNEL(cspace::localization, void, score_particles,
+                     (const ScoreCells& map, const double* x, const double* y, const Heading* headings,
+                      int count, const float* beam_x, const float* beam_y, int beams, std::int32_t* sums))
