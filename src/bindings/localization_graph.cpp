@@ -94,9 +94,7 @@ void bind_localization_graph(nb::module_& m) {
                 const CertificateResult found = solver.certify();
                 return std::make_tuple(found.is_proved, found.bound, found.cost);
             },
-            WithoutLock(),
-            "Whether the dual has a proof, the bound of chi2, and the cost of the optimum next to that "
-            "proved.");
+            WithoutLock(), "Whether the dual has a proof, the bound of chi2, and the cost of the optimum next to that proved.");
     m.def(
         "find_graph_parts",
         [](std::size_t poses, std::size_t landmarks, const Pairs& edges, const Pairs& sightings) {

@@ -46,8 +46,9 @@ void bind_localization_incremental(nb::module_& m) {
             "id"_a, "pose"_a)
         .def(
             "add_edges",
-            [](IncrementalSolver& solver, const Ids& ids, const Doubles& motions,
-               const Doubles& information) { solver.add_edges(read(ids), read(motions), read(information)); },
+            [](IncrementalSolver& solver, const Ids& ids, const Doubles& motions, const Doubles& information) {
+                solver.add_edges(read(ids), read(motions), read(information));
+            },
             "ids"_a, "motions"_a, "information"_a)
         .def(
             "add_sightings",

@@ -24,23 +24,20 @@ LandmarkRule read_rule(const std::array<double, 6>& row) {
     return {row[0], row[1], row[2], int(row[3]), int(row[4]), int(row[5])};
 }
 
-std::unique_ptr<LandmarkFilter> make_ekf(const Row9& sensor, const std::array<double, 6>& rule,
-                                         int linearization, bool is_joint, long most_nodes, const Row3& start,
-                                         const Row9& covariance) {
+std::unique_ptr<LandmarkFilter> make_ekf(const Row9& sensor, const std::array<double, 6>& rule, int linearization,
+                                         bool is_joint, long most_nodes, const Row3& start, const Row9& covariance) {
     return make_ekf_slam(
-        {read_sensor(sensor), Linearization(linearization), read_rule(rule), is_joint, most_nodes}, start,
-        covariance);
+        {read_sensor(sensor), Linearization(linearization), read_rule(rule), is_joint, most_nodes}, start, covariance);
 }
-std::unique_ptr<LandmarkFilter> make_particles(const Row9& sensor, const std::array<double, 6>& rule,
-                                               int version, std::size_t particles, std::uint64_t seed,
-                                               double resample_below, const Row3& start,
-                                               const Row9& covariance) {
-    return make_fast_slam({read_sensor(sensor), read_rule(rule), version, particles, seed, resample_below},
-                          start, covariance);
+std::unique_ptr<LandmarkFilter> make_particles(const Row9& sensor, const std::array<double, 6>& rule, int version,
+                                               std::size_t particles, std::uint64_t seed, double resample_below,
+                                               const Row3& start, const Row9& covariance) {
+    return make_fast_slam({read_sensor(sensor), read_rule(rule), version, particles, seed, resample_below}, start,
+                          covariance);
 }
 
-// Whether rows name, range, bearing can be used: names whole numbers from 0, or all −1; ranges not below
-// zero; bearings within two turns; one of the two at least.
+// Whether rows name, range, bearing can be used: names whole numbers from 0, or all −1; ranges not below zero;
+// bearings within two turns; one of the two at least.
 bool are_readings(std::span<const Row3> rows) {
     constexpr double most_bearing = 6.283185307179587, most_name = 9007199254740992.0;
     for (const Row3& row : rows) {
@@ -61,8 +58,7 @@ bool update(LandmarkFilter& filter, std::span<const Row3> rows) {
 
 template <class T, class Get>
 Plain<T> collect(std::span<const ReadingOutcome> outcomes, npy_intp columns, const Get& get) {
-    Plain<T> column =
-        columns ? Plain<T>({npy_intp(outcomes.size()), columns}) : Plain<T>({npy_intp(outcomes.size())});
+    Plain<T> column = columns ? Plain<T>({npy_intp(outcomes.size()), columns}) : Plain<T>({npy_intp(outcomes.size())});
     T* to = column.data;
     for (const ReadingOutcome& outcome : outcomes) to = get(outcome, to);
     return column;
@@ -71,26 +67,23 @@ auto list_outcomes(const LandmarkFilter& filter) {
     const auto all = filter.outcomes();
     return std::make_tuple(
         collect<std::int64_t>(all, 0, [](const auto& o, std::int64_t* to) { return *to = o.name, to + 1; }),
-        collect<std::uint8_t>(
-            all, 0, [](const auto& o, std::uint8_t* to) { return *to = std::uint8_t(o.verdict), to + 1; }),
+        collect<std::uint8_t>(all, 0, [](const auto& o, std::uint8_t* to) { return *to = std::uint8_t(o.verdict), to + 1; }),
         collect<std::int64_t>(all, 0, [](const auto& o, std::int64_t* to) { return *to = o.dof, to + 1; }),
         collect<double>(all, 0, [](const auto& o, double* to) { return *to = o.nis, to + 1; }),
-        collect<double>(all, 2, [](const auto& o, double* to) {
-            return std::copy(o.innovation.begin(), o.innovation.end(), to);
-        }));
+        collect<double>(all, 2, [](const auto& o, double* to) { return std::copy(o.innovation.begin(), o.innovation.end(), to); }));
 }
 auto list_landmarks(const LandmarkFilter& filter) {
     const LandmarkRows rows = filter.landmarks();
     const npy_intp count = npy_intp(rows.names.size());
-    return std::make_tuple(
-        Plain<std::int64_t>({count}, rows.names.data()), Plain<double>({count, 2}, rows.points.data()),
-        Plain<double>({count, 2, 2}, rows.covariances.data()), Plain<std::int32_t>({count}, rows.seen.data()),
-        Plain<std::uint8_t>({count}, rows.is_confirmed.data()));
+    return std::make_tuple(Plain<std::int64_t>({count}, rows.names.data()), Plain<double>({count, 2}, rows.points.data()),
+                           Plain<double>({count, 2, 2}, rows.covariances.data()),
+                           Plain<std::int32_t>({count}, rows.seen.data()),
+                           Plain<std::uint8_t>({count}, rows.is_confirmed.data()));
 }
 auto list_counts(const LandmarkFilter& filter) {
     const LandmarkCounts& c = filter.counts();
-    return std::make_tuple(c.updates, c.used, c.rejected, c.created, c.skipped, c.dropped, c.inflations,
-                           c.capped, c.resamplings);
+    return std::make_tuple(c.updates, c.used, c.rejected, c.created, c.skipped, c.dropped, c.inflations, c.capped,
+                           c.resamplings);
 }
 
 }  // namespace
@@ -100,20 +93,15 @@ void bind_localization_landmarks(nb::module_& m) {
         .def("predict", &LandmarkFilter::predict, "increment"_a, "noise"_a, "Moves the pose.")
         .def(
             "predict_walk",
-            [](LandmarkFilter& filter, const Row3& increment, const std::array<double, 6>& walk,
-               double duration) {
-                filter.predict_walk(increment, {walk[0], walk[1], walk[2], walk[3], walk[4], walk[5]},
-                                    duration);
+            [](LandmarkFilter& filter, const Row3& increment, const std::array<double, 6>& walk, double duration) {
+                filter.predict_walk(increment, {walk[0], walk[1], walk[2], walk[3], walk[4], walk[5]}, duration);
             },
             "increment"_a, "walk"_a, "duration"_a, "Moves the pose, with the noise of a random walk.")
         .def("update", &update, "readings"_a, "False, and nothing done, for rows that cannot be used.")
         .def_prop_ro("outcomes", &list_outcomes)
-        .def_prop_ro("pose",
-                     [](const LandmarkFilter& filter) { return Plain<double>({3}, filter.pose().data()); })
+        .def_prop_ro("pose", [](const LandmarkFilter& filter) { return Plain<double>({3}, filter.pose().data()); })
         .def_prop_ro("covariance",
-                     [](const LandmarkFilter& filter) {
-                         return Plain<double>({3, 3}, filter.base_covariance().data());
-                     })
+                     [](const LandmarkFilter& filter) { return Plain<double>({3, 3}, filter.base_covariance().data()); })
         .def_prop_ro("landmarks", &list_landmarks)
         .def_prop_ro("is_lost", &LandmarkFilter::is_lost)
         .def_prop_ro("counts", &list_counts)
@@ -126,12 +114,11 @@ void bind_localization_landmarks(nb::module_& m) {
         .def_prop_ro("particles",
                      [](const LandmarkFilter& filter) {
                          const auto rows = filter.particles();
-                         return Plain<double>({npy_intp(rows.size()), 4},
-                                              rows.empty() ? nullptr : rows[0].data());
+                         return Plain<double>({npy_intp(rows.size()), 4}, rows.empty() ? nullptr : rows[0].data());
                      })
         .def_prop_ro("chunks", &LandmarkFilter::chunks);
-    m.def("make_ekf_slam", &make_ekf, "sensor"_a, "rule"_a, "linearization"_a, "is_joint"_a, "most_nodes"_a,
-          "start"_a, "covariance"_a, "A Kalman filter on a pose and landmarks.");
+    m.def("make_ekf_slam", &make_ekf, "sensor"_a, "rule"_a, "linearization"_a, "is_joint"_a, "most_nodes"_a, "start"_a,
+          "covariance"_a, "A Kalman filter on a pose and landmarks.");
     m.def("make_fast_slam", &make_particles, "sensor"_a, "rule"_a, "version"_a, "particles"_a, "seed"_a,
           "resample_below"_a, "start"_a, "covariance"_a, "Particles with maps of landmarks.");
 }

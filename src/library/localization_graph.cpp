@@ -161,10 +161,9 @@ class SolverOf : public GraphSolver {
         }
         if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
         // One scale for all, of the answer that knows most.
-        const double scale =
-            std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
-                return solver.count_kept(a) < solver.count_kept(b);
-            })->scale;
+        const double scale = std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
+                                 return solver.count_kept(a) < solver.count_kept(b);
+                             })->scale;
         const RobustAnswer<Space>& best =
             *std::min_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
                 return solver.truncated_cost(a, scale) < solver.truncated_cost(b, scale);

@@ -19,8 +19,8 @@ struct IncrementalArrays {
     std::vector<std::uint8_t> has_bearing;
 };
 
-// Poses are rows x, y, θ in the plane and matrices 4 × 4 in space. Rows of poses and landmarks are in the
-// order in which they were connected with the held pose.
+// Poses are rows x, y, θ in the plane and matrices 4 × 4 in space. Rows of poses and landmarks are in the order
+// in which they were connected with the held pose.
 class IncrementalSolver {
   public:
     virtual ~IncrementalSolver() = default;
@@ -54,8 +54,8 @@ class IncrementalSolver {
 std::unique_ptr<IncrementalSolver> make_incremental_solver(bool is_spatial, double relinearize,
                                                            double substitute);
 
-// Whether matrices of this size are symmetric to the last digit and positive definite by far; those for which
-// it is false need a closer look.
+// Whether matrices of this size are symmetric to the last digit and positive definite by far; those for which it
+// is false need a closer look.
 bool are_clearly_positive(std::span<const double> matrices, int size);
 
 }  // namespace cspace::localization

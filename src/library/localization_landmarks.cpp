@@ -10,8 +10,8 @@ namespace cspace::localization {
 namespace {
 
 struct KernelPanels {
-    static void add(double* panels, int first, int last, const double* X, const double* Y,
-                    std::ptrdiff_t stride, int rank) {
+    static void add(double* panels, int first, int last, const double* X, const double* Y, std::ptrdiff_t stride,
+                    int rank) {
         kernels::add_panel_products(panels, first, last, X, Y, stride, rank);
     }
 };
@@ -21,8 +21,7 @@ std::array<double, 3> write_pose(const PlanarSpace::Pose& pose) {
     PlanarSpace::write_pose(pose, row.data());
     return row;
 }
-void append_landmark(LandmarkRows& rows, const MappedLandmark& landmark, bool is_confirmed,
-                     const Matrix2& P) {
+void append_landmark(LandmarkRows& rows, const MappedLandmark& landmark, bool is_confirmed, const Matrix2& P) {
     rows.names.push_back(landmark.name);
     rows.points.insert(rows.points.end(), landmark.point.begin(), landmark.point.end());
     rows.covariances.insert(rows.covariances.end(), P.begin(), P.end());
@@ -82,14 +81,12 @@ class EkfFilter final : public FilterOf<EkfSlam<KernelPanels>> {
         std::vector<double> dense(n * n);
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j) dense[n * i + j] = P.pose()[3 * i + j];
-            for (std::size_t c = 0; c < 2 * m; ++c)
-                dense[n * i + 3 + c] = dense[n * (3 + c) + i] = P.cross(i)[c];
+            for (std::size_t c = 0; c < 2 * m; ++c) dense[n * i + 3 + c] = dense[n * (3 + c) + i] = P.cross(i)[c];
         }
         for (std::size_t i = 0; i < m; ++i) {
             for (std::size_t j = 0; j < m; ++j) {
                 const Matrix2 block = P.block(int(i), int(j));
-                for (std::size_t k = 0; k < 4; ++k)
-                    dense[n * (3 + 2 * i + k / 2) + 3 + 2 * j + k % 2] = block[k];
+                for (std::size_t k = 0; k < 4; ++k) dense[n * (3 + 2 * i + k / 2) + 3 + 2 * j + k % 2] = block[k];
             }
         }
         return dense;

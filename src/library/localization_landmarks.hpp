@@ -24,8 +24,7 @@ class LandmarkFilter {
     virtual ~LandmarkFilter() = default;
     // The next pose in the last one, x, y, θ, and the covariance of its disturbance in the new base.
     virtual void predict(const std::array<double, 3>& increment, const std::array<double, 9>& noise) = 0;
-    void predict_walk(const std::array<double, 3>& increment, const mobile::RandomWalk& walk,
-                      double duration);
+    void predict_walk(const std::array<double, 3>& increment, const mobile::RandomWalk& walk, double duration);
     // Readings of one time, rows name, range, bearing. Throws std::logic_error after an update that was
     // interrupted between two particles.
     virtual void update(std::span<const std::array<double, 3>> readings) = 0;

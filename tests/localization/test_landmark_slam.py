@@ -251,9 +251,7 @@ def test_no_information_along_turns_and_shifts_of_the_world(linearization):
         np.testing.assert_allclose(information, np.linalg.inv(P0), rtol=1e-6, atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("linearization", "consistent"), [*zip(LINEARIZATIONS, (True, True, False), strict=True)]
-)
+@pytest.mark.parametrize(("linearization", "consistent"), [*zip(LINEARIZATIONS, (True, True, False), strict=True)])
 def test_consistency(linearization, consistent):
     """NEES over 100 runs of three states, as for the filters on known maps; the plain filter fails."""
     values = []
@@ -309,9 +307,7 @@ def test_a_drive_without_a_map_is_better_than_odometry():
     log = log_of(5, 60.0)
     start = log.truth.poses[0]
     raw = rmse(log.odometry.dead_reckoning(start), log)
-    runs = [
-        run_ekf_slam(log, start=start, sensor=SENSOR, noise=NOISE, linearization=k) for k in LINEARIZATIONS
-    ]
+    runs = [run_ekf_slam(log, start=start, sensor=SENSOR, noise=NOISE, linearization=k) for k in LINEARIZATIONS]
     runs += [run_fast_slam(log, start=start, sensor=SENSOR, noise=NOISE, version=v, rng=1) for v in (1, 2)]
     for run in runs:
         assert run
@@ -477,9 +473,7 @@ def test_wrong_names_are_rejected():
     later = np.flatnonzero(log.readings.times > 20.0)[::9]
     names[later] = (names[later] + 7) % 25
     known = set(log.readings.landmark[log.readings.times <= 20.0].tolist())
-    run = run_ekf_slam(
-        replace(log, readings=replace(log.readings, landmark=names)), sensor=SENSOR, noise=NOISE
-    )
+    run = run_ekf_slam(replace(log, readings=replace(log.readings, landmark=names)), sensor=SENSOR, noise=NOISE)
     wrong = [k for k in later if int(names[k]) in known]
     assert (run.readings.verdict[wrong] == "rejected").mean() > 0.9
     assert run

@@ -40,9 +40,7 @@ def building(seed=3, side=0.1):
     blocked[[0, -1]] = blocked[:, [0, -1]] = True
     blocked[70:73] = blocked[:, 90:92] = True
     for row, column in ((70, 30), (70, 150), (30, 90), (120, 90)):
-        blocked[
-            row : row + 12 if column in (90,) else row + 3, column : column + (2 if column == 90 else 14)
-        ] = 0
+        blocked[row : row + 12 if column in (90,) else row + 3, column : column + (2 if column == 90 else 14)] = 0
     for _ in range(25):
         row, column = rng.integers(4, 150), rng.integers(4, 190)
         blocked[row : row + rng.integers(3, 9), column : column + rng.integers(3, 9)] = True
@@ -402,9 +400,7 @@ def test_scans_that_fit_nowhere_make_it_lost():
 
 
 def test_readings_of_landmarks_localise_from_anywhere():
-    landmarks = Landmarks(
-        np.arange(5), np.array([[2.0, 2.0], [9.0, 3.0], [7.0, 11.0], [1.0, 9.0], [5.0, 6.5]])
-    )
+    landmarks = Landmarks(np.arange(5), np.array([[2.0, 2.0], [9.0, 3.0], [7.0, 11.0], [1.0, 9.0], [5.0, 6.5]]))
     sensor = RangeBearing(range_sigma=0.1, bearing_sigma=0.03)
     log = simulate(route(WAY), landmarks, sensor, rng=3)
     run = cs.localize(log, landmarks, filter="mcl", sensor=sensor, rng=2)

@@ -1,11 +1,10 @@
-// A certificate that an answer is the global optimum, from the dual of its pose graph (Carlone, Rosen,
-// Calafiore, Leonard & Dellaert 2015, "Lagrangian duality in 3D SLAM"; Rosen, Carlone, Bandeira & Leonard
-// 2019, "SE-Sync").
+// A certificate that an answer is the global optimum, from the dual of its pose graph (Carlone, Rosen, Calafiore,
+// Leonard & Dellaert 2015, "Lagrangian duality in 3D SLAM"; Rosen, Carlone, Bandeira & Leonard 2019, "SE-Sync").
 //
-// The dual is that of the chordal problem, in which each rotational error θ counts as 2 sin(θ/2): quadratic
-// in the entries of rotations and positions, Σ tr(Y M Yᵀ) with RᵀR = I. For isotropic information its cost is
-// nowhere above that of the twists, so that its least value bounds χ² of all states from below. A state where
-// S = M − Λ is positive semidefinite has that least value; Λ are the multipliers that its stationarity gives.
+// The dual is that of the chordal problem, in which each rotational error θ counts as 2 sin(θ/2): quadratic in the
+// entries of rotations and positions, Σ tr(Y M Yᵀ) with RᵀR = I. For isotropic information its cost is nowhere
+// above that of the twists, so that its least value bounds χ² of all states from below. A state where S = M − Λ
+// is positive semidefinite has that least value; Λ are the multipliers that its stationarity gives.
 #pragma once
 
 #include <algorithm>
@@ -56,12 +55,10 @@ template <class Space, class Fronts>
 class DualCertificate {
   public:
     DualCertificate(const PoseGraph<Space>& graph, const std::vector<char>& is_used)
-        : graph_(graph),
-          is_used_(is_used),
-          system_(block_sizes(graph), block_pairs(graph, is_used), int(sides)) {}
+        : graph_(graph), is_used_(is_used), system_(block_sizes(graph), block_pairs(graph, is_used), int(sides)) {}
 
-    // Moves a state to the stationary state of the chordal problem next to it, and tries to prove that this
-    // is the global optimum.
+    // Moves a state to the stationary state of the chordal problem next to it, and tries to prove that this is the
+    // global optimum.
     CertificateResult certify(GraphState<Space> state) {
         CertificateResult found;
         const double chordal_cost = settle(state, ResidualKind::chordal);
@@ -95,16 +92,15 @@ class DualCertificate {
         sizes.resize(sizes.size() + graph.start.landmarks.size(), int(p));
         return sizes;
     }
-    static std::vector<BlockPair> block_pairs(const PoseGraph<Space>& graph,
-                                              const std::vector<char>& is_used) {
+    static std::vector<BlockPair> block_pairs(const PoseGraph<Space>& graph, const std::vector<char>& is_used) {
         std::vector<BlockPair> pairs;
         for (std::size_t k = 0; k < graph.edges.size(); ++k) {
             if (is_used[k]) pairs.push_back({graph.edges[k].from, graph.edges[k].to});
         }
         for (std::size_t k = 0; k < graph.sightings.size(); ++k) {
             if (is_used[graph.edges.size() + k])
-                pairs.push_back(
-                    {graph.sightings[k].pose, int(graph.start.poses.size()) + graph.sightings[k].landmark});
+                pairs.push_back({graph.sightings[k].pose,
+                                 int(graph.start.poses.size()) + graph.sightings[k].landmark});
         }
         return pairs;
     }
@@ -128,8 +124,8 @@ class DualCertificate {
             const auto mean = average_information<Space>(edge.W);
             std::array<double, n> weights;
             for (std::size_t i = 0; i < n; ++i) weights[i] = i < r ? mean.rotation : mean.position;
-            system_.add_equation(edge.from, edge.to, A.data(), int(n), int(n), weights.data(), nullptr,
-                                 nullptr, nullptr);
+            system_.add_equation(edge.from, edge.to, A.data(), int(n), int(n), weights.data(), nullptr, nullptr,
+                                 nullptr);
             sum += mean.rotation, count += 1;
         }
         for (std::size_t k = 0; k < graph_.sightings.size(); ++k) {
@@ -139,8 +135,8 @@ class DualCertificate {
             std::array<double, p> weights;
             weights.fill(seen.W[0]);
             system_.add_equation(seen.pose, int(graph_.start.poses.size()) + seen.landmark,
-                                 motion.data() + (n - p) * n, int(p), int(n), weights.data(), nullptr,
-                                 nullptr, nullptr);
+                                 motion.data() + (n - p) * n, int(p), int(n), weights.data(), nullptr, nullptr,
+                                 nullptr);
         }
         mean_weight_ = count > 0 ? sum / count : 1;
     }
@@ -188,7 +184,8 @@ class DualCertificate {
             for (std::size_t side = 0; side < sides; ++side) {
                 const double *const y = Y[side].data() + row, *const m = products[side].data() + row;
                 for (std::size_t i = 0; i < r; ++i) {
-                    for (std::size_t j = 0; j < r; ++j) L[i * r + j] += 0.5 * (y[i] * m[j] + m[i] * y[j]);
+                    for (std::size_t j = 0; j < r; ++j)
+                        L[i * r + j] += 0.5 * (y[i] * m[j] + m[i] * y[j]);
                 }
             }
             if constexpr (d == 2) L = {L[0] + L[3], 0, 0, L[0] + L[3]};  // rotations are complex numbers

@@ -86,13 +86,13 @@ class FalseLoopSolver {
         return settle(state, find_kept(weights));
     }
 
-    // The same in the order of time: measurements come in batches by the last of their poses, and the poses
-    // to come follow by dead reckoning. Drift is small that way where it is large at the end of dead
-    // reckoning; new measurements begin with wider kernels.
+    // The same in the order of time: measurements come in batches by the last of their poses, and the poses to
+    // come follow by dead reckoning. Drift is small that way where it is large at the end of dead reckoning; new
+    // measurements begin with wider kernels.
     RobustAnswer<Space> scale_in_time(const State& start, double width) {
         constexpr std::size_t most_batches = 40;
-        constexpr int most_steps = 4;        // per width
-        constexpr double least_step = 1e-2;  // [m or rad]
+        constexpr int most_steps = 4;          // per width
+        constexpr double least_step = 1e-2;    // [m or rad]
         constexpr double widths[] = {30, 10, 3, 1};
         State state = start;
         const std::vector<int> times = find_times();
@@ -107,9 +107,8 @@ class FalseLoopSolver {
                     for (std::size_t k = 0; k < weights.size(); ++k) {
                         const double own = times[k] > begin ? share * width : width;
                         weights[k] = times[k] > end ? 0.0
-                                     : trusted_[k]
-                                         ? 1.0
-                                         : evaluate_kernel(RobustKernel::dcs, squares_[k], own).weight;
+                                     : trusted_[k]  ? 1.0
+                                                    : evaluate_kernel(RobustKernel::dcs, squares_[k], own).weight;
                     }
                     if (!(step_with(weights, state) > least_step)) break;
                 }
@@ -154,11 +153,12 @@ class FalseLoopSolver {
     // How many doubted measurements an answer keeps, and how many there are.
     std::size_t count_kept(const RobustAnswer<Space>& answer) const {
         std::size_t kept = 0;
-        for (std::size_t k = 0; k < trusted_.size(); ++k)
-            kept += std::size_t(!trusted_[k] && answer.is_used[k]);
+        for (std::size_t k = 0; k < trusted_.size(); ++k) kept += std::size_t(!trusted_[k] && answer.is_used[k]);
         return kept;
     }
-    std::size_t count_doubted() const { return std::size_t(std::count(trusted_.begin(), trusted_.end(), 0)); }
+    std::size_t count_doubted() const {
+        return std::size_t(std::count(trusted_.begin(), trusted_.end(), 0));
+    }
 
   private:
     // The last pose of each measurement.
@@ -230,10 +230,10 @@ class FalseLoopSolver {
         return optimizer_.take_step(state);
     }
 
-    // χ² per degree of freedom of these measurements, between the bounds of a scale; towards 1 where few
-    // doubted measurements count, which say little.
+    // χ² per degree of freedom of these measurements, between the bounds of a scale; towards 1 where few doubted
+    // measurements count, which say little.
     double find_scale(const std::vector<char>& is_used) const {
-        constexpr double least = 0.1;    // errors have heavier tails than the quantile knows
+        constexpr double least = 0.1;   // errors have heavier tails than the quantile knows
         constexpr double belief = 0.05;  // in 1, as a share of the numbers of all doubted measurements
         double sum = 0, doubted = 0, numbers = -double(unknowns_);
         for (std::size_t k = 0; k < is_used.size(); ++k) {

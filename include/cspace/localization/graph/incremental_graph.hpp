@@ -21,8 +21,7 @@
 namespace cspace::localization {
 
 struct IncrementalOptions {
-    double relinearize =
-        0.1;  // largest entry of a correction [m or rad] that leaves a linearisation as it is
+    double relinearize = 0.1;  // largest entry of a correction [m or rad] that leaves a linearisation as it is
     double substitute = 1e-3;  // changes of corrections up to it are not passed on to the subtrees below
 };
 
@@ -76,8 +75,7 @@ class IncrementalGraph {
         linear_ = state;
         estimate_ = state;
         for (int v = 0; v < tree_.variables(); ++v)
-            std::fill_n(tree_.solution(v),
-                        variables_[std::size_t(v)].is_pose ? Space::freedom : Space::dimension, 0.0);
+            std::fill_n(tree_.solution(v), variables_[std::size_t(v)].is_pose ? Space::freedom : Space::dimension, 0.0);
         stale_.clear();
         for (int f = 0; f < int(factors_.size()); ++f) stale_.push_back(f);
         tree_.spoil();
@@ -107,10 +105,9 @@ class IncrementalGraph {
         for (const Measurement& at : factors_) {
             poll.step();
             const auto k = std::size_t(at.index);
-            cost +=
-                at.is_edge
-                    ? weigh_residual(evaluate_edge(edges_[k], estimate_, ResidualKind::twist).e, edges_[k].W)
-                    : weigh_residual(evaluate_sighting(sightings_[k], estimate_).e, sightings_[k].W);
+            cost += at.is_edge
+                        ? weigh_residual(evaluate_edge(edges_[k], estimate_, ResidualKind::twist).e, edges_[k].W)
+                        : weigh_residual(evaluate_sighting(sightings_[k], estimate_).e, sightings_[k].W);
         }
         return cost;
     }
@@ -198,8 +195,7 @@ class IncrementalGraph {
             create_pose(to, Space::compose(estimate_.poses[std::size_t(edge.from)], edge.z), false);
         } else if (edge.from < 0) {
             edge.from = int(pose_ids_.size());
-            create_pose(from, Space::compose(estimate_.poses[std::size_t(edge.to)], Space::inverse(edge.z)),
-                        false);
+            create_pose(from, Space::compose(estimate_.poses[std::size_t(edge.to)], Space::inverse(edge.z)), false);
         } else {
             has_residual_ = true;
         }
@@ -221,11 +217,9 @@ class IncrementalGraph {
             return;
         }
         is_sighting_active_[std::size_t(at.index)] = has_residual_ = true;
-        add_factor(at, pose_variables_[std::size_t(seen.pose)],
-                   landmark_variables_[std::size_t(seen.landmark)]);
+        add_factor(at, pose_variables_[std::size_t(seen.pose)], landmark_variables_[std::size_t(seen.landmark)]);
     }
-    // A landmark that a sighting just began to wait for: where that has it, or where two lines of sight
-    // cross.
+    // A landmark that a sighting just began to wait for: where that has it, or where two lines of sight cross.
     void place_landmark(std::int64_t id) {
         const auto& waiting = waiting_for_landmark_[id];
         const Sighting<Space>& last = sightings_[std::size_t(waiting.back().index)];

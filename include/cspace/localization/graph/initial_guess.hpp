@@ -175,8 +175,7 @@ void place_landmarks(const PoseGraph<Space>& graph, GraphState<Space>& state) {
     place_by_bearings(graph, state, is_placed);
 }
 
-// Dead reckoning from known poses of a state: along trusted edges as far as they reach, then along the
-// others.
+// Dead reckoning from known poses of a state: along trusted edges as far as they reach, then along the others.
 template <class Space>
 void reckon_from(const PoseGraph<Space>& graph, std::vector<char> is_known, GraphState<Space>& state) {
     const std::size_t n = state.poses.size();

@@ -88,9 +88,10 @@ EdgeModel<Space> linearize_edge(const RelativePose<Space>& edge, const GraphStat
                                 ResidualKind kind) {
     constexpr std::size_t n = Space::freedom;
     const EdgeError<Space> found = evaluate_edge(edge, state, kind);
-    const typename Space::Square J = kind == ResidualKind::twist ? Space::log_jacobian(found.e)
-                                     : kind == ResidualKind::g2o ? Space::g2o_jacobian(found.error)
-                                                                 : Space::chordal_jacobian(found.error);
+    const typename Space::Square J =
+        kind == ResidualKind::twist ? Space::log_jacobian(found.e)
+        : kind == ResidualKind::g2o ? Space::g2o_jacobian(found.error)
+                                    : Space::chordal_jacobian(found.error);
     typename Space::Square A = Space::adjoint(Space::inverse(found.motion));
     for (double& x : A) x = -x;  // dξⱼ = −Ad(Xⱼ⁻¹ Xᵢ) dξᵢ
     const typename Space::Square WJ = multiply<n, n, n>(edge.W, J);

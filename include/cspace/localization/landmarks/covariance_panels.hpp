@@ -1,9 +1,9 @@
 // The covariance of many landmarks: the lower triangle of a symmetric matrix in panels of four rows, and its
 // updates of low rank.
 //
-// Panel p holds the rows 4p to 4p + 3 column by column, columns 0 to 4p + 3: four numbers in a row are a
-// pack. A matrix that grows appends panels and moves none. Row and column 2j and 2j + 1 belong to landmark j,
-// so that a landmark fills half a panel; the rows of a half that is not there are zero.
+// Panel p holds the rows 4p to 4p + 3 column by column, columns 0 to 4p + 3: four numbers in a row are a pack.
+// A matrix that grows appends panels and moves none. Row and column 2j and 2j + 1 belong to landmark j, so
+// that a landmark fills half a panel; the rows of a half that is not there are zero.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ namespace cspace::localization::inline CSPACE_ISA {
 // The columns first to last − 1 of one panel of P += Σ X_k Y_kᵀ, of `rank` vectors that are `stride` numbers
 // apart.
 template <int rank>
-CSPACE_INLINE void add_to_panel(double* to, const double* X, const double* Y, std::ptrdiff_t stride,
-                                int first, int last) {
+CSPACE_INLINE void add_to_panel(double* to, const double* X, const double* Y, std::ptrdiff_t stride, int first,
+                                int last) {
     FrontPack x[rank];
     for (int k = 0; k < rank; ++k) x[k] = load_pack(X + k * stride);
     for (int c = first; c < last; ++c) {

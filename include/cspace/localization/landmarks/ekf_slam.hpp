@@ -1,10 +1,9 @@
 // SLAM of landmarks by an extended Kalman filter on a pose and all landmarks at once.
 //
 // Errors are kept in axes of the map. Three ways to linearise differ in where positions enter derivatives:
-// - invariant: the error of the group of poses with landmarks, disturbed on the left (Barrau & Bonnabel
-// 2015).
-//   In axes of the map its retraction is p ← p + V(δθ) δp and l ← l + V(δθ) δl, and after it every error
-//   gains J (new − old) δθ, a product of rank two.
+// - invariant: the error of the group of poses with landmarks, disturbed on the left (Barrau & Bonnabel 2015).
+//   In axes of the map its retraction is p ← p + V(δθ) δp and l ← l + V(δθ) δl, and after it every error gains
+//   J (new − old) δθ, a product of rank two.
 // - first estimates: positions as they were first estimated (Huang, Mourikis & Roumeliotis 2010).
 // - plain: the latest estimates, which gains a heading that nobody measured (Julier & Uhlmann 2001).
 #pragma once
@@ -29,15 +28,10 @@ struct MappedLandmark {
 template <class Kernel>
 class EkfSlam {
   public:
-    static constexpr bool is_resumable =
-        true;  // after an interrupt: readings that it came before are not used
+    static constexpr bool is_resumable = true;  // after an interrupt: readings that it came before are not used
 
     EkfSlam(const EkfSlamRule& rule, const Vector3& start, const std::array<double, 9>& covariance)
-        : rule_(rule),
-          pose_(PlanarSpace::read_pose(start.data())),
-          first_{pose_.x, pose_.y},
-          gate_(rule.landmarks.gate),
-          pairing_gate_(rule.landmarks.pair_share),
+        : rule_(rule), pose_(PlanarSpace::read_pose(start.data())), first_{pose_.x, pose_.y}, gate_(rule.landmarks.gate), pairing_gate_(rule.landmarks.pair_share),
           new_gate_(rule.landmarks.new_share) {
         P_.pose() = turn_covariance(covariance, pose_.c, pose_.s);
     }
@@ -57,8 +51,7 @@ class EkfSlam {
         P_.finish_update();
         outcomes_.assign(readings.size(), {});
         numbers_.clear(), pairs_.clear(), fresh_.clear();
-        for (const LandmarkReading& reading : readings)
-            numbers_.push_back(read_numbers(reading, rule_.sensor));
+        for (const LandmarkReading& reading : readings) numbers_.push_back(read_numbers(reading, rule_.sensor));
         if (readings.empty()) return outcomes_;
         ++counts_.updates;
         const bool named = readings[0].name >= 0;
@@ -118,8 +111,7 @@ class EkfSlam {
     }
     ReadingModel model(std::size_t reading, int j, const SensorPose& at) const {
         const MappedLandmark& landmark = landmarks_[std::size_t(j)];
-        const Vector2 held =
-            rule_.linearization == Linearization::first_estimate ? landmark.first : landmark.point;
+        const Vector2 held = rule_.linearization == Linearization::first_estimate ? landmark.first : landmark.point;
         return model_reading(numbers_[reading], rule_.sensor, at, landmark.point,
                              {held[0] - first_[0], held[1] - first_[1]});
     }
@@ -136,8 +128,7 @@ class EkfSlam {
     void note_innovation(std::size_t reading, const ReadingModel& model, double nis) {
         ReadingOutcome& outcome = outcomes_[reading];
         outcome.nis = nis, outcome.dof = model.count;
-        for (std::size_t k = 0; k < std::size_t(model.count); ++k)
-            outcome.innovation[k] = model.innovation[k];
+        for (std::size_t k = 0; k < std::size_t(model.count); ++k) outcome.innovation[k] = model.innovation[k];
     }
     void pair_reading(std::size_t reading, int j) {
         outcomes_[reading].verdict = ReadingVerdict::used;
@@ -289,21 +280,18 @@ class EkfSlam {
         }
     }
     // A number of a reading times a column of P Hᵀ.
-    static double project(const ReadingModel& model, std::size_t row, int j, const Vector3& pose,
-                          const double* column) {
+    static double project(const ReadingModel& model, std::size_t row, int j, const Vector3& pose, const double* column) {
         const double a = model.A[2 * row], b = model.A[2 * row + 1];
         return a * (column[2 * j] - pose[0]) + b * (column[2 * j + 1] - pose[1]) + model.turn[row] * pose[2];
     }
     // Appends the innovation of the last reading, given the columns of P Hᵀ of it and of those before it.
     bool append_innovation(JointInnovation& innovation, const ReadingModel& last, int j,
                            const std::vector<Vector3>& W_pose) const {
-        const std::size_t size = P_.padded(), before = std::size_t(innovation.rows()),
-                          rows = std::size_t(last.count);
+        const std::size_t size = P_.padded(), before = std::size_t(innovation.rows()), rows = std::size_t(last.count);
         std::array<double, 4 * most_at_once> with;
         Matrix2 own{};
         for (std::size_t r = 0; r < rows; ++r) {
-            for (std::size_t c = 0; c < before; ++c)
-                with[r * before + c] = project(last, r, j, W_pose[c], W_.data() + c * size);
+            for (std::size_t c = 0; c < before; ++c) with[r * before + c] = project(last, r, j, W_pose[c], W_.data() + c * size);
             for (std::size_t c = 0; c < rows; ++c)
                 own[2 * r + c] = project(last, r, j, W_pose[before + c], W_.data() + (before + c) * size);
             own[2 * r + r] += last.noise[r];
@@ -326,8 +314,7 @@ class EkfSlam {
             for (std::size_t j = 0; j < landmarks_.size(); ++j) turn_offset(turn, by.data() + 2 * j);
         }
         const double c = std::cos(turn), s = std::sin(turn);
-        pose_ = {pose_.x + by_pose[0], pose_.y + by_pose[1], c * pose_.c - s * pose_.s,
-                 s * pose_.c + c * pose_.s};
+        pose_ = {pose_.x + by_pose[0], pose_.y + by_pose[1], c * pose_.c - s * pose_.s, s * pose_.c + c * pose_.s};
         for (std::size_t j = 0; j < landmarks_.size(); ++j)
             landmarks_[j].point[0] += by[2 * j], landmarks_[j].point[1] += by[2 * j + 1];
         if (rule_.linearization != Linearization::first_estimate) first_ = {pose_.x, pose_.y};
@@ -343,8 +330,7 @@ class EkfSlam {
         offset[0] = a * x - b * offset[1], offset[1] = b * x + a * offset[1];
     }
     // P ← B P Bᵀ with B = I + b e_θᵀ and b = J (new − old), as P + b cᵀ + c bᵀ with c = P e_θ + ½ P_θθ b.
-    void carry_covariance(const Vector3& by_pose, const std::vector<double>& by, std::size_t rows,
-                          LowRank& change) {
+    void carry_covariance(const Vector3& by_pose, const std::vector<double>& by, std::size_t rows, LowRank& change) {
         change.append(), change.append();
         Vector3 with_turn{P_.pose()[2], P_.pose()[5], P_.pose()[8]};
         double *b = change.x_of(int(rows)), *c = change.y_of(int(rows));

@@ -1,5 +1,5 @@
-// SLAM of landmarks by particles: each has a pose and a small Kalman filter per landmark (FastSLAM;
-// Montemerlo et al. 2002, 2003).
+// SLAM of landmarks by particles: each has a pose and a small Kalman filter per landmark (FastSLAM; Montemerlo
+// et al. 2002, 2003).
 //
 // Motion between two updates is one increment with one covariance, as the covariance of a disturbance on the
 // right does not depend on the pose. Version 1 draws the pose from it and weighs by the readings. Version 2
@@ -51,16 +51,9 @@ class FastSlam {
     static constexpr bool is_resumable = false;  // an interrupt leaves some particles updated and some not
 
     FastSlam(const FastSlamRule& rule, const Vector3& start, const Covariance3& covariance)
-        : rule_(rule),
-          poses_(rule.particles, PlanarSpace::read_pose(start.data())),
-          log_weights_(rule.particles),
-          shares_(rule.particles, 1.0 / double(rule.particles)),
-          counts_of_(rule.particles),
-          chunks_(rule.particles),
-          pending_noise_(covariance),
-          gate_(rule.landmarks.gate),
-          pair_gate_(rule.landmarks.pair_share),
-          new_gate_(rule.landmarks.new_share) {}
+        : rule_(rule), poses_(rule.particles, PlanarSpace::read_pose(start.data())), log_weights_(rule.particles),
+          shares_(rule.particles, 1.0 / double(rule.particles)), counts_of_(rule.particles), chunks_(rule.particles),
+          pending_noise_(covariance), gate_(rule.landmarks.gate), pair_gate_(rule.landmarks.pair_share), new_gate_(rule.landmarks.new_share) {}
 
     void predict(const Pose& increment, const Covariance3& noise) {
         pending_ = PlanarSpace::compose(pending_, increment);
@@ -74,8 +67,7 @@ class FastSlam {
         ++counts_.updates, ++step_;
         is_named_ = readings[0].name >= 0;
         numbers_.clear(), slots_.assign(readings.size(), none);
-        for (const LandmarkReading& reading : readings)
-            numbers_.push_back(read_numbers(reading, rule_.sensor));
+        for (const LandmarkReading& reading : readings) numbers_.push_back(read_numbers(reading, rule_.sensor));
         move_particles();
         const std::size_t best = heaviest();
         if (is_named_) find_slots(readings), test_readings();
@@ -102,15 +94,13 @@ class FastSlam {
         std::vector<MappedLandmark> found;
         covariances.clear();
         if (is_named_) {
-            for (std::size_t slot = 0; slot < names_.size(); ++slot)
-                average_landmark(slot, found, covariances);
+            for (std::size_t slot = 0; slot < names_.size(); ++slot) average_landmark(slot, found, covariances);
             return found;
         }
         const std::size_t k = heaviest();
         for (std::size_t slot = 0; slot < counts_of_[k]; ++slot) {
             const ParticleLandmark& landmark = chunks_.read(k, slot);
-            found.push_back(
-                {std::int64_t(slot), landmark.point, landmark.point, landmark.seen, landmark.missed});
+            found.push_back({std::int64_t(slot), landmark.point, landmark.point, landmark.seen, landmark.missed});
             covariances.push_back(landmark.covariance);
         }
         return found;
@@ -169,10 +159,8 @@ class FastSlam {
             for (std::size_t j = 0; j <= i; ++j) {
                 double sum = P[3 * i + j];
                 for (std::size_t k = 0; k < j; ++k) sum -= L[3 * i + k] * L[3 * j + k];
-                if (i == j)
-                    L[3 * i + i] = sum > 0 ? std::sqrt(sum) : 0;
-                else
-                    L[3 * i + j] = L[3 * j + j] > 0 ? sum / L[3 * j + j] : 0;
+                if (i == j) L[3 * i + i] = sum > 0 ? std::sqrt(sum) : 0;
+                else L[3 * i + j] = L[3 * j + j] > 0 ? sum / L[3 * j + j] : 0;
             }
         }
         const Vector3 normal = draw_normals(particle);
@@ -186,8 +174,7 @@ class FastSlam {
     FourWords draw_four(std::size_t particle, std::uint32_t part) const {
         const std::uint32_t low = std::uint32_t(particle), step = std::uint32_t(step_);
         const std::uint32_t high = std::uint32_t(step_ >> 32);
-        return draw_words({{low, part, step, high}},
-                          {{std::uint32_t(rule_.seed), std::uint32_t(rule_.seed >> 32)}});
+        return draw_words({{low, part, step, high}}, {{std::uint32_t(rule_.seed), std::uint32_t(rule_.seed >> 32)}});
     }
     // In (0, 1), from two words.
     static double uniform(std::uint32_t first, std::uint32_t second) {
@@ -221,29 +208,27 @@ class FastSlam {
         return std::size_t(std::max_element(shares_.begin(), shares_.end()) - shares_.begin());
     }
 
-    // What a particle expects of a reading: the innovation, its derivative by the disturbance of the pose,
-    // and by the landmark in axes of the map.
+    // What a particle expects of a reading: the innovation, its derivative by the disturbance of the pose, and
+    // by the landmark in axes of the map.
     struct Expected {
         ReadingModel model;
         std::array<double, 6> by_pose{};
         Matrix2 own{};  // A Σ Aᵀ + R
     };
-    Expected expect(const MeasuredNumbers& numbers, const Pose& pose,
-                    const ParticleLandmark& landmark) const {
+    Expected expect(const MeasuredNumbers& numbers, const Pose& pose, const ParticleLandmark& landmark) const {
         Expected found;
         const SensorPose at = place_sensor(pose, rule_.sensor.mount);
         found.model = model_reading(numbers, rule_.sensor, at, landmark.point,
                                     {landmark.point[0] - pose.x, landmark.point[1] - pose.y});
         const Symmetric2& C = landmark.covariance;
         for (std::size_t r = 0; r < std::size_t(found.model.count); ++r) {
-            const double* A = found.model.A.data() + 2 * r;
+            const double *A = found.model.A.data() + 2 * r;
             found.by_pose[3 * r] = -(A[0] * pose.c + A[1] * pose.s);
             found.by_pose[3 * r + 1] = A[0] * pose.s - A[1] * pose.c;
             found.by_pose[3 * r + 2] = found.model.turn[r];
             for (std::size_t s = 0; s < std::size_t(found.model.count); ++s) {
                 const double* B = found.model.A.data() + 2 * s;
-                found.own[2 * r + s] =
-                    A[0] * (C[0] * B[0] + C[1] * B[1]) + A[1] * (C[1] * B[0] + C[2] * B[1]);
+                found.own[2 * r + s] = A[0] * (C[0] * B[0] + C[1] * B[1]) + A[1] * (C[1] * B[0] + C[2] * B[1]);
             }
             found.own[2 * r + r] += found.model.noise[r];
         }
@@ -297,8 +282,7 @@ class FastSlam {
                 count = found.model.count;
                 for (std::size_t r = 0; r < 2; ++r) {
                     mean[r] += shares_[k] * v[r];
-                    for (std::size_t s = 0; s < 2; ++s)
-                        S[2 * r + s] += shares_[k] * (own[2 * r + s] + v[r] * v[s]);
+                    for (std::size_t s = 0; s < 2; ++s) S[2 * r + s] += shares_[k] * (own[2 * r + s] + v[r] * v[s]);
                 }
             }
             for (std::size_t r = 0; r < 2; ++r) {
@@ -357,8 +341,7 @@ class FastSlam {
         if (!is_named_) drop_landmarks(k);
     }
     // The Kalman update of the pose alone, with the landmark unknown by its covariance.
-    static void refine_pose(const Expected& found, const ScalarInnovation& weighed, Pose& mean,
-                            Covariance3& P) {
+    static void refine_pose(const Expected& found, const ScalarInnovation& weighed, Pose& mean, Covariance3& P) {
         const std::size_t count = std::size_t(found.model.count);
         double PH[6] = {}, K[6] = {};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -366,8 +349,7 @@ class FastSlam {
                 for (std::size_t k = 0; k < 3; ++k) PH[2 * c + r] += P[3 * c + k] * found.by_pose[3 * r + k];
             }
             for (std::size_t r = 0; r < count; ++r) {
-                for (std::size_t s = 0; s < count; ++s)
-                    K[2 * c + r] += PH[2 * c + s] * weighed.inverse[2 * s + r];
+                for (std::size_t s = 0; s < count; ++s) K[2 * c + r] += PH[2 * c + s] * weighed.inverse[2 * s + r];
             }
         }
         Vector3 xi{};
@@ -382,8 +364,7 @@ class FastSlam {
     // The Kalman update of one landmark at a known pose.
     static void update_landmark(const Expected& found, ParticleLandmark& landmark) {
         const std::size_t count = std::size_t(found.model.count);
-        const ScalarInnovation weighed =
-            weigh_innovation(found.model.innovation, found.own, found.model.count);
+        const ScalarInnovation weighed = weigh_innovation(found.model.innovation, found.own, found.model.count);
         ++landmark.seen, landmark.missed = 0;
         if (!weighed.is_regular) return;
         Symmetric2& C = landmark.covariance;
@@ -394,14 +375,12 @@ class FastSlam {
         }
         for (std::size_t c = 0; c < 2; ++c) {
             for (std::size_t r = 0; r < count; ++r) {
-                for (std::size_t s = 0; s < count; ++s)
-                    K[2 * c + r] += CA[2 * c + s] * weighed.inverse[2 * s + r];
+                for (std::size_t s = 0; s < count; ++s) K[2 * c + r] += CA[2 * c + s] * weighed.inverse[2 * s + r];
                 landmark.point[c] += K[2 * c + r] * found.model.innovation[r];
             }
         }
         for (std::size_t r = 0; r < count; ++r) {
-            C[0] -= K[r] * CA[r], C[1] -= (K[r] * CA[2 + r] + K[2 + r] * CA[r]) / 2,
-                C[2] -= K[2 + r] * CA[2 + r];
+            C[0] -= K[r] * CA[r], C[1] -= (K[r] * CA[2 + r] + K[2 + r] * CA[r]) / 2, C[2] -= K[2 + r] * CA[2 + r];
         }
     }
     void create_landmarks(std::size_t k) {
@@ -409,8 +388,7 @@ class FastSlam {
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
             if (own_slots_[i] == none || chunks_.read(k, own_slots_[i]).seen) continue;
             ParticleLandmark& made = chunks_.write(k, own_slots_[i]);
-            made = {at.place(locate_landmark(numbers_[i])), locate_covariance(numbers_[i], rule_.sensor, at),
-                    1, 0};
+            made = {at.place(locate_landmark(numbers_[i])), locate_covariance(numbers_[i], rule_.sensor, at), 1, 0};
         }
     }
 
@@ -429,27 +407,21 @@ class FastSlam {
             ScalarInnovation chosen_weight;
             for (std::size_t slot = 0; slot < count && numbers_[i].count; ++slot) {
                 const Expected found = expect(numbers_[i], poses_[k], chunks_.read(k, slot));
-                const ScalarInnovation weighed = weigh_innovation(
-                    found.model.innovation, innovation_covariance(found, P), found.model.count);
+                const ScalarInnovation weighed =
+                    weigh_innovation(found.model.innovation, innovation_covariance(found, P), found.model.count);
                 if (!weighed.is_regular) continue;
                 is_new = is_new && weighed.nis > new_limit;
-                if (is_taken[slot] || weighed.nis > pair_limit || weighed.log_density <= best_density)
-                    continue;
-                best_density = weighed.log_density, own_slots_[i] = slot, chosen = found,
-                chosen_weight = weighed;
+                if (is_taken[slot] || weighed.nis > pair_limit || weighed.log_density <= best_density) continue;
+                best_density = weighed.log_density, own_slots_[i] = slot, chosen = found, chosen_weight = weighed;
             }
             const bool is_paired = own_slots_[i] != none;
-            if (is_paired)
-                is_taken[own_slots_[i]] = 1;
-            else
-                log_weights_[k] += log_unpaired(numbers_[i], new_limit);
+            if (is_paired) is_taken[own_slots_[i]] = 1;
+            else log_weights_[k] += log_unpaired(numbers_[i], new_limit);
             if (!is_paired && is_new) own_slots_[i] = next++;
             if (is_best) {
                 if (is_paired) note_innovation(i, chosen.model.innovation, chosen_weight, chosen.model.count);
-                outcomes_[i].verdict = is_paired                 ? ReadingVerdict::used
-                                       : is_new                  ? ReadingVerdict::created
-                                       : can_create(numbers_[i]) ? ReadingVerdict::rejected
-                                                                 : ReadingVerdict::skipped;
+                outcomes_[i].verdict = is_paired ? ReadingVerdict::used : is_new ? ReadingVerdict::created
+                                       : can_create(numbers_[i]) ? ReadingVerdict::rejected : ReadingVerdict::skipped;
                 if (own_slots_[i] != none) outcomes_[i].name = std::int64_t(own_slots_[i]);
             }
         }
@@ -480,9 +452,7 @@ class FastSlam {
     void drop_landmarks(std::size_t k) {
         for (std::size_t slot = counts_of_[k]; slot-- > 0;) {
             const ParticleLandmark& landmark = chunks_.read(k, slot);
-            if (landmark.seen >= rule_.landmarks.confirmed_after ||
-                landmark.missed < rule_.landmarks.dropped_after)
-                continue;
+            if (landmark.seen >= rule_.landmarks.confirmed_after || landmark.missed < rule_.landmarks.dropped_after) continue;
             const std::size_t last = --counts_of_[k];
             const ParticleLandmark moved = chunks_.read(k, last);
             chunks_.write(k, slot) = moved;
@@ -492,12 +462,9 @@ class FastSlam {
     }
     void count_losses() {
         bool any_paired = false;
-        for (const ReadingOutcome& outcome : outcomes_)
-            any_paired = any_paired || outcome.verdict == ReadingVerdict::used;
-        if (any_paired)
-            rejected_in_row_ = 0;
-        else if (best_expected_)
-            reject();
+        for (const ReadingOutcome& outcome : outcomes_) any_paired = any_paired || outcome.verdict == ReadingVerdict::used;
+        if (any_paired) rejected_in_row_ = 0;
+        else if (best_expected_) reject();
     }
     void count_outcome(const ReadingOutcome& outcome) {
         long* const counts[] = {&counts_.used, &counts_.rejected, &counts_.created, &counts_.skipped};
@@ -557,8 +524,7 @@ class FastSlam {
         }
         return P;
     }
-    void average_landmark(std::size_t slot, std::vector<MappedLandmark>& found,
-                          std::vector<Symmetric2>& covariances) const {
+    void average_landmark(std::size_t slot, std::vector<MappedLandmark>& found, std::vector<Symmetric2>& covariances) const {
         MappedLandmark mean;
         mean.name = names_[slot];
         for (std::size_t k = 0; k < poses_.size(); ++k) {

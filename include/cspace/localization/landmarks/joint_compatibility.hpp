@@ -1,9 +1,8 @@
 // Data association by joint compatibility: branch and bound over pairings of readings with landmarks (Neira &
 // Tardós 2001), and sequential compatible nearest neighbour.
 //
-// A set of pairings is compatible if its joint innovation passes a gate of χ². Each node of the search
-// extends the Cholesky factor of the joint covariance by one block. Most pairings win; of as many, the least
-// NIS.
+// A set of pairings is compatible if its joint innovation passes a gate of χ². Each node of the search extends
+// the Cholesky factor of the joint covariance by one block. Most pairings win; of as many, the least NIS.
 #pragma once
 
 #include <algorithm>
@@ -28,8 +27,7 @@ Matrix2 innovation_block(const Covariance& P, const ReadingModel& a, int i, cons
         double with_pose[3], with_landmark[2];
         for (std::size_t c = 0; c < 3; ++c) {
             const double* column = P.cross(c).data() + 2 * i;
-            with_pose[c] =
-                Hx[0] * X[c] + Hx[1] * X[3 + c] + Hx[2] * X[6 + c] + A[0] * column[0] + A[1] * column[1];
+            with_pose[c] = Hx[0] * X[c] + Hx[1] * X[3 + c] + Hx[2] * X[6 + c] + A[0] * column[0] + A[1] * column[1];
         }
         for (std::size_t c = 0; c < 2; ++c) {
             const std::size_t at = 2 * std::size_t(j) + c;
@@ -114,8 +112,7 @@ template <class Covariance>
 class PairingSearch {
   public:
     // candidates: of each reading, individually compatible ones by NIS.
-    PairingSearch(const Covariance& P, const std::vector<std::vector<Candidate>>& candidates,
-                  const PairingRule& rule)
+    PairingSearch(const Covariance& P, const std::vector<std::vector<Candidate>>& candidates, const PairingRule& rule)
         : P_(P), candidates_(candidates), rule_(rule), gate_(rule.share), chosen_(candidates.size(), none) {
         for (std::size_t i = 0; i < candidates.size(); ++i) {
             if (!candidates[i].empty()) order_.push_back(i);
@@ -126,8 +123,7 @@ class PairingSearch {
     }
     static constexpr int none = -1;
 
-    // The candidate of each reading, or none: also for a reading that another landmark explains nearly as
-    // well.
+    // The candidate of each reading, or none: also for a reading that another landmark explains nearly as well.
     std::vector<int> find_pairings() {
         pair_nearest();
         if (rule_.is_joint && best_count_ < int(order_.size())) branch(0);
@@ -152,8 +148,7 @@ class PairingSearch {
     long nodes_ = 0;
 
     bool is_taken(int landmark) const {
-        return std::any_of(paired_.begin(), paired_.end(),
-                           [&](const Candidate* c) { return c->landmark == landmark; });
+        return std::any_of(paired_.begin(), paired_.end(), [&](const Candidate* c) { return c->landmark == landmark; });
     }
     // Whether the pairings so far stay compatible with one more, which is then among them.
     bool add_pairing(const Candidate& candidate) {
@@ -162,15 +157,12 @@ class PairingSearch {
         with_.assign(2 * rows, 0);
         std::size_t column = 0;
         for (const Candidate* other : paired_) {
-            const Matrix2 S =
-                innovation_block(P_, candidate.model, candidate.landmark, other->model, other->landmark);
+            const Matrix2 S = innovation_block(P_, candidate.model, candidate.landmark, other->model, other->landmark);
             for (int s = 0; s < other->model.count; ++s, ++column) {
-                for (int r = 0; r < candidate.model.count; ++r)
-                    with_[std::size_t(r) * rows + column] = S[std::size_t(2 * r + s)];
+                for (int r = 0; r < candidate.model.count; ++r) with_[std::size_t(r) * rows + column] = S[std::size_t(2 * r + s)];
             }
         }
-        Matrix2 own =
-            innovation_block(P_, candidate.model, candidate.landmark, candidate.model, candidate.landmark);
+        Matrix2 own = innovation_block(P_, candidate.model, candidate.landmark, candidate.model, candidate.landmark);
         own[0] += candidate.model.noise[0], own[3] += candidate.model.noise[1];
         if (!innovation_.append(candidate.model, with_.data(), own)) return false;
         paired_.push_back(&candidate);
@@ -203,8 +195,7 @@ class PairingSearch {
         double cost = std::numeric_limits<double>::infinity();
         bool are_all = true;
         for (const std::size_t i : order_)
-            are_all = are_all && (i == reading || best_[i] == none ||
-                                  add_pairing(candidates_[i][std::size_t(best_[i])]));
+            are_all = are_all && (i == reading || best_[i] == none || add_pairing(candidates_[i][std::size_t(best_[i])]));
         if (are_all && add_pairing(candidates_[reading][std::size_t(candidate)])) cost = innovation_.cost();
         while (!paired_.empty()) remove_pairing();
         return cost;
@@ -226,8 +217,7 @@ class PairingSearch {
     void branch(std::size_t depth) {
         if (++nodes_ > rule_.most_nodes) return;
         const int left = int(order_.size() - depth), count = int(paired_.size());
-        if (count + left < best_count_ || (count + left == best_count_ && innovation_.nis() >= best_nis_))
-            return;
+        if (count + left < best_count_ || (count + left == best_count_ && innovation_.nis() >= best_nis_)) return;
         if (!left) return keep_if_better();
         const std::size_t i = order_[depth];
         for (std::size_t c = 0; c < candidates_[i].size(); ++c) {

@@ -33,9 +33,7 @@ struct LowRank {
     std::vector<Vector3> pose_x, pose_y;
     std::vector<double> x, y;
 
-    void reset(std::size_t padded) {
-        rank = 0, stride = padded, pose_x.clear(), pose_y.clear(), x.clear(), y.clear();
-    }
+    void reset(std::size_t padded) { rank = 0, stride = padded, pose_x.clear(), pose_y.clear(), x.clear(), y.clear(); }
     // Room for one more pair of vectors, filled with zeros.
     void append() {
         ++rank;
@@ -73,8 +71,7 @@ class JointCovariance {
     void copy_columns(int j, double* first, double* second) const {
         const std::size_t own = std::size_t(j) / 2, size = padded() / panel_rows;
         const double* row = panels_.data() + panel_offset(own) + 2 * (std::size_t(j) % 2);
-        for (std::size_t c = 0; c < panel_rows * own; ++c)
-            first[c] = row[panel_rows * c], second[c] = row[panel_rows * c + 1];
+        for (std::size_t c = 0; c < panel_rows * own; ++c) first[c] = row[panel_rows * c], second[c] = row[panel_rows * c + 1];
         for (std::size_t p = own; p < size; ++p) {
             const double* from = panels_.data() + panel_offset(p) + panel_rows * std::size_t(2 * j);
             for (std::size_t r = 0; r < panel_rows; ++r)
@@ -88,8 +85,7 @@ class JointCovariance {
         const double turn = P[8];
         const Vector2 with{P[2], P[5]};
         for (std::size_t i = 0; i < 2; ++i) {
-            for (std::size_t j = 0; j < 2; ++j)
-                P[3 * i + j] += b[i] * with[j] + with[i] * b[j] + b[i] * turn * b[j];
+            for (std::size_t j = 0; j < 2; ++j) P[3 * i + j] += b[i] * with[j] + with[i] * b[j] + b[i] * turn * b[j];
             P[3 * i + 2] = P[6 + i] = with[i] + b[i] * turn;
         }
         for (std::size_t k = 0; k < 9; ++k) P[k] += noise[k];
@@ -107,8 +103,7 @@ class JointCovariance {
         const std::size_t first = std::size_t(2 * j);
         const Vector2 lever{-arm[1], arm[0]};
         for (std::size_t k = 0; k < 2; ++k) {
-            for (std::size_t c = 0; c < first; ++c)
-                set_entry(first + k, c, cross_[k][c] + lever[k] * cross_[2][c]);
+            for (std::size_t c = 0; c < first; ++c) set_entry(first + k, c, cross_[k][c] + lever[k] * cross_[2][c]);
             for (std::size_t c = 0; c < 3; ++c)
                 cross_[c][first + k] = pose_[3 * k + c] + lever[k] * pose_[6 + c];
         }
@@ -151,8 +146,7 @@ class JointCovariance {
             }
         }
         for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j < i; ++j)
-                pose_[3 * j + i] = pose_[3 * i + j] = (pose_[3 * i + j] + pose_[3 * j + i]) / 2;
+            for (std::size_t j = 0; j < i; ++j) pose_[3 * j + i] = pose_[3 * i + j] = (pose_[3 * i + j] + pose_[3 * j + i]) / 2;
         }
         next_panel_ = 0;
         finish_update();
@@ -190,9 +184,7 @@ class JointCovariance {
         panels_[entry(row, column)] = value;
         if (row / panel_rows == column / panel_rows) panels_[entry(column, row)] = value;
     }
-    void set_symmetric(std::size_t a, std::size_t b, double value) {
-        set_entry(std::max(a, b), std::min(a, b), value);
-    }
+    void set_symmetric(std::size_t a, std::size_t b, double value) { set_entry(std::max(a, b), std::min(a, b), value); }
     void forget_last() {
         const std::size_t row = std::size_t(2 * --landmarks_);
         if (landmarks_ % 2 == 0) {

@@ -25,8 +25,8 @@ enum class Linearization { invariant, first_estimate, plain };
 
 // When a landmark without a name is kept, and when the robot is lost.
 struct LandmarkRule {
-    double gate = 0.999;       // share of χ² beyond which a reading is rejected
-    double pair_share = 0.99;  // of χ², within which readings without names are paired: each, and all at once
+    double gate = 0.999;        // share of χ² beyond which a reading is rejected
+    double pair_share = 0.99;   // of χ², within which readings without names are paired: each, and all at once
     double new_share = 0.9999;  // a reading beyond this share of χ² of all landmarks is a new one
     int confirmed_after = 3;    // updates that saw a landmark without a name
     int dropped_after = 20;     // updates in a row that should have seen it, of one that is not confirmed
@@ -37,9 +37,8 @@ struct EkfSlamRule {
     RangeBearingSensor sensor;
     Linearization linearization = Linearization::invariant;
     LandmarkRule landmarks;
-    bool is_joint = true;  // false: sequential compatible nearest neighbour
-    long most_nodes =
-        20000;  // of the search for joint compatibility; then the best pairings so far are taken
+    bool is_joint = true;     // false: sequential compatible nearest neighbour
+    long most_nodes = 20000;  // of the search for joint compatibility; then the best pairings so far are taken
 };
 
 struct FastSlamRule {
@@ -62,8 +61,8 @@ struct ReadingOutcome {
 };
 
 struct LandmarkCounts {
-    long updates = 0, used = 0, rejected = 0, created = 0, skipped = 0, dropped = 0, inflations = 0,
-         capped = 0, resamplings = 0;
+    long updates = 0, used = 0, rejected = 0, created = 0, skipped = 0, dropped = 0, inflations = 0, capped = 0,
+         resamplings = 0;
 };
 
 }  // namespace cspace::localization

@@ -24,9 +24,7 @@ struct SensorPose {
         const double dx = point[0] - x, dy = point[1] - y;
         return {c * dx + s * dy, c * dy - s * dx};
     }
-    Vector2 place(Vector2 seen) const {
-        return {x + c * seen[0] - s * seen[1], y + s * seen[0] + c * seen[1]};
-    }
+    Vector2 place(Vector2 seen) const { return {x + c * seen[0] - s * seen[1], y + s * seen[0] + c * seen[1]}; }
 };
 inline SensorPose place_sensor(const PlanarSpace::Pose& base, const std::array<double, 3>& mount) {
     const PlanarSpace::Pose on_base{mount[0], mount[1], std::cos(mount[2]), std::sin(mount[2])};
@@ -47,22 +45,19 @@ inline Matrix2 differentiate_reading(Vector2 h) {
 // The numbers of a reading that count, biases taken off.
 struct MeasuredNumbers {
     Vector2 value{};
-    int count = 0;                  // 1 or 2
+    int count = 0;       // 1 or 2
     bool first_is_bearing = false;  // of one number
 };
 inline MeasuredNumbers read_numbers(const LandmarkReading& reading, const RangeBearingSensor& sensor) {
     MeasuredNumbers numbers;
-    if (!std::isnan(reading.range))
-        numbers.value[std::size_t(numbers.count++)] = reading.range - sensor.range_bias;
+    if (!std::isnan(reading.range)) numbers.value[std::size_t(numbers.count++)] = reading.range - sensor.range_bias;
     if (!std::isnan(reading.bearing)) {
         numbers.first_is_bearing = numbers.count == 0;
         numbers.value[std::size_t(numbers.count++)] = reading.bearing - sensor.bearing_bias;
     }
     return numbers;
 }
-inline bool is_bearing(const MeasuredNumbers& numbers, int row) {
-    return row == 1 || numbers.first_is_bearing;
-}
+inline bool is_bearing(const MeasuredNumbers& numbers, int row) { return row == 1 || numbers.first_is_bearing; }
 inline double variance_of(const RangeBearingSensor& sensor, bool bearing) {
     const double sigma = bearing ? sensor.bearing_sigma : sensor.range_sigma;
     return sigma * sigma;

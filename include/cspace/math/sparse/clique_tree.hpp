@@ -1,10 +1,10 @@
-// A sparse Cholesky factor of growing least-squares problems: the Bayes tree of Kaess, Johannsson, Roberts,
-// Ila, Leonard & Dellaert 2012, "iSAM2: Incremental smoothing and mapping using the Bayes tree".
+// A sparse Cholesky factor of growing least-squares problems: the Bayes tree of Kaess, Johannsson, Roberts, Ila,
+// Leonard & Dellaert 2012, "iSAM2: Incremental smoothing and mapping using the Bayes tree".
 //
 // The tree's cliques are the supernodes of the factor. Each keeps its panel, and the Schur complement on its
-// separator. New or changed factors touch the cliques of their variables and those above up to the root;
-// these are eliminated again, with the complements of the subtrees below, which stay. The newest variable is
-// ordered last, where the next factors will touch it.
+// separator. New or changed factors touch the cliques of their variables and those above up to the root; these
+// are eliminated again, with the complements of the subtrees below, which stay. The newest variable is ordered
+// last, where the next factors will touch it.
 #pragma once
 
 #include <algorithm>
@@ -145,8 +145,8 @@ class CliqueTree {
     };
     // A clique: its variables, first those it eliminates; the panel, the complement and the right side.
     struct Clique {
-        int fronts = 0, count = 0;  // variables it eliminates, and all
-        int pivots = 0, below = 0;  // their rows
+        int fronts = 0, count = 0;     // variables it eliminates, and all
+        int pivots = 0, below = 0;     // their rows
         int parent = none, child = none, sibling = none;
         bool is_alive = false;
         int* variables = nullptr;
@@ -155,8 +155,7 @@ class CliqueTree {
         int size() const { return (below + front_lanes - 1) / front_lanes * front_lanes; }
         int stride() const { return pivots + size(); }
         std::size_t number_count() const {
-            return std::size_t(stride()) * std::size_t(pivots + 1) +
-                   std::size_t(size()) * std::size_t(size());
+            return std::size_t(stride()) * std::size_t(pivots + 1) + std::size_t(size()) * std::size_t(size());
         }
         double* panel() const { return numbers; }
         double* schur() const { return numbers + std::size_t(stride()) * std::size_t(pivots); }
@@ -225,7 +224,8 @@ class CliqueTree {
     }
     void order_affected(int newest) {
         std::sort(affected_.begin(), affected_.end());
-        for (std::size_t k = 0; k < affected_.size(); ++k) local_[std::size_t(affected_[k])] = int(k);
+        for (std::size_t k = 0; k < affected_.size(); ++k)
+            local_[std::size_t(affected_[k])] = int(k);
         find_factors();
         pairs_.clear();
         for (int f : found_) {
@@ -237,8 +237,8 @@ class CliqueTree {
             const Clique& at = clique(orphan);
             for (int i = at.fronts; i < at.count; ++i) {
                 for (int j = i + 1; j < at.count; ++j)
-                    pairs_.push_back(
-                        {local_[std::size_t(at.variables[i])], local_[std::size_t(at.variables[j])]});
+                    pairs_.push_back({local_[std::size_t(at.variables[i])],
+                                      local_[std::size_t(at.variables[j])]});
             }
         }
         std::vector<int> sizes;
@@ -257,8 +257,7 @@ class CliqueTree {
         rest.starts.assign(1, 0);
         rest.neighbours.reserve(graph.neighbours.size());
         for (int node = 0; node < graph.nodes(); ++node) {
-            for (std::size_t k = graph.starts[std::size_t(node)]; k < graph.starts[std::size_t(node) + 1];
-                 ++k) {
+            for (std::size_t k = graph.starts[std::size_t(node)]; k < graph.starts[std::size_t(node) + 1]; ++k) {
                 if (node != last && graph.neighbours[k] != last)
                     rest.neighbours.push_back(graph.neighbours[k]);
             }
@@ -306,7 +305,8 @@ class CliqueTree {
                 add_factor_to(made, factors_[std::size_t(found_[std::size_t(k)])]);
             for (int k = first_orphan_[s]; k != none; k = next_orphan_[std::size_t(k)])
                 adopt(c, orphans_[std::size_t(k)]);
-            for (int child = first_child_[s]; child != none;) child = adopt(c, child);
+            for (int child = first_child_[s]; child != none;)
+                child = adopt(c, child);
             if (!factor_clique(made)) return false;
             const int parent = pattern_.supernodes[s].parent;
             if (parent >= 0) made.sibling = std::exchange(first_child_[std::size_t(parent)], c);
@@ -331,8 +331,9 @@ class CliqueTree {
         made.numbers = numbers_.take(made.number_count());
         int row = 0;
         for (int k = 0; k < made.count; ++k) {
-            const int column =
-                k < node.count ? node.first + k : pattern_.rows[node.begin + std::size_t(k - node.count)];
+            const int column = k < node.count
+                                   ? node.first + k
+                                   : pattern_.rows[node.begin + std::size_t(k - node.count)];
             const int v = affected_[std::size_t(pattern_.order[std::size_t(column)])];
             made.variables[k] = v;
             row_at_[std::size_t(v)] = row;
@@ -358,7 +359,7 @@ class CliqueTree {
     static void add_diagonal(const Clique& front, int row, const double* block, const double* gradient,
                              int size) {
         for (int c = 0; c < size; ++c) {
-            double* const to = front.entry(row, row + c);
+            double* const to = front.entry(row, row + c) ;
             for (int r = c; r < size; ++r) to[r] += block[r * size + c];
             front.side()[row + c] -= gradient[c];
         }
@@ -382,8 +383,8 @@ class CliqueTree {
     // One block column of a complement. The orders of a child and of its new parent may differ.
     void add_columns(const Clique& front, const Clique& below, int j, int column, int to, int width) const {
         for (int k = 0; k < width; ++k) {
-            const double* from =
-                below.schur() + std::size_t(column + k) * std::size_t(below.size()) + std::size_t(column);
+            const double* from = below.schur() + std::size_t(column + k) * std::size_t(below.size()) +
+                                 std::size_t(column);
             double* const here = front.entry(to, to + k);
             for (int r = k; r < width; ++r) here[r] += from[r];
             from += width;

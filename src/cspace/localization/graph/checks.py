@@ -111,14 +111,18 @@ def freeze_array(array: Any) -> Any:
 def check_points(points: Array, ranged: Mask, subject: str) -> None:
     """InputError for sightings that are not finite, or whose bearings are degrees."""
     missing = np.isnan(points)
-    bad = np.flatnonzero(missing.all(axis=1) | (missing.any(axis=1) & ~ranged) | np.isinf(points).any(axis=1))
+    bad = np.flatnonzero(
+        missing.all(axis=1) | (missing.any(axis=1) & ~ranged) | np.isinf(points).any(axis=1)
+    )
     if len(bad):
         raise InputError(
             f"{subject} holds {points[bad[0]]} at row {bad[0]}; all must be finite, and NaN stands only for a"
             " range or a bearing that was not measured"
         )
     if points.shape[1] == 3 and ranged.any():
-        raise InputError("ranged is true in space; sightings in space are points, in the frame of the pose")
+        raise InputError(
+            "ranged is true in space; sightings in space are points, in the frame of the pose"
+        )
     bearings = points[ranged & ~missing[:, -1], -1] if len(points) else np.zeros(0)
     if len(bearings) and (np.abs(bearings) > 2 * np.pi).all():
         raise InputError(

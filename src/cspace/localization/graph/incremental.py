@@ -13,7 +13,7 @@ from cspace._core import IncrementalSolver, are_clearly_positive
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.localization.graph.answer import GraphAnswer, turn_to_map
-from cspace.localization.graph.checks import Ids, check_points, read_information, read_poses
+from cspace.localization.graph.checks import Ids, Mask, check_points, read_information, read_poses
 from cspace.localization.graph.pose_graph import PoseGraph
 from cspace.tables import count_things, one_line
 
@@ -102,9 +102,7 @@ class IncrementalGraph:
         points = np.atleast_2d(as_floats(point, "point", finite=False))
         d = points.shape[-1]
         if points.shape != (len(first), d) or d not in (2, 3):
-            raise InputError(
-                f"point has shape {points.shape}, expected ({len(first)}, 2) or ({len(first)}, 3)"
-            )
+            raise InputError(f"point has shape {points.shape}, expected ({len(first)}, 2) or ({len(first)}, 3)")
         is_ranged = np.broadcast_to(np.asarray(ranged, dtype=bool), (len(first),))
         check_points(points, is_ranged, "point")
         measured = ~np.isnan(points)
@@ -200,9 +198,7 @@ class IncrementalGraph:
             lists = self._solver.arrays()
         edges, motions, information, sightings, points, point_information, has_bearing = map(np.array, lists)
         shape, size, d = ((4, 4), 6, 3) if self.is_spatial else ((3,), 3, 2)
-        rows, landmark_rows = (
-            np.argsort(np.argsort(self._names(kind))) for kind in ("pose_ids", "landmark_ids")
-        )
+        rows, landmark_rows = (np.argsort(np.argsort(self._names(kind))) for kind in ("pose_ids", "landmark_ids"))
         seen = np.asarray(sightings, int).reshape(-1, 2)
         point_information = point_information.reshape(-1, d, d)
         missing = point_information[:, range(d), range(d)] == 0
@@ -231,8 +227,7 @@ class IncrementalGraph:
                 np.argsort(np.argsort(self._names(kind))) for kind in ("pose_ids", "landmark_ids")
             )
             solver.restart(
-                np.ascontiguousarray(answer.poses[rows]),
-                np.ascontiguousarray(answer.landmarks[landmark_rows]),
+                np.ascontiguousarray(answer.poses[rows]), np.ascontiguousarray(answer.landmarks[landmark_rows])
             )
         return answer
 
@@ -282,9 +277,7 @@ class IncrementalGraph:
         if self._solver is not None:
             row = self._solver.find_pose(name) if kind == "pose" else self._solver.find_landmark(name)
         if self._solver is None or row < 0:
-            raise InputError(
-                f"the graph has no {kind} {name}, or nothing connects it with the fixed pose yet"
-            )
+            raise InputError(f"the graph has no {kind} {name}, or nothing connects it with the fixed pose yet")
         return self._solver, row
 
     def _read_covariance(self, kind: str, names: list[Any], size: int) -> Array:

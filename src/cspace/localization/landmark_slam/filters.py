@@ -230,13 +230,7 @@ class FastSlam(LandmarkFilter):
 
 def list_sensor(sensor: RangeBearing) -> list[float]:
     """A sensor as the core takes it."""
-    numbers = [
-        sensor.range_sigma,
-        sensor.bearing_sigma,
-        sensor.range_bias,
-        sensor.bearing_bias,
-        *sensor.mount,
-    ]
+    numbers = [sensor.range_sigma, sensor.bearing_sigma, sensor.range_bias, sensor.bearing_bias, *sensor.mount]
     most = sensor.most_range if np.isfinite(sensor.most_range) else np.finfo(float).max
     return [*numbers, float(most), 0.5 * sensor.field_of_view]
 

@@ -117,9 +117,7 @@ def run_filter(
             parts.append(core.outcomes)
         poses[anchor], covariances[anchor], lost[anchor] = core.pose, core.covariance, core.is_lost
     fill_between(line, moves, poses, covariances)
-    return report_slam(
-        slam, method, line, poses, covariances, lost, join_outcomes(parts), perf_counter() - begun
-    )
+    return report_slam(slam, method, line, poses, covariances, lost, join_outcomes(parts), perf_counter() - begun)
 
 
 def read_rows(log: Log) -> Array:

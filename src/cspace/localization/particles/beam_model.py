@@ -48,9 +48,7 @@ class BeamTable:
 def density_of_hits(z: Array, walls: Array, scanner: LaserScanner) -> Array:
     """Densities [1/m] of ends on the wall (w, z); none where the wall is out of reach."""
     sigma, most = scanner.range_sigma, scanner.most_range
-    share = np.array(
-        [0.5 * (erf((most - w) / (sigma * sqrt(2))) + erf(w / (sigma * sqrt(2)))) for w in walls]
-    )
+    share = np.array([0.5 * (erf((most - w) / (sigma * sqrt(2))) + erf(w / (sigma * sqrt(2)))) for w in walls])
     normal = np.exp(-0.5 * ((z - walls[:, None]) / sigma) ** 2) / (sigma * sqrt(2 * np.pi))
     return np.where(walls[:, None] < most, normal / np.maximum(share, LEAST_LIKELIHOOD)[:, None], 0.0)
 

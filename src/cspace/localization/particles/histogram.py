@@ -19,17 +19,12 @@ from cspace.localization.filters.rows import (
     relate_rows,
 )
 from cspace.localization.particles.models import FEWEST_BEAMS, ScanModel
-from cspace.localization.particles.particle_filter import (
-    FULL_STEP,
-    OTHER_SHARE,
-    STANDING,
-    measure_step,
-    read_motion,
-)
+from cspace.localization.particles.particle_filter import FULL_STEP, OTHER_SHARE, STANDING, measure_step, read_motion
 from cspace.localization.particles.placing import FreePlaces
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner
 from cspace.maps import ByteField
+from cspace.mobile import MotionNoise
 from cspace.spatial import as_pose_2d, log_se2, pose_2d, rotation_2d, to_xytheta
 from cspace.tables import count_things, one_line
 
@@ -116,11 +111,7 @@ class HistogramFilter:
         shape = np.shape(start)
         pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
         self._places.check_start(pose)
-        P = (
-            np.diag([0.01, 0.01, 0.0025])
-            if covariance is None
-            else one_array(covariance, "start_covariance", (3, 3))
-        )
+        P = np.diag([0.01, 0.01, 0.0025]) if covariance is None else one_array(covariance, "start_covariance", (3, 3))
         cell = 2 * np.pi / self.sectors
         P = P + np.diag([self.side**2, self.side**2, cell**2]) / 12
         xi = find_twist(pose, self._centers)
@@ -214,7 +205,7 @@ class HistogramFilter:
 
     @property
     def status(self) -> str:
-        """ "localised", "ambiguous" where other modes have much of the probability, "lost" before the first
+        """"localised", "ambiguous" where other modes have much of the probability, "lost" before the first
         scan."""
         if not self.updates and not self._is_known:
             return "lost"
@@ -250,9 +241,7 @@ def shift_axis(values: Array, by: float, axis: int, *, wraps: bool = False) -> A
     end."""
     whole = int(np.floor(by))
     part = by - whole
-    return (1 - part) * roll_axis(values, whole, axis, wraps) + part * roll_axis(
-        values, whole + 1, axis, wraps
-    )
+    return (1 - part) * roll_axis(values, whole, axis, wraps) + part * roll_axis(values, whole + 1, axis, wraps)
 
 
 def roll_axis(values: Array, by: int, axis: int, wraps: bool) -> Array:

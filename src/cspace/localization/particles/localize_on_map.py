@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any, Protocol
@@ -87,9 +88,7 @@ def localize_on_map(
     for at, which in zip(node, np.flatnonzero(inside), strict=True):
         here[int(at)] = (*here[int(at)], int(which))
     passed = run_filter(made, split.times, steps, noise, here, measurements, begun, limit)
-    return report_passage(
-        name, split.times, made, passed, int(np.count_nonzero(~inside)), perf_counter() - begun
-    )
+    return report_passage(name, split.times, made, passed, int(np.count_nonzero(~inside)), perf_counter() - begun)
 
 
 def list_measurements(log: Log, grid: Any, sensor: Any) -> tuple[Array, Any]:
@@ -124,9 +123,7 @@ def run_filter(
     last = 0
     for count, (anchor, which) in enumerate(here.items()):
         if limit is not None and perf_counter() - begun > limit:
-            raise TimeLimitError(
-                f"the filter reached {count} of {len(here)} measurements within its time_limit"
-            )
+            raise TimeLimitError(f"the filter reached {count} of {len(here)} measurements within its time_limit")
         if anchor:
             between = slice(last + 1, anchor + 1)
             A = adjoin_rows(relate_rows(steps[between], ORIGIN))
@@ -134,9 +131,7 @@ def run_filter(
             passed.covariances[between] = carry_covariance(A, passed.covariances[last] + noise[between])
             passed.lost[between], passed.ambiguous[between] = passed.lost[last], passed.ambiguous[last]
             made.predict(
-                steps[anchor],
-                float(times[anchor] - times[last]),
-                covariance=carry_covariance(A[-1], noise[anchor]),
+                steps[anchor], float(times[anchor] - times[last]), covariance=carry_covariance(A[-1], noise[anchor])
             )
         for row in which:
             made.score = float("nan")

@@ -64,10 +64,7 @@ class FreePlaces:
         assert self.blocked is not None
         rows, columns = np.nonzero(~self.blocked)
         coarse = np.zeros(shape, dtype=bool)
-        at = [
-            np.minimum(((k + 0.5) * self.side / side).astype(int), n - 1)
-            for k, n in zip((rows, columns), shape, strict=True)
-        ]
+        at = [np.minimum(((k + 0.5) * self.side / side).astype(int), n - 1) for k, n in zip((rows, columns), shape, strict=True)]
         coarse[at[0], at[1]] = True
         return coarse
 
@@ -78,9 +75,7 @@ class FreePlaces:
             return
         if not ((pose[:2] >= self.low) & (pose[:2] <= self.high)).all():
             spans = f"x {self.low[0]:g} … {self.high[0]:g}, y {self.low[1]:g} … {self.high[1]:g} [m]"
-            raise InputError(
-                f"start ({x:g}, {y:g}) is off the map, which spans {spans}; give start=None to search"
-            )
+            raise InputError(f"start ({x:g}, {y:g}) is off the map, which spans {spans}; give start=None to search")
         reach = np.arange(-START_SLACK, START_SLACK + self.side, min(self.side, START_SLACK))
         around = np.stack(np.meshgrid(reach, reach), axis=-1).reshape(-1, 2)
         near = pose[:2] + around[np.hypot(*around.T) <= START_SLACK]

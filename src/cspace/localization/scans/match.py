@@ -45,7 +45,9 @@ class ScanMatch:
 
     def __repr__(self) -> str:
         x, y, theta = self.pose
-        text = f"{self.status}: ({x:.3f}, {y:.3f}, {theta:.4f}), score {self.score:.3f}"
+        text = (
+            f"{self.status}: ({x:.3f}, {y:.3f}, {theta:.4f}), score {self.score:.3f}"
+        )
         return one_line("ScanMatch", text)
 
 
