@@ -42,11 +42,11 @@ def animation(
     """An arm along a trajectory, a search or a localisation as it happened: a matplotlib FuncAnimation.
 
     `cs.plot.save` writes it as a GIF. moving: a Trajectory, which needs its robot=, or a Route, as
-    cs.navigate answers, or a localisation, whose drive grows with its ellipse. The arm is drawn by the shapes that collision checks take, in real time, with the
-    path of its tip behind it. scene: obstacles around the arm. rate: its pictures per second. frames: of a
-    Route, into how many pictures its events are divided; of a localisation its time. ax: 3-D axes, or 2-D
-    ones of the others. Of a localisation, truth: TimedPoses; world: a grid or Landmarks; scans: of its log,
-    drawn where the answer places them.
+    cs.navigate answers, or a localisation, whose drive grows with its ellipse. The arm is drawn by the shapes
+    that collision checks take, in real time, with the path of its tip behind it. scene: obstacles around the
+    arm. rate: its pictures per second. frames: of a Route, into how many pictures its events are divided; of
+    a localisation its time. ax: 3-D axes, or 2-D ones of the others. Of a localisation, truth: TimedPoses;
+    world: a grid or Landmarks; scans: of its log, drawn where the answer places them.
     Raises InputTypeError for other objects and a trajectory without robot, InputError for one that is not a
     motion, of another number of joints, or of too many pictures; MissingExtraError without matplotlib.
     """
