@@ -167,7 +167,8 @@ def draw_consistency(panel: Any, answer: Any) -> list[Any]:
     panel.grid(alpha=0.25)
     measured = getattr(answer, "measured", None)
     if measured is None or not len(measured):
-        panel.set_ylabel("no measurements", fontsize=8)
+        panel.set(ylabel="no measurements", yticks=[])
+        panel.yaxis.label.set_fontsize(8)
         return []
     times = answer.times[measured]
     if hasattr(answer, "scores"):
@@ -203,7 +204,8 @@ def move_rows(T: Array, rows: Array) -> Array:
 
 def name_of(answer: Any) -> str:
     """What the legend calls the drive."""
-    return str(getattr(answer, "filter", getattr(answer, "method", "poses")))
+    fallback = "laser SLAM" if hasattr(answer, "graph") else "poses"
+    return str(getattr(answer, "filter", getattr(answer, "method", fallback)))
 
 
 def describe_run(answer: Any, errors: Any) -> str:
