@@ -35,6 +35,7 @@ COURSE += (
     "cars",
     "mobile",
     "localization",
+    "kalman-filters",
     "monte-carlo",
     "landmark-slam",
     "pose-graphs",

@@ -112,7 +112,19 @@ def draw_landmarks() -> None:
     plt.close(figure)
 
 
+def draw_run() -> None:
+    """A localisation with its errors over time."""
+    run = cs.navigation.follow([(0, 0), (9, 0), (9, 6), (0, 6), (0, 1)], vehicle=cs.Unicycle())
+    landmarks = Landmarks(range(5), [(1.5, -1.0), (10.5, 1.0), (8.0, 7.5), (-1.5, 6.0), (4.5, 3.0)])
+    sensor = RangeBearing(range_sigma=0.1, bearing_sigma=0.02, most_range=4.0)
+    log = simulate(run, landmarks, sensor=sensor, rng=3)
+    found = cs.localize(log, landmarks, sensor=sensor)
+    artists = cs.plot.run(found, truth=log.truth, world=landmarks)
+    cs.plot.save(artists, HERE / "localization_run.png", dpi=90)
+
+
 if __name__ == "__main__":
     draw_noise()
     draw_filter()
     draw_landmarks()
+    draw_run()

@@ -12,6 +12,16 @@ LIST_OR_NULL = (list, type(None))
 VECTOR = [NUMBER]
 MATRIX = [[NUMBER]]
 
+POSE_ERRORS: dict[str, Any] = {
+    "count": int,
+    "rmse": NUMBER,
+    "mean": NUMBER,
+    "median": NUMBER,
+    "max": NUMBER,
+    "turn_rmse": NUMBER,
+    "turn_max": NUMBER,
+}
+
 SCHEMAS: dict[str, dict[str, Any]] = {
     "cspace.robots/1": {
         "robots": [
@@ -112,6 +122,40 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "loops": [TEXT],
         "warnings": [TEXT],
         "written": [TEXT],
+    },
+    "cspace.localize/1": {
+        "log": TEXT,
+        "filter": TEXT,
+        "status": TEXT,
+        "reason": TEXT,
+        "times": VECTOR,
+        "poses": MATRIX,
+        "deviations": MATRIX,
+        "rmse": NUMBER_OR_NULL,
+        "written": [TEXT],
+    },
+    "cspace.slam/1": {
+        "file": TEXT,
+        "method": TEXT,
+        "status": TEXT,
+        "reason": TEXT,
+        "times": LIST_OR_NULL,
+        "poses": list,
+        "deviations": LIST_OR_NULL,
+        "landmarks": MATRIX,
+        "chi2": NUMBER_OR_NULL,
+        "dof": (int, type(None)),
+        "rejected": [{"edge": int, "first": int, "second": int, "chi2": NUMBER, "limit": NUMBER}],
+        "rmse": NUMBER_OR_NULL,
+        "written": [TEXT],
+    },
+    "cspace.evaluate/1": {
+        "estimate": TEXT,
+        "truth": TEXT,
+        "align": TEXT_OR_NULL,
+        "ate": {**POSE_ERRORS},
+        "rpe": [{"delta": NUMBER, "unit": TEXT, **POSE_ERRORS}],
+        "alignment": MATRIX,
     },
     "cspace.simulate/1": {
         "robot": TEXT,

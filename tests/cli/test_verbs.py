@@ -26,6 +26,9 @@ LINES = {
     "plan": "plan ur5e --geometry skeleton --from home --to up",
     "planners": "planners rrt",
     "space": f"space planar_2r --scene {ROOT}/examples/two_links.txt --from -0.3 0.5 --to -1.2 1.25",
+    "localize": f"localize {ROOT}/examples/small_drive",
+    "slam": f"slam {ROOT}/examples/two_rounds.g2o --robust dcs",
+    "evaluate": f"evaluate {ROOT}/examples/small_drive {ROOT}/examples/small_drive",
     "simulate": "simulate puma560 0.1 -1.2 1 0.2 0.4 0.3 --duration 0.1",
     "traj": "traj panda --from ready --to 0.5 0.2 0 -1.5 0 1.8 0.8",
     "doctor": "doctor",
@@ -81,6 +84,8 @@ def test_help_has_examples_that_parse(verb):
 def test_examples_of_the_help_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "examples/cell.toml", tmp_path)
+    shutil.copy(ROOT / "examples/two_rounds.g2o", tmp_path)
+    shutil.copytree(ROOT / "examples/small_drive", tmp_path / "small_drive")
     (tmp_path / "way.csv").write_text("0 -1.2 1 0 0.3 0\n0.4 -1 0.8 0.2 0.3 0\n0.8 -1.1 1 0.2 0 0.5\n")
     for verb in VERBS:
         for line in import_verb(verb).EXAMPLES.strip().splitlines():

@@ -118,8 +118,9 @@ def check_output(expected: list[str], output: str, where: str) -> None:
 
 @pytest.mark.parametrize("page", has("console"), ids=name_of)
 def test_console_blocks_run(page, tmp_path):
-    for name in ("yard.txt", "cell.toml", "two_links.txt", "four_bar.toml"):
+    for name in ("yard.txt", "cell.toml", "two_links.txt", "four_bar.toml", "two_rounds.g2o"):
         shutil.copy(ROOT / "examples" / name, tmp_path)
+    shutil.copytree(ROOT / "examples/small_drive", tmp_path / "small_drive")
     for block in blocks(page):
         if block.language != "console":
             continue

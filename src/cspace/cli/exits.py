@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from cspace.errors import CspaceError, DescriptionError, MapError, MissingExtraError, RoadmapError
+from cspace.errors import CspaceError, DescriptionError, LogError, MapError, MissingExtraError, RoadmapError
 
 
 class Exit(IntEnum):
@@ -31,7 +31,7 @@ class TimeLimitReached(BaseException):
 
 def exit_of(error: CspaceError) -> Exit:
     """The exit code of an error that cspace raised on purpose."""
-    if isinstance(error, DescriptionError | MapError | RoadmapError):
+    if isinstance(error, DescriptionError | LogError | MapError | RoadmapError):
         return Exit.BAD_FILE
     if isinstance(error, MissingExtraError):
         return Exit.MISSING_EXTRA

@@ -12,10 +12,12 @@ from cspace.plot.configuration_space import configuration_space
 from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
+from cspace.plot.localization_runs import run
 from cspace.plot.mechanisms import mechanism
 from cspace.plot.particles import particles
 from cspace.plot.planar import manipulability, workspace
 from cspace.plot.plans import plan
+from cspace.plot.pose_graphs import graph
 from cspace.plot.scenes import collision, scene
 from cspace.plot.simulations import simulation
 from cspace.plot.space_slices import space_projection, space_slice
@@ -36,6 +38,6 @@ __all__ = [
     "solutions",
     "workspace",
 ]
-__all__ += ["coverage", "drive", "particles", "world"]
+__all__ += ["coverage", "drive", "graph", "particles", "run", "world"]
 __all__ += ["collision", "configuration_space", "plan", "scene", "surface"]
 __all__ += ["simulation", "space_projection", "space_slice", "torques", "trajectory"]

@@ -1,4 +1,4 @@
-"""Moving pictures: an arm along its trajectory; searches are in worlds.py."""
+"""Moving pictures: an arm along its trajectory, a localisation; searches are in worlds.py."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from cspace.plot import worlds
 from cspace.plot.axes import space_axes
 from cspace.plot.checked_arms import place_arm
 from cspace.plot.files import Steps
+from cspace.plot.localization_films import PICTURES, animate_run
 from cspace.plot.plans import PIECES, TUBE, tip_bodies
 from cspace.plot.raytrace.scene import Group, scene_of
 from cspace.plot.scenes import check_scene, obstacle_groups, set_arm_stage
@@ -34,16 +35,24 @@ def animation(
     ax: Any | None = None,
     frames: int | None = None,
     rate: float = RATE,
+    truth: Any = None,
+    world: Any = None,
+    scans: Any = None,
 ) -> Any:
-    """An arm along a trajectory, or a search as it happened: a matplotlib FuncAnimation.
+    """An arm along a trajectory, a search or a localisation as it happened: a matplotlib FuncAnimation.
 
     `cs.plot.save` writes it as a GIF. moving: a Trajectory, which needs its robot=, or a Route, as
-    cs.navigate answers. The arm is drawn by the shapes that collision checks take, in real time, with the
-    path of its tip behind it. scene: obstacles around the arm. rate: its pictures per second. frames: of a
-    Route, into how many pictures its events are divided. ax: 3-D axes, or 2-D ones of a Route.
+    cs.navigate answers, or a localisation, whose drive grows with its ellipse. The arm is drawn by the shapes
+    that collision checks take, in real time, with the path of its tip behind it. scene: obstacles around the
+    arm. rate: its pictures per second. frames: of a Route, into how many pictures its events are divided; of
+    a localisation its time. ax: 3-D axes, or 2-D ones of the others. Of a localisation, truth: TimedPoses;
+    world: a grid or Landmarks; scans: of its log, drawn where the answer places them.
     Raises InputTypeError for other objects and a trajectory without robot, InputError for one that is not a
     motion, of another number of joints, or of too many pictures; MissingExtraError without matplotlib.
     """
+    if hasattr(moving, "poses") and hasattr(moving, "times"):
+        count = PICTURES if frames is None else frames
+        return animate_run(moving, ax=ax, frames=count, truth=truth, world=world, scans=scans)
     if not isinstance(moving, Trajectory):
         return worlds.animation(moving, ax=ax, frames=worlds.FRAMES if frames is None else frames)
     if not isinstance(robot, Robot):
