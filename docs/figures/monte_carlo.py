@@ -56,7 +56,15 @@ def draw_particles() -> None:
 def draw_panel(ax, pf, truth, when: str) -> None:
     """The particles, and the true pose as a black triangle."""
     cs.plot.particles(pf, ax=ax)
-    ax.plot(*truth[:2], marker=(3, 0, np.degrees(truth[2]) - 90), ms=9, mfc="white", mec="black", mew=1.4, zorder=8)
+    ax.plot(
+        *truth[:2],
+        marker=(3, 0, np.degrees(truth[2]) - 90),
+        ms=9,
+        mfc="white",
+        mec="black",
+        mew=1.4,
+        zorder=8,
+    )
     ax.set_title(f"{when}: {pf.status}, {pf.reason}", fontsize=9, loc="left")
 
 

@@ -1,6 +1,7 @@
-// Random numbers keyed by counters: Philox 4×32 with ten rounds (Salmon et al. 2011, "Parallel random numbers:
-// as easy as 1, 2, 3"). The draws of a counter depend on nothing else, so the order of a loop, its threads and
-// its instruction set do not matter; the normal ones neither, where products and sums are not contracted.
+// Random numbers keyed by counters: Philox 4×32 with ten rounds (Salmon et al. 2011, "Parallel random
+// numbers: as easy as 1, 2, 3"). The draws of a counter depend on nothing else, so the order of a loop, its
+// threads and its instruction set do not matter; the normal ones neither, where products and sums are not
+// contracted.
 #pragma once
 
 #include <cstdint>

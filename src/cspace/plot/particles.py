@@ -60,7 +60,7 @@ def find_side(axes: Any, poses: Array) -> float:
     """The longer side of what is shown [m]."""
     (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
     spread = float(np.ptp(poses[:, :2], axis=0).max()) if len(poses) else 0.0
-    return max(x1 - x0, y1 - y0, spread)
+    return max(float(x1 - x0), float(y1 - y0), spread)
 
 
 def draw_mode(axes: Any, mode: Any, side: float) -> list[Any]:

@@ -49,7 +49,9 @@ class ScanModel:
 
     def __init__(self, grid: Any, scanner: LaserScanner) -> None:
         self.scanner = scanner
-        self.field = grid if isinstance(grid, ByteField) else grid.likelihood_field(scanner.sigma, scanner.floor)
+        self.field = (
+            grid if isinstance(grid, ByteField) else grid.likelihood_field(scanner.sigma, scanner.floor)
+        )
         field = self.field
         self.map = _core.ScoreMap(field.scores, field.resolution, tuple(field.origin), field.outside)
         self.free = find_free_cells(grid, field)
@@ -100,7 +102,9 @@ class ScanModel:
         if len(ends) < FEWEST_BEAMS:
             return np.empty((0, 3))
         used = np.ascontiguousarray(ends[thin_ends(ends, SEARCH_BEAMS)])
-        return search_pose(used, self.field, most=MOST_PLACES, least_score=min(above, 1.0), free=self.free).poses
+        return search_pose(
+            used, self.field, most=MOST_PLACES, least_score=min(above, 1.0), free=self.free
+        ).poses
 
     def read_ends(self, measurement: Any) -> Array:
         """The ends (m, 2) in base of one scan, or the points (m, 2) given."""
@@ -184,11 +188,14 @@ def make_model(grid: Any, sensor: LaserScanner | RangeBearing | None) -> ScanMod
     """The model of a sensor on a map. Raises InputTypeError for a map and a sensor that do not fit."""
     if isinstance(grid, Landmarks):
         if sensor is not None and not isinstance(sensor, RangeBearing):
-            raise InputTypeError(f"a map of landmarks needs sensor=RangeBearing(…), not {type(sensor).__name__}")
+            raise InputTypeError(
+                f"a map of landmarks needs sensor=RangeBearing(…), not {type(sensor).__name__}"
+            )
         return SightingModel(grid, sensor or RangeBearing())
     if not isinstance(grid, ByteField) and not hasattr(grid, "likelihood_field"):
         raise InputTypeError(
-            f"grid is a {type(grid).__name__}; give an OccupancyGrid, an EvidenceGrid, a ByteField or Landmarks"
+            f"grid is a {type(grid).__name__}; give an OccupancyGrid, an EvidenceGrid, a ByteField or"
+            " Landmarks"
         )
     if sensor is not None and not isinstance(sensor, LaserScanner):
         raise InputTypeError(f"a grid needs sensor=LaserScanner(…), not {type(sensor).__name__}")

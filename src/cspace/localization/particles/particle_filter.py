@@ -1,4 +1,4 @@
-"""The particle filter: moves particles by odometry, weighs them by measurements, and finds the robot again."""
+"""The particle filter: moves particles by odometry, weighs them, and finds a lost robot again."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_generator, bounded_number, one_array, whole_number
 from cspace.errors import InputError, InputTypeError
-from cspace.localization.filters.rows import follow_rows, relate_rows
+from cspace.localization.filters.rows import follow_rows
 from cspace.localization.particles.models import (
     BEAM_MODEL_PARTICLES,
     ScanModel,
@@ -154,10 +154,11 @@ class ParticleFilter:
         self._found = None
 
     def update(self, scan: Any) -> None:
-        """Weighs the particles by a measurement: one scan of Scans, ends of beams in base (m, 2), or Readings.
+        """Weighs the particles by a measurement: one scan of Scans, ends of beams in base (m, 2), or
+        Readings.
 
-        Looks for other places where it fits nowhere, and resamples where few particles have the weight. A scan
-        without returns changes nothing.
+        Looks for other places where it fits nowhere, and resamples where few particles have the weight. A
+        scan without returns changes nothing.
         """
         self._move()
         share = min(1.0, measure_step(self._since) / FULL_STEP)
@@ -190,7 +191,9 @@ class ParticleFilter:
         above = LEAST_SCORE if is_start else max(LEAST_SCORE, score + GAIN)
         poses = self.model.search(scan, above, self._rng)
         self._monitor.note_search(len(poses))
-        self._events.append(FilterEvent(self.updates, "search" if len(poses) else "no place", score, len(poses)))
+        self._events.append(
+            FilterEvent(self.updates, "search" if len(poses) else "no place", score, len(poses))
+        )
         if not len(poses):
             self.is_searching = is_start
             return
@@ -222,9 +225,7 @@ class ParticleFilter:
             poses, covariances, shares = self._cloud.find_modes()
             poses = follow_rows(poses, self._pending)
             P = covariances.reshape(-1, 3, 3)
-            listed = [
-                PoseMode(*each) for each in zip(poses, P, map(float, shares), strict=True)
-            ]
+            listed = [PoseMode(*each) for each in zip(poses, P, map(float, shares), strict=True)]
             self._found = [mode for k, mode in enumerate(listed) if not k or mode.share >= LISTED_SHARE]
         return tuple(self._found)
 
@@ -255,9 +256,9 @@ class ParticleFilter:
 
     @property
     def status(self) -> str:
-        """"localised", "ambiguous" where there are several modes or a wide one, "lost" where measurements do
+        """One of "localised"; "ambiguous", with several modes or a wide one; "lost", where measurements do
         not fit."""
-        if self.is_searching and (self.updates or self.recover) or self._monitor.is_lost:
+        if (self.is_searching and (self.updates or self.recover)) or self._monitor.is_lost:
             return "lost"
         first, *others = self.modes
         far, turned = first.spread
@@ -274,7 +275,9 @@ class ParticleFilter:
                 return "nothing was measured yet, and the start is unknown"
             return f"the best particle scores {self.score:.2f}, below {self._monitor.threshold:.2f}"
         if status == "ambiguous":
-            return f"{count_things(len(self.modes), 'mode')}, the heaviest with {first.share:.0%} of the weight"
+            return (
+                f"{count_things(len(self.modes), 'mode')}, the heaviest with {first.share:.0%} of the weight"
+            )
         far, turned = first.spread
         return f"within {far:.2f} m and {np.degrees(turned):.1f}° (1σ), score {self.score:.2f}"
 
@@ -300,7 +303,8 @@ def read_motion(motion: Any | None) -> MotionNoise:
         return RandomWalk()
     if not hasattr(motion, "covariance"):
         raise InputTypeError(
-            f"motion is a {type(motion).__name__}; give a model of noise such as cspace.mobile.RandomWalk, or a vehicle"
+            f"motion is a {type(motion).__name__}; give a model of noise such as cspace.mobile.RandomWalk, or"
+            " a vehicle"
         )
     model: MotionNoise = motion
     return model
@@ -311,11 +315,17 @@ def read_sizes(model: Any, n: int | None, most: int | None) -> tuple[int, int]:
     limit = MOST_PARTICLES
     if isinstance(model, ScanModel) and model.table is not None:
         limit = BEAM_MODEL_PARTICLES
-    note = "the beam model casts a ray per beam; model='likelihood_field' takes more" if limit < PARTICLES else ""
+    note = (
+        "the beam model casts a ray per beam; model='likelihood_field' takes more"
+        if limit < PARTICLES
+        else ""
+    )
     least = whole_number(min(PARTICLES, limit) if n is None else n, "n", 1, limit, note or "fewer are enough")
     if most is None:
         return least, max(least, min(GROWTH * least, GROWN_PARTICLES, limit))
     largest = whole_number(most, "most", 1, limit, note)
     if largest < least:
-        raise InputError(f"most is {largest} and n {least}; the most particles cannot be fewer than the least")
+        raise InputError(
+            f"most is {largest} and n {least}; the most particles cannot be fewer than the least"
+        )
     return least, largest

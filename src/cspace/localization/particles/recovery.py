@@ -1,4 +1,4 @@
-"""When a particle filter doubts its place: scores of the best particle against those it had while localised."""
+"""When a particle filter is lost: scores of the best particle against those it had while localised."""
 
 from __future__ import annotations
 
