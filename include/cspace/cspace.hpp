@@ -34,6 +34,7 @@
 #include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
 #include "cspace/localization/scans/map_search.hpp"
+#include "cspace/maps/evidence.hpp"
 #include "cspace/maps/grid_outlines.hpp"
 #include "cspace/maps/likelihood_field.hpp"
 #include "cspace/maps/path_clearance.hpp"

@@ -1,6 +1,7 @@
 """Worlds of the plane: polygonal obstacles and occupancy grids."""
 
 from cspace.maps.byte_field import ByteField
+from cspace.maps.evidence_grid import EvidenceGrid
 from cspace.maps.movingai import Scenarios, read_scenarios
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, OffsetCurve
@@ -10,6 +11,7 @@ from cspace.maps.rays import cast_rays
 
 __all__ = [
     "ByteField",
+    "EvidenceGrid",
     "GeometryError",
     "OccupancyGrid",
     "Offset",

@@ -79,7 +79,8 @@ class OccupancyGrid(_core.GridBase):
         if unknown not in ("blocked", "free"):
             raise suggest("choice of unknown=", unknown, ("blocked", "free"))
         read = read_ros(path)
-        return cls(read.cells != 0 if unknown == "blocked" else read.cells == 1, read.resolution, read.origin)
+        blocked = read.cells != 0 if unknown == "blocked" else read.cells == 1
+        return cls(blocked, read.resolution, read.origin)
 
     @classmethod
     def from_image(
@@ -216,7 +217,8 @@ class OccupancyGrid(_core.GridBase):
         """Writes a ROS map: a YAML file at the path, which ends in .yaml, and a PGM image next to it."""
         from cspace.maps.ros_map import write_ros
 
-        write_ros(path, self.blocked, self.resolution, self._x, self._y)
+        grey = np.where(self.blocked, np.uint8(0), np.uint8(254))
+        write_ros(path, grey, self.resolution, self._x, self._y, "trinary")
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Cells, resolution and origin: the data that pickle stores."""

@@ -17,34 +17,36 @@ from cspace.files import unquote, whole_file, write_text, yaml_lines
 from cspace.maps.files import check_map_path, read_map_text
 from cspace.maps.images import encode_pgm, read_image
 
+MODES: Final = ("trinary", "scale", "raw")
 NEEDED: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 
 
 @dataclass(frozen=True)
 class RosMap:
-    """A ROS map: cells (rows, columns) 0 free, 1 occupied, 2 unknown, the lowest row first."""
+    """A ROS map: cells (rows, columns), how likely each is occupied from 0 to 1, NaN where it is unknown, the
+    lowest row first."""
 
-    cells: npt.NDArray[np.uint8]
+    cells: Array
     resolution: float
     origin: tuple[float, float]
 
 
-def read_ros(path: str | os.PathLike[str]) -> RosMap:
+def read_ros(path: str | os.PathLike[str], modes: tuple[str, ...] = ("trinary",)) -> RosMap:
     """The map of a YAML file; MapError names the line or byte at fault.
 
-    A cell is occupied where its darkness exceeds occupied_thresh, free where it is below free_thresh,
-    unknown between and where the image is transparent. Fields other than those of map_server are ignored.
+    trinary: a cell is occupied where its darkness exceeds occupied_thresh, free where it is below
+    free_thresh, unknown between and where the image is transparent. scale: the same, but between the
+    thresholds the probability rises linearly. raw: a grey of 0 to 100, of 255, is the probability in per
+    cent, any other unknown. Fields other than those of map_server are ignored.
+
+    modes: those that are accepted.
     """
     name = check_map_path(path)
     fields = _read_fields(read_map_text(path), name)
     for field in NEEDED:
         if field not in fields and not (field == "negate" and "occupied_thresh" in fields):
             raise MapError(f"the field '{field}:' is missing", path=name)
-    mode = str(fields.get("mode", ("trinary", 0))[0])
-    if mode != "trinary":
-        raise MapError(
-            f"mode {mode!r} has partly free cells, which are not supported; use mode 'trinary'", path=name
-        )
+    mode = _get_mode(fields, modes, name)
     resolution = _get_number(fields, "resolution", name)
     if not 0 < resolution < math.inf:
         raise MapError("resolution must be positive [m]", path=name, line=fields["resolution"][1])
@@ -55,27 +57,51 @@ def read_ros(path: str | os.PathLike[str]) -> RosMap:
     image = fields["image"][0]
     if not isinstance(image, str) or not image:
         raise MapError("image must be the path of a PGM or PNG file", path=name, line=fields["image"][1])
-    grey = read_image(os.path.join(os.path.dirname(name), image))
-    return RosMap(
-        _classify_cells(grey, _get_negate(fields, name), occupied, free),
-        resolution,
-        _get_origin(fields, name),
-    )
+    grey = read_image(os.path.join(os.path.dirname(name), image))[::-1]
+    shade = grey if _get_negate(fields, name) else 1 - grey
+    cells = _read_raw(1 - shade) if mode == "raw" else _read_shades(shade, occupied, free, mode == "scale")
+    return RosMap(cells, resolution, _get_origin(fields, name))
 
 
-def _classify_cells(grey: Array, negate: bool, occupied: float, free: float) -> npt.NDArray[np.uint8]:
-    """The kinds of cells by their darkness, the lowest row of the image first."""
-    darkness = (grey if negate else 1 - grey)[::-1]
-    kinds = np.full(grey.shape, 2, np.uint8)
-    kinds[darkness < free] = 0
-    kinds[darkness > occupied] = 1
-    return kinds
+def _get_mode(fields: _Fields, modes: tuple[str, ...], name: str) -> str:
+    mode, line = fields.get("mode", ("trinary", 0))
+    if mode not in MODES:
+        raise MapError(f"mode is {mode!r}; it must be one of {', '.join(MODES)}", path=name, line=line)
+    if mode not in modes:
+        raise MapError(
+            f"mode {mode!r} has partly free cells; cs.maps.EvidenceGrid.from_ros reads them",
+            path=name,
+            line=line,
+        )
+    return str(mode)
+
+
+def _read_shades(darkness: Array, occupied: float, free: float, is_scaled: bool) -> Array:
+    """Probabilities by darkness: 0 below one threshold, 1 above the other, NaN or a straight line between."""
+    cells = np.full(darkness.shape, np.nan)
+    if is_scaled and occupied > free:
+        cells = (darkness - free) / (occupied - free)
+    cells[darkness < free] = 0.0
+    cells[darkness > occupied] = 1.0
+    return cells
+
+
+def _read_raw(grey: Array) -> Array:
+    """Probabilities in per cent; NaN for a grey that is none."""
+    percent = np.rint(grey * 255)
+    return np.where(percent <= 100, percent / 100, np.nan)
 
 
 def write_ros(
-    path: str | os.PathLike[str], blocked: npt.NDArray[np.bool_], resolution: float, x: float, y: float
+    path: str | os.PathLike[str],
+    grey: npt.NDArray[np.uint8],
+    resolution: float,
+    x: float,
+    y: float,
+    mode: str,
 ) -> None:
-    """Writes a map of cells (rows, columns): a YAML file at the path, and a PGM image next to it."""
+    """Writes a map of grey values (rows, columns), the lowest row first, that mean what its mode says: a YAML
+    file at the path, and a PGM image next to it."""
     name = check_map_path(path)
     stem, ending = os.path.splitext(name)
     if ending not in {".yaml", ".yml"}:
@@ -85,8 +111,8 @@ def write_ros(
         )
     image = stem + ".pgm"
     with whole_file(image) as draft:
-        draft.write_bytes(encode_pgm(np.where(blocked[::-1], np.uint8(0), np.uint8(254))))
-    text = f"image: {_quote_name(os.path.basename(image))}\nmode: trinary\nresolution: {resolution!r}\n"
+        draft.write_bytes(encode_pgm(grey[::-1]))
+    text = f"image: {_quote_name(os.path.basename(image))}\nmode: {mode}\nresolution: {resolution!r}\n"
     text += f"origin: [{x!r}, {y!r}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
     write_text(name, text)
 
