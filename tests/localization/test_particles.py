@@ -13,7 +13,7 @@ import pytest
 
 import cspace as cs
 from cspace import _core
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.localization import (
     HistogramFilter,
     Landmarks,
@@ -400,11 +400,11 @@ def test_glass_changes_nothing():
 def test_scans_that_fit_nowhere_make_it_lost():
     grid = building()
     pf = ParticleFilter(grid, start=(5.0, 4.0, 0.0), rng=1)
-    angles = np.linspace(-np.pi, np.pi, 90)
-    ends = 0.9 * np.column_stack([np.cos(angles), np.sin(angles)])
+    angles = np.linspace(-np.pi, np.pi, 90)[:, None]
+    rng = np.random.default_rng(0)
     for _ in range(6):
         pf.predict((0.2, 0.0, 0.0))
-        pf.update(ends)
+        pf.update(rng.uniform(0.5, 9.0, (90, 1)) * np.concatenate([np.cos(angles), np.sin(angles)], axis=1))
     assert pf.status == "lost"
     assert not pf
     assert any(event.kind == "lost" for event in pf.events)
@@ -438,15 +438,15 @@ def test_the_histogram_filter_localises_and_admits_ambiguity():
 
 def test_a_step_of_the_histogram_filter_moves_mean_and_covariance():
     grid = building()
-    hf = HistogramFilter(grid, start=(5.0, 4.0, 0.5), headings=120, resolution=0.1)
+    hf = HistogramFilter(grid, start=(5.0, 4.0, 0.5), headings=72, resolution=0.2)
     before = hf.covariance
-    Q = np.diag([0.04, 0.02, 0.01])
+    Q = np.diag([0.04, 0.04, 0.01])
     hf.predict((0.6, 0.1, 0.3), covariance=Q)
     hf._move()
     expected = cs.to_xytheta(cs.pose_2d(xytheta=[5.0, 4.0, 0.5]) @ cs.pose_2d(xytheta=[0.6, 0.1, 0.3]))
     assert np.abs(relate_rows(expected, hf.pose)).max() < 0.06
     A = cs.adjoint_2d(cs.inverse_pose_2d(cs.pose_2d(xytheta=[0.6, 0.1, 0.3])))
-    assert np.allclose(np.diag(hf.covariance), np.diag(A @ before @ A.T + Q), rtol=0.35)
+    assert np.allclose(np.diag(hf.covariance), np.diag(A @ before @ A.T + Q), rtol=0.3)
     assert hf.belief.sum() == pytest.approx(1.0)
 
 
@@ -491,7 +491,7 @@ def test_bad_input_is_named():
         pf.update(Scans([0.0, 1.0], np.ones((2, 5)), np.zeros(5)))
     with pytest.raises(InputError, match="seconds"):
         pf.predict((0.1, 0.0, 0.0), -1.0)
-    with pytest.raises(InputError, match="model"):
+    with pytest.raises(UnknownNameError, match="did you mean 'beam'"):
         LaserScanner(model="beams")
     with pytest.raises(InputTypeError, match="takes Readings"):
         ParticleFilter(Landmarks([0], [(1.0, 1.0)])).update(np.zeros((5, 2)))

@@ -15,7 +15,8 @@ from cspace.localization.particles.beam_model import BeamTable
 from cspace.localization.particles.thinning import read_ends, thin_ends
 from cspace.localization.scans.search import search_pose
 from cspace.localization.sensors import LaserScanner, RangeBearing
-from cspace.maps import ByteField, cast_rays
+from cspace.maps import ByteField, OccupancyGrid, cast_rays
+from cspace.spatial import rotation_2d
 
 FEWEST_BEAMS: Final = 5
 """Ends below which a scan tells nothing: fewer fit anywhere."""
@@ -25,6 +26,12 @@ MOST_PLACES: Final = 3
 """Places found on the map that get particles."""
 BEAM_MODEL_PARTICLES: Final = 500
 """The most particles of the beam model: each ray takes a third of a microsecond."""
+NEW_SCORE: Final = 0.5
+"""The score (0 … 1) below which an end in an unknown cell belongs to no known wall."""
+WALL_SLACK: Final = 0.3
+"""How far before an end [m] a wall may stand that it does not lie behind of: errors of pose and map."""
+LEAST_COUNTED: Final = 0.4
+"""Share of the beams that must end in known cells for a score."""
 FALSE_READINGS: Final = 1e-3
 """Likelihood of a reading of a landmark that no landmark explains, over that of a perfect one."""
 
@@ -38,6 +45,9 @@ class CloudModel(Protocol):
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
         """Weighs by a share of the evidence; the score of the best particle, None where nothing was seen."""
 
+    def judge(self, measurement: Any, pose: Array, score: float) -> float | None:
+        """The score without what the map cannot know; None where that is most of the measurement."""
+
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """Poses (k, 3) that fit a measurement better than a score, the best first."""
 
@@ -49,9 +59,14 @@ class ScanModel:
 
     def __init__(self, grid: Any, scanner: LaserScanner) -> None:
         self.scanner = scanner
-        self.field = (
-            grid if isinstance(grid, ByteField) else grid.likelihood_field(scanner.sigma, scanner.floor)
-        )
+        # Unknown cells are free here: the far side of a wall is unknown, and beams end there.
+        self.known = getattr(grid, "known", None)
+        self.walls = None if isinstance(grid, ByteField) else find_walls(grid)
+        if isinstance(grid, ByteField):
+            self.field = grid
+        else:
+            assert self.walls is not None
+            self.field = self.walls.likelihood_field(scanner.sigma, scanner.floor)
         field = self.field
         self.map = _core.ScoreMap(field.scores, field.resolution, tuple(field.origin), field.outside)
         self.free = find_free_cells(grid, field)
@@ -60,7 +75,7 @@ class ScanModel:
         if scanner.model == "beam":
             if isinstance(grid, ByteField):
                 raise InputTypeError("the beam model casts rays; give a grid in place of a ByteField")
-            self.table, self.grid = BeamTable(scanner), grid.to_grid()
+            self.table, self.grid = BeamTable(scanner), self.walls
 
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
         """Weighs by the field or along the rays; the score is that of the field in both."""
@@ -96,6 +111,32 @@ class ScanModel:
         exponent = self.scanner.independent / max(self.scanner.beams, int(keep.sum()))
         return exponent * np.asarray(self.table.find(measured[keep], walls[:, keep]).sum(axis=1))
 
+    def judge(self, measurement: Any, pose: Array, score: float) -> float | None:
+        """The score (0 … 1) at a pose without the beams that end in unknown cells behind no wall; None where
+        they are most of the scan.
+
+        A robot that drives off its map sees what the map does not know; one that was carried away sees
+        through walls, and no walls where there are some.
+        """
+        if self.known is None:
+            return score
+        ends = self.read_ends(measurement)
+        used, _ = self.choose_ends(ends)
+        p = used @ rotation_2d(pose[2]).T + pose[:2]
+        cells = np.floor((p - self.field.origin) / self.field.resolution).astype(int)
+        inside = ((cells >= 0) & (cells < self.known.shape[::-1])).all(axis=1)
+        columns, rows = np.where(inside[:, None], cells, 0).T
+        scores = np.where(inside, self.field.scores[rows, columns], 0) / 255.0
+        is_new = (~inside | ~self.known[rows, columns]) & (scores < NEW_SCORE)
+        away = p[is_new] - pose[:2]
+        far = np.hypot(away[:, 0], away[:, 1])
+        reach = cast_rays(self.walls, pose[:2], np.arctan2(away[:, 1], away[:, 0]))
+        excused = np.flatnonzero(is_new)[reach >= far - WALL_SLACK]
+        counted = np.delete(scores, excused)
+        if len(counted) < LEAST_COUNTED * len(scores):
+            return None
+        return max(score, float(counted.mean()))
+
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """The best separate poses on the whole map."""
         ends = self.read_ends(measurement)
@@ -113,6 +154,13 @@ class ScanModel:
                 raise InputError(f"update takes one scan, and these are {len(measurement)}; give scans[k]")
             return read_ends(measurement, 0, self.scanner.least_range, self.scanner.most_range)[0]
         return one_array(measurement, "scan", (None, 2), "ends of beams in base [m]")
+
+
+def find_walls(grid: Any) -> OccupancyGrid:
+    """The cells that are known to be blocked."""
+    walls = grid.to_grid(unknown="free") if hasattr(grid, "known") else grid.to_grid()
+    assert isinstance(walls, OccupancyGrid)
+    return walls
 
 
 def find_free_cells(grid: Any, field: ByteField) -> npt.NDArray[np.bool_] | None:
@@ -170,6 +218,10 @@ class SightingModel:
         theta = turn - mt
         c, s = np.cos(theta), np.sin(theta)
         return np.stack([x - c * mx + s * my, y - s * mx - c * my, theta], axis=-1)
+
+    def judge(self, measurement: Any, pose: Array, score: float) -> float | None:
+        """The score itself: a map of landmarks has no unknown parts."""
+        return score
 
     def read(self, measurement: Any) -> Readings:
         """The readings, checked."""

@@ -17,7 +17,7 @@ from cspace.localization.particles.models import (
     make_model,
 )
 from cspace.localization.particles.placing import FreePlaces, spread_poses
-from cspace.localization.particles.recovery import GAIN, LEAST_SCORE, ScoreMonitor
+from cspace.localization.particles.recovery import LEAST_SCORE, ScoreMonitor
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
@@ -44,15 +44,20 @@ STANDING: Final = 1e-3
 LONGEST_STEP: Final = 0.1
 """Length [m] or turn [rad] of odometry that is added to particles at once."""
 START_DEVIATIONS: Final = (0.1, 0.1, 0.05)
-"""Standard deviations of a start [m, m, rad] unless given, and around places found on the map."""
+"""Standard deviations of a start [m, m, rad] unless given."""
+PLACE_DEVIATIONS: Final = (0.05, 0.05, 0.02)
+"""Standard deviations around places found on the map [m, m, rad]: a cell, and a step of its headings."""
 OTHER_SHARE: Final = 0.1
 """Share of the weight of a second mode from which the place is ambiguous."""
 LISTED_SHARE: Final = 0.01
 """Share of the weight from which a mode is listed."""
 WIDEST: Final = (1.0, 0.5)
 """Standard deviations of the position [m] and heading [rad] beyond which the place is ambiguous."""
-FRESH_UPDATES: Final = 3
-"""Measurements after a search that count wholly, even where the robot stands."""
+FRESH_UPDATES: Final = 5
+"""Measurements after a search that count wholly, even where the robot stands, and with more particles."""
+SEARCH_GROWTH: Final = 5
+"""How many times the least number of particles there are in these updates, at most: of each place many must
+be near the pose that fits best, or places that look alike get weights by chance."""
 
 
 class ParticleFilter:
@@ -95,7 +100,8 @@ class ParticleFilter:
         self._cloud = _core.ParticleCloud(largest, int(self._rng.integers(2**63)))
         self._monitor = ScoreMonitor(self.model.threshold)
         self._pending, self._since, self._seconds, self._path = np.zeros(3), np.zeros(3), 0.0, 0.0
-        self._fresh = FRESH_UPDATES
+        self._fresh = FRESH_UPDATES if start is None else 1
+        self._grown = min(largest, SEARCH_GROWTH * self.least)
         self._found: list[PoseMode] | None = None
         self.updates, self.score = 0, float("nan")
         self._events: list[FilterEvent] = []
@@ -173,22 +179,36 @@ class ParticleFilter:
         self._fresh = max(self._fresh - 1, 0)
         if share > 0:
             self._since = np.zeros(3)
-        if self.recover and (self.is_searching or self._monitor.wants_search(score)):
-            self._search(scan, score)
-        elif share > 0:
+        judged: float | None = score
+        if score < self._monitor.threshold and not self.is_searching:
+            judged = self.model.judge(scan, self.pose, score)
+        if not self._recover(scan, score, judged) and share > 0:
             self._resample()
-        self._monitor.add(score, share > 0 and self.status == "localised")
+        if judged is not None:
+            self._monitor.add(judged, share > 0 and self.status == "localised")
         self._note_status()
+
+    def _recover(self, scan: Any, score: float, judged: float | None) -> bool:
+        """Searches the map if the score asks for it, or none is known yet; whether it did."""
+        if judged is not None:
+            self._monitor.see(judged)
+        is_low = judged is not None and self._monitor.wants_search(judged)
+        if not self.recover or not (self.is_searching or is_low):
+            return False
+        self._search(scan, score if judged is None else judged)
+        return True
 
     def _resample(self) -> None:
         cloud = self._cloud
         if cloud.effective_count() < 0.5 * len(cloud):
-            cloud.resample(self.least, SIZE_ERROR, SIZE_QUANTILE)
+            needs_more = self._fresh or self._was == "ambiguous"
+            least = self._grown if needs_more else self.least
+            cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
 
     def _search(self, scan: Any, score: float) -> None:
         """Puts half of the particles on the best other places, at the start all of them."""
         is_start, self.is_searching = self.is_searching, False
-        above = LEAST_SCORE if is_start else max(LEAST_SCORE, score + GAIN)
+        above = LEAST_SCORE if is_start else self._monitor.least_of_places(score)
         poses = self.model.search(scan, above, self._rng)
         self._monitor.note_search(len(poses))
         self._events.append(
@@ -198,12 +218,12 @@ class ParticleFilter:
             self.is_searching = is_start
             return
         cloud = self._cloud
-        P = np.diag(np.square(START_DEVIATIONS))
+        P = np.diag(np.square(PLACE_DEVIATIONS))
         if is_start:
-            cloud.place(spread_poses(cloud, poses, P, self._places, self.least))
+            cloud.place(spread_poses(cloud, poses, P, self._places, self._grown))
             self.model.weigh(cloud, scan, 1.0, self.threads)
         else:
-            cloud.resample(self.least, SIZE_ERROR, SIZE_QUANTILE)
+            cloud.resample(self._grown, SIZE_ERROR, SIZE_QUANTILE)
             kept = cloud.poses()[::2]
             added = spread_poses(cloud, poses, P, self._places, len(cloud) - len(kept))
             cloud.place(np.ascontiguousarray(np.concatenate([kept, added])))
