@@ -9,11 +9,10 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.localization.sensors import LaserScanner
+from cspace.tolerances import LEAST_LIKELIHOOD
 
 CELL: Final = 0.05
 """Between two tabulated ranges [m], the side of the cells of usual maps."""
-LEAST_LIKELIHOOD: Final = 1e-12
-"""What no reading is less likely than [1/m]: a logarithm that is finite."""
 
 
 class BeamTable:

@@ -22,7 +22,6 @@ from cspace.localization.particles.models import FEWEST_BEAMS, ScanModel
 from cspace.localization.particles.particle_filter import (
     FULL_STEP,
     OTHER_SHARE,
-    STANDING,
     measure_step,
     read_motion,
 )
@@ -32,6 +31,7 @@ from cspace.localization.sensors import LaserScanner
 from cspace.maps import ByteField
 from cspace.spatial import as_pose_2d, log_se2, pose_2d, rotation_2d, to_xytheta
 from cspace.tables import count_things, one_line
+from cspace.tolerances import STANDING, UNIFORM_SHARE
 
 MOST_CELLS: Final = 4_000_000
 """The most cells: a second per update with 60 beams."""
@@ -41,9 +41,6 @@ LISTED_MODES: Final = 5
 """The most modes that are listed."""
 LEAST_SHARE: Final = 0.01
 """Share of the probability from which a mode is listed."""
-UNIFORM: Final = 1e-6
-"""Share of the probability that each update spreads over all free cells, so that a robot that was carried
-away is found again."""
 BLUR_REACH: Final = 3.0
 """Standard deviations at which the blur of a step is cut off."""
 NARROWEST_BLUR: Final = 0.3
@@ -179,9 +176,9 @@ class HistogramFilter:
         if share <= STANDING / FULL_STEP:
             return
         self._since = np.zeros(3)
-        prior = (1 - UNIFORM) * self.belief + UNIFORM * self._free / self._free.sum()
+        prior = (1 - UNIFORM_SHARE) * self.belief + UNIFORM_SHARE * self._free / self._free.sum()
         logs = share * exponent * self.model.nats * 255.0 * len(used) * (scores - scores.max())
-        self.belief = prior * np.exp(logs) * np.where(self._free > 0, 1.0, UNIFORM)
+        self.belief = prior * np.exp(logs) * np.where(self._free > 0, 1.0, UNIFORM_SHARE)
         self.belief /= self.belief.sum()
 
     @property

@@ -17,6 +17,7 @@ from cspace.localization.scans.search import search_pose
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.maps import ByteField, OccupancyGrid, cast_rays
 from cspace.spatial import rotation_2d
+from cspace.tolerances import FALSE_READINGS
 
 FEWEST_BEAMS: Final = 5
 """Ends below which a scan tells nothing: fewer fit anywhere."""
@@ -32,8 +33,6 @@ WALL_SLACK: Final = 0.3
 """How far before an end [m] a wall may stand that it does not lie behind of: errors of pose and map."""
 LEAST_COUNTED: Final = 0.4
 """Share of the beams that must end in known cells for a score."""
-FALSE_READINGS: Final = 1e-3
-"""Likelihood of a reading of a landmark that no landmark explains, over that of a perfect one."""
 
 
 class CloudModel(Protocol):

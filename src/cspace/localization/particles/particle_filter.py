@@ -23,6 +23,7 @@ from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
 from cspace.spatial import as_pose_2d, log_se2, pose_2d, to_xytheta
 from cspace.tables import count_things, one_line
+from cspace.tolerances import STANDING
 
 PARTICLES: Final = 1000
 """The least number of particles unless given."""
@@ -39,8 +40,6 @@ SIZE_QUANTILE: Final = 2.326
 FULL_STEP: Final = 0.1
 """After this distance [m], or turn [rad], a measurement counts wholly; after less for less: the errors of
 measurements from one place are the same."""
-STANDING: Final = 1e-3
-"""A distance [m] or turn [rad] below which the robot stands: the jitter of odometry at rest."""
 LONGEST_STEP: Final = 0.1
 """Length [m] or turn [rad] of odometry that is added to particles at once."""
 START_DEVIATIONS: Final = (0.1, 0.1, 0.05)
