@@ -22,7 +22,7 @@ def main(folder: Path) -> None:
 
     # The robot drives through the doors; odometry and scans are what it measured on the way.
     way = [(2, 3.3), (8, 3.3), (8, 4.9), (13, 4.9), (13, 2.0)]
-    run = cs.navigation.follow(way, vehicle=cs.Unicycle(), grid=grid)
+    run = cs.navigation.follow(way, vehicle=cs.Unicycle(), world=grid)
     scanner = cs.LaserScanner(most_range=12.0)
     log = cs.localization.simulate(run, grid, scanner, rng=7)
     assert log.truth is not None
