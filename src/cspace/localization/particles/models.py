@@ -31,8 +31,6 @@ NEW_SCORE: Final = 0.5
 """The score (0 … 1) below which an end in an unknown cell belongs to no known wall."""
 WALL_SLACK: Final = 0.3
 """How far before an end [m] a wall may stand that it does not lie behind of: errors of pose and map."""
-LEAST_COUNTED: Final = 0.4
-"""Share of the beams that must end in known cells for a score."""
 
 
 class CloudModel(Protocol):
@@ -44,8 +42,8 @@ class CloudModel(Protocol):
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
         """Weighs by a share of the evidence; the score of the best particle, None where nothing was seen."""
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> float | None:
-        """The score without what the map cannot know; None where that is most of the measurement."""
+    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
+        """The score without what the map cannot know, and the share of the measurement that this is."""
 
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """Poses (k, 3) that fit a measurement better than a score, the best first."""
@@ -110,15 +108,15 @@ class ScanModel:
         exponent = self.scanner.independent / max(self.scanner.beams, int(keep.sum()))
         return exponent * np.asarray(self.table.find(measured[keep], walls[:, keep]).sum(axis=1))
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> float | None:
-        """The score (0 … 1) at a pose without the beams that end in unknown cells behind no wall; None where
-        they are most of the scan.
+    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
+        """The score (0 … 1) at a pose without the beams that end in unknown cells behind no wall, and their
+        share.
 
         A robot that drives off its map sees what the map does not know; one that was carried away sees
         through walls, and no walls where there are some.
         """
         if self.known is None:
-            return score
+            return score, 0.0
         ends = self.read_ends(measurement)
         used, _ = self.choose_ends(ends)
         p = used @ rotation_2d(pose[2]).T + pose[:2]
@@ -132,9 +130,8 @@ class ScanModel:
         reach = cast_rays(self.walls, pose[:2], np.arctan2(away[:, 1], away[:, 0]))
         excused = np.flatnonzero(is_new)[reach >= far - WALL_SLACK]
         counted = np.delete(scores, excused)
-        if len(counted) < LEAST_COUNTED * len(scores):
-            return None
-        return max(score, float(counted.mean()))
+        unknown = len(excused) / len(scores)
+        return max(score, float(counted.mean()) if len(counted) else 0.0), unknown
 
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """The best separate poses on the whole map."""
@@ -218,9 +215,9 @@ class SightingModel:
         c, s = np.cos(theta), np.sin(theta)
         return np.stack([x - c * mx + s * my, y - s * mx - c * my, theta], axis=-1)
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> float | None:
+    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
         """The score itself: a map of landmarks has no unknown parts."""
-        return score
+        return score, 0.0
 
     def read(self, measurement: Any) -> Readings:
         """The readings, checked."""

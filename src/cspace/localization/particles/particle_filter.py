@@ -17,7 +17,7 @@ from cspace.localization.particles.models import (
     make_model,
 )
 from cspace.localization.particles.placing import FreePlaces, spread_poses
-from cspace.localization.particles.recovery import LEAST_SCORE, ScoreMonitor
+from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
@@ -46,7 +46,7 @@ START_DEVIATIONS: Final = (0.1, 0.1, 0.05)
 """Standard deviations of a start [m, m, rad] unless given."""
 PLACE_DEVIATIONS: Final = (0.05, 0.05, 0.02)
 """Standard deviations around places found on the map [m, m, rad]: a cell, and a step of its headings."""
-OTHER_SHARE: Final = 0.1
+OTHER_SHARE: Final = 0.15
 """Share of the weight of a second mode from which the place is ambiguous."""
 LISTED_SHARE: Final = 0.01
 """Share of the weight from which a mode is listed."""
@@ -178,24 +178,20 @@ class ParticleFilter:
         self._fresh = max(self._fresh - 1, 0)
         if share > 0:
             self._since = np.zeros(3)
-        judged: float | None = score
+        unknown = 0.0
         if score < self._monitor.threshold and not self.is_searching:
-            judged = self.model.judge(scan, self.pose, score)
-        if not self._recover(scan, score, judged) and share > 0:
+            score, unknown = self.model.judge(scan, self.pose, score)
+        says_something = unknown < MOST_UNKNOWN
+        if says_something:
+            self._monitor.see(score)
+        is_low = says_something and self._monitor.wants_search(score)
+        if self.recover and (self.is_searching or is_low):
+            self._search(scan, score, unknown)
+        elif share > 0:
             self._resample()
-        if judged is not None:
-            self._monitor.add(judged, share > 0 and self.status == "localised")
+        if says_something:
+            self._monitor.add(score, share > 0 and self.status == "localised")
         self._note_status()
-
-    def _recover(self, scan: Any, score: float, judged: float | None) -> bool:
-        """Searches the map if the score asks for it, or none is known yet; whether it did."""
-        if judged is not None:
-            self._monitor.see(judged)
-        is_low = judged is not None and self._monitor.wants_search(judged)
-        if not self.recover or not (self.is_searching or is_low):
-            return False
-        self._search(scan, score if judged is None else judged)
-        return True
 
     def _resample(self) -> None:
         cloud = self._cloud
@@ -204,10 +200,10 @@ class ParticleFilter:
             least = self._grown if needs_more else self.least
             cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
 
-    def _search(self, scan: Any, score: float) -> None:
+    def _search(self, scan: Any, score: float, unknown: float) -> None:
         """Puts half of the particles on the best other places, at the start all of them."""
         is_start, self.is_searching = self.is_searching, False
-        above = LEAST_SCORE if is_start else self._monitor.least_of_places(score)
+        above = LEAST_SCORE if is_start else self._monitor.least_of_places(score, unknown)
         poses = self.model.search(scan, above, self._rng)
         self._monitor.note_search(len(poses))
         self._events.append(

@@ -24,6 +24,11 @@ scores in a row, and the least: being carried away is rare, so a first bad scan 
 fits a bit better."""
 LEAST_SCORE: Final = 0.4
 """The least score of a place at the start."""
+UNKNOWN_GAIN: Final = 0.5
+"""By how much more for each beam that sees what the map does not know, as a share of the scan: where the map
+ends, bad scores are to be expected."""
+MOST_UNKNOWN: Final = 0.6
+"""Share of such beams from which a scan says nothing."""
 PLACE_SHARE: Final = 0.9
 """The least score of another place later, over the threshold: places of maps that look alike fit by half."""
 
@@ -47,9 +52,11 @@ class ScoreMonitor:
         """Counts a score before the decision to search."""
         self.low = self.low + 1 if score < self._threshold else 0
 
-    def least_of_places(self, score: float) -> float:
-        """What another place must score, given the score here."""
-        return max(PLACE_SHARE * self._threshold, score + max(GAINS[0] / max(self.low, 1), GAINS[1]))
+    def least_of_places(self, score: float, unknown: float) -> float:
+        """What another place must score, given the score here, and the share of beams that the map cannot
+        know."""
+        gain = max(GAINS[0] / max(self.low, 1), GAINS[1]) + UNKNOWN_GAIN * unknown
+        return max(PLACE_SHARE * self._threshold, score + gain)
 
     def add(self, score: float, is_localised: bool) -> None:
         """Takes note of the score of an update."""
