@@ -725,8 +725,6 @@ GRAPH_DECREASE: Final = 1e-9
 """Decrease of χ² that the last step of a pose graph predicts, relative to χ²: thousandths of what is asked of
 its digits."""
 
-__all__ = [name for name in globals() if name.isupper()]
-
 LEAST_LIKELIHOOD: Final = 1e-12
 """What no range of a beam is less likely than [1/m]: its logarithm is finite, and far below that of any range
 that is measured anywhere."""
@@ -741,3 +739,9 @@ standard deviations a reading is more likely false."""
 
 STANDING: Final = 1e-3
 """A distance [m] or turn [rad] below which a robot stands: the jitter of odometry at rest."""
+
+LEAST_OF_BEST: Final = 1e-4
+"""Probability of a cell of the histogram filter, over that of the best one, below which it is in no mode: all
+such cells together hold less than a per cent."""
+
+__all__ = [name for name in globals() if name.isupper()]

@@ -31,7 +31,7 @@ from cspace.localization.sensors import LaserScanner
 from cspace.maps import ByteField
 from cspace.spatial import as_pose_2d, log_se2, pose_2d, rotation_2d, to_xytheta
 from cspace.tables import count_things, one_line
-from cspace.tolerances import STANDING, UNIFORM_SHARE
+from cspace.tolerances import LEAST_OF_BEST, STANDING, UNIFORM_SHARE
 
 MOST_CELLS: Final = 4_000_000
 """The most cells: a second per update with 60 beams."""
@@ -294,7 +294,3 @@ def find_modes(belief: Array, poses: Array) -> list[PoseMode]:
         modes.append(PoseMode(pose, (w[:, None] * away).T @ away, share))
         weights, poses = weights[~near], poses[~near]
     return sorted(modes, key=lambda mode: -mode.share)
-
-
-LEAST_OF_BEST: Final = 1e-4
-"""Probability over that of the best cell below which a cell belongs to no mode."""
