@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_generator, bounded_number, one_array, whole_number
 from cspace.errors import InputError, InputTypeError
-from cspace.localization.filters.rows import follow_rows
+from cspace.localization.filters.rows import find_twist, follow_rows
 from cspace.localization.particles.models import (
     BEAM_MODEL_PARTICLES,
     ScanModel,
@@ -21,7 +21,7 @@ from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, Sc
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
-from cspace.spatial import as_pose_2d, log_se2, pose_2d, to_xytheta
+from cspace.spatial import as_pose_2d, to_xytheta
 from cspace.tables import count_things, one_line
 from cspace.tolerances import STANDING
 
@@ -152,7 +152,7 @@ class ParticleFilter:
             self._seconds = 0.0
             return
         if covariance is None:
-            xi = log_se2(pose_2d(xytheta=self._pending))
+            xi = find_twist(np.zeros(3), self._pending)
             covariance = self.noise.covariance(xi, self._seconds)
         self._cloud.move(self._pending, np.ascontiguousarray(covariance).ravel(), self.threads)
         self._pending, self._seconds = np.zeros(3), 0.0
