@@ -44,7 +44,11 @@ def measure_update(particles: int = 10_000, beams: int = 60) -> dict[str, Any]:
             pf.predict(relate_rows(poses[k - 1], poses[k]), 1.0)
         pf.update(log.scans[k])
         spent.append(1e3 * (process_time() - begin))
-    return {"what": f"update, {particles} × {beams}", "median_ms": float(np.median(spent[5:])), "p95_ms": float(np.quantile(spent[5:], 0.95))}
+    return {
+        "what": f"update, {particles} × {beams}",
+        "median_ms": float(np.median(spent[5:])),
+        "p95_ms": float(np.quantile(spent[5:], 0.95)),
+    }
 
 
 def build_map(log: Any, poses: Any, use: Any) -> Any:
@@ -154,7 +158,12 @@ def main() -> None:
     for name in given.logs if kinds else []:
         rows += run_trials(name, given.trials, kinds)
     for row in rows:
-        print("  ".join(f"{key} {value:.4g}" if isinstance(value, float) else f"{key} {value}" for key, value in row.items()))
+        print(
+            "  ".join(
+                f"{key} {value:.4g}" if isinstance(value, float) else f"{key} {value}"
+                for key, value in row.items()
+            )
+        )
     if given.save:
         given.save.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 

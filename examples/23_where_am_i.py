@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import cspace as cs
-from cspace.localization import Landmarks, RangeBearing, simulate
+from cspace.localization import Landmarks, Localization, RangeBearing, simulate
 
 
 def main(folder: Path) -> None:
@@ -22,6 +22,7 @@ def main(folder: Path) -> None:
     log = simulate(run, landmarks, sensor=sensor, rng=3)
 
     found = cs.localize(log, landmarks, filter="ekf", sensor=sensor)
+    assert isinstance(found, Localization)
     past = found.smoothed()
     assert found.status == "localised"
     print(found)

@@ -1,4 +1,4 @@
-"""A robot follows a path, then localises itself on its own map: from anywhere, and after being carried away."""
+"""A robot follows a path and localises itself on its own map, from anywhere and after it was carried away."""
 
 from __future__ import annotations
 
@@ -22,17 +22,19 @@ def main(folder: Path) -> None:
 
     # The robot drives through the doors; odometry and scans are what it measured on the way.
     way = [(2, 3.3), (8, 3.3), (8, 4.9), (13, 4.9), (13, 2.0)]
-    run = cs.navigation.follow(way, vehicle=cs.Unicycle(), grid=grid)
+    run = cs.navigation.follow(way, vehicle=cs.Unicycle(), world=grid)
     scanner = cs.LaserScanner(most_range=12.0)
     log = cs.localization.simulate(run, grid, scanner, rng=7)
-    assert log.truth is not None and log.scans is not None
+    assert log.truth is not None
+    assert log.scans is not None
 
     # From anywhere: the first scan is searched on the whole map.
     found = cs.localize(log, grid, filter="mcl", sensor=scanner, rng=7)
     error = np.hypot(*(found.at(log.truth.times) - log.truth.poses)[:, :2].T)
     print(found)
     print(f"error: median {np.median(error):.3f} m, at the end {error[-1]:.3f} m")
-    assert found and error[-1] < 0.2
+    assert found
+    assert error[-1] < 0.2
 
     # Carried away: the filter believes in the start, and the scans come from the end.
     pf = cs.ParticleFilter(grid, sensor=scanner, start=log.truth.poses[0], rng=7)

@@ -35,7 +35,7 @@ def draw_particles() -> None:
     """Before the first scan, after the search of the map, and when the robot has left its office."""
     grid, scanner = make_offices(), LaserScanner(most_range=8.0)
     way = [(7.5, 7.2), (7.5, 3.0), (13.0, 3.0)]
-    run = cs.navigation.follow(way, vehicle=cs.Unicycle(), grid=grid)
+    run = cs.navigation.follow(way, vehicle=cs.Unicycle(), world=grid)
     log = simulate(run, grid, scanner, rng=5)
     pf = cs.ParticleFilter(grid, sensor=scanner, n=1500, rng=3)
     figure, axes = plt.subplots(3, 1, figsize=(7.5, 10.5))
@@ -56,7 +56,15 @@ def draw_particles() -> None:
 def draw_panel(ax, pf, truth, when: str) -> None:
     """The particles, and the true pose as a black triangle."""
     cs.plot.particles(pf, ax=ax)
-    ax.plot(*truth[:2], marker=(3, 0, np.degrees(truth[2]) - 90), ms=9, mfc="white", mec="black", mew=1.4, zorder=8)
+    ax.plot(
+        *truth[:2],
+        marker=(3, 0, np.degrees(truth[2]) - 90),
+        ms=9,
+        mfc="white",
+        mec="black",
+        mew=1.4,
+        zorder=8,
+    )
     ax.set_title(f"{when}: {pf.status}, {pf.reason}", fontsize=9, loc="left")
 
 

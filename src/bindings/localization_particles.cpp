@@ -14,9 +14,10 @@ namespace {
 
 using Doubles = std::span<const double>;
 
-double add_sightings(ParticleCloud& cloud, Doubles ranges, Doubles bearings, std::span<const std::int32_t> rows,
-                     std::span<const Point> points, const PoseRow& mount, double range_sigma,
-                     double bearing_sigma, double false_share, double exponent, int threads) {
+double add_sightings(ParticleCloud& cloud, Doubles ranges, Doubles bearings,
+                     std::span<const std::int32_t> rows, std::span<const Point> points, const PoseRow& mount,
+                     double range_sigma, double bearing_sigma, double false_share, double exponent,
+                     int threads) {
     return cloud.add_sightings(
         {ranges, bearings, rows, points, mount, range_sigma, bearing_sigma, false_share}, exponent, threads);
 }
@@ -35,8 +36,8 @@ void bind_localization_particles(nb::module_& m) {
              "Particles at poses (k, 3), with equal weights.")
         .def("move", &ParticleCloud::move, "increment"_a, "covariance"_a, "threads"_a, WithoutLock(),
              "A step (3,) with noise of a covariance (9,).")
-        .def("add_scan", &ParticleCloud::add_scan, "map"_a, "ends"_a, "exponent"_a, "threads"_a, WithoutLock(),
-             "Weighs by the ends of beams (m, 2) in base; the best mean score.")
+        .def("add_scan", &ParticleCloud::add_scan, "map"_a, "ends"_a, "exponent"_a, "threads"_a,
+             WithoutLock(), "Weighs by the ends of beams (m, 2) in base; the best mean score.")
         .def("score", &ParticleCloud::score, "map"_a, "ends"_a, "threads"_a, WithoutLock(),
              "The mean score of each particle.")
         .def("add_logs", &ParticleCloud::add_logs, "logs"_a, WithoutLock(),

@@ -749,4 +749,23 @@ SAME_CHI2: Final = 1e-6
 """Difference of two values of χ², relative, within which they are of one optimum: steps that end the search
 leave 1e-9."""
 
+LEAST_LIKELIHOOD: Final = 1e-12
+"""What no range of a beam is less likely than [1/m]: its logarithm is finite, and far below that of any range
+that is measured anywhere."""
+
+UNIFORM_SHARE: Final = 1e-6
+"""Share of the probability that each update of the histogram filter spreads over all free cells: small enough
+to change no answer, large enough that a robot that was carried away is found within a few scans."""
+
+FALSE_READINGS: Final = 1e-3
+"""Likelihood of a reading of a landmark that no landmark explains, over that of a perfect one: beyond 3.7
+standard deviations a reading is more likely false."""
+
+STANDING: Final = 1e-3
+"""A distance [m] or turn [rad] below which a robot stands: the jitter of odometry at rest."""
+
+LEAST_OF_BEST: Final = 1e-4
+"""Probability of a cell of the histogram filter, over that of the best one, below which it is in no mode: all
+such cells together hold less than a per cent."""
+
 __all__ = [name for name in globals() if name.isupper()]

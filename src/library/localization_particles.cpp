@@ -16,7 +16,7 @@ namespace cspace::localization {
 namespace {
 
 constexpr std::size_t pack = float_lanes;
-constexpr BinRule size_bins = {0.5, 36};    // of the rule for the number of particles (Fox 2003)
+constexpr BinRule size_bins = {0.5, 36};        // of the rule for the number of particles (Fox 2003)
 constexpr std::size_t least_per_thread = 1024;  // particles, some tens of microseconds
 
 std::size_t round_up(std::size_t n) { return (n + pack - 1) / pack * pack; }
@@ -49,7 +49,9 @@ struct Poses {
     std::vector<double> x, y;
     std::vector<Heading> headings;
     explicit Poses(std::size_t size)
-        : x(filled_vector<double>(size)), y(filled_vector<double>(size)), headings(filled_vector<Heading>(size)) {}
+        : x(filled_vector<double>(size)),
+          y(filled_vector<double>(size)),
+          headings(filled_vector<Heading>(size)) {}
 };
 
 // Beams in cells.
@@ -89,7 +91,8 @@ class SightingModel {
         if (readings_.rows[k] >= 0)
             return likelihood_of(k, readings_.points[std::size_t(readings_.rows[k])], x, y, angle);
         double best = 0;
-        for (const Point& point : readings_.points) best = std::max(best, likelihood_of(k, point, x, y, angle));
+        for (const Point& point : readings_.points)
+            best = std::max(best, likelihood_of(k, point, x, y, angle));
         return best;
     }
     double likelihood_of(std::size_t k, const Point& point, double x, double y, double angle) const {
@@ -123,8 +126,8 @@ ScoreMap::ScoreMap(maps::CellBytes given, double resolution, Point origin, int o
     state_->scores = filled_vector<std::uint8_t>(stride * std::size_t(given.rows + 2), std::uint8_t(outside));
     for (std::size_t row = 0; row < std::size_t(given.rows); ++row)
         std::copy_n(given.data + row * columns, columns, &state_->scores[(row + 1) * stride + 1]);
-    state_->cells = {state_->scores.data(), given.rows, given.columns, int(stride),
-                     origin.x,              origin.y,   1 / resolution};
+    state_->cells = {state_->scores.data(), given.rows, given.columns, int(stride), origin.x, origin.y,
+                     1 / resolution};
 }
 ScoreMap::~ScoreMap() = default;
 
@@ -291,7 +294,8 @@ std::size_t ParticleCloud::resample(std::size_t least, double error, double z) {
             bins.number_of(size_bins.bin_of(s.now.x[i], s.now.y[i], s.now.headings[i]));
     });
     const double wanted = std::ceil(count_for_bins(bins.size(), error, z));
-    const std::size_t n = std::clamp(std::size_t(std::min(wanted, double(s.most))), std::min(least, s.most), s.most);
+    const std::size_t n =
+        std::clamp(std::size_t(std::min(wanted, double(s.most))), std::min(least, s.most), s.most);
     SystematicDraws draws(total, n, random);
     std::size_t made = 0;
     bound = 0;
@@ -310,10 +314,9 @@ std::size_t ParticleCloud::resample(std::size_t least, double error, double z) {
 
 std::tuple<Table<double>, Table<double>, Table<double>> ParticleCloud::find_modes() const {
     const State& s = *state_;
-    const std::vector<PoseMode> modes = find_pose_modes({std::span(s.now.x).first(s.size),
-                                                         std::span(s.now.y).first(s.size),
-                                                         std::span(s.now.headings).first(s.size),
-                                                         std::span(s.weights).first(s.size)});
+    const std::vector<PoseMode> modes =
+        find_pose_modes({std::span(s.now.x).first(s.size), std::span(s.now.y).first(s.size),
+                         std::span(s.now.headings).first(s.size), std::span(s.weights).first(s.size)});
     const double total = double(std::max<std::uint64_t>(s.total_weight(), 1));
     std::tuple<Table<double>, Table<double>, Table<double>> made{{{}, 3}, {{}, 9}, {{}, 0}};
     auto& [poses, covariances, shares] = made;
@@ -355,7 +358,8 @@ Table<double> ParticleCloud::draw_normals(std::size_t count) {
         for (std::size_t k = 0; k < 3; ++k) {
             float values[pack];
             store_floats(values, normal[k]);
-            for (std::size_t lane = 0; lane < pack; ++lane) table.values[3 * (i + lane) + k] = double(values[lane]);
+            for (std::size_t lane = 0; lane < pack; ++lane)
+                table.values[3 * (i + lane) + k] = double(values[lane]);
         }
     }
     table.values.resize(3 * count);

@@ -29,7 +29,8 @@ class ScoreMap {
     std::unique_ptr<State> state_;
 };
 
-// A reading of a landmark: range and bearing, NaN where not measured; the row of the landmark, −1 for unknown.
+// A reading of a landmark: range and bearing, NaN where not measured; the row of the landmark, −1 for
+// unknown.
 struct LandmarkSightings {
     std::span<const double> ranges, bearings;
     std::span<const std::int32_t> rows;
@@ -51,8 +52,8 @@ class ParticleCloud {
     void place(std::span<const PoseRow> poses);
     // T ← T D exp(w) with D a pose and w normal with a covariance (by rows).
     void move(const PoseRow& increment, const std::array<double, 9>& covariance, int threads);
-    // Adds to the logarithms of weights `exponent` per unit of the summed scores (0 … 255) of the beams, which
-    // end at points in base. Returns the best mean score of a particle (0 … 1).
+    // Adds to the logarithms of weights `exponent` per unit of the summed scores (0 … 255) of the beams,
+    // which end at points in base. Returns the best mean score of a particle (0 … 1).
     double add_scan(const ScoreMap& map, std::span<const Point> ends, double exponent, int threads);
     // The mean scores (0 … 1) of all particles, weights as they were.
     Table<double> score(const ScoreMap& map, std::span<const Point> ends, int threads);

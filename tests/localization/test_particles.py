@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import os
 import subprocess
 import sys
@@ -12,7 +13,7 @@ import pytest
 
 import cspace as cs
 from cspace import _core
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.localization import (
     HistogramFilter,
     Landmarks,
@@ -40,7 +41,9 @@ def building(seed=3, side=0.1):
     blocked[[0, -1]] = blocked[:, [0, -1]] = True
     blocked[70:73] = blocked[:, 90:92] = True
     for row, column in ((70, 30), (70, 150), (30, 90), (120, 90)):
-        blocked[row : row + 12 if column in (90,) else row + 3, column : column + (2 if column == 90 else 14)] = 0
+        blocked[
+            row : row + 12 if column in (90,) else row + 3, column : column + (2 if column == 90 else 14)
+        ] = 0
     for _ in range(25):
         row, column = rng.integers(4, 150), rng.integers(4, 190)
         blocked[row : row + rng.integers(3, 9), column : column + rng.integers(3, 9)] = True
@@ -58,7 +61,7 @@ def corridor(side=0.1):
 def route(points, speed=0.5, dt=0.1):
     """Poses along a polyline: straight lines, turns on the spot."""
     poses = []
-    for a, b in zip(points[:-1], points[1:], strict=True):
+    for a, b in itertools.pairwise(points):
         a, b = np.array(a, float), np.array(b, float)
         n = max(int(np.hypot(*(b - a)) / (speed * dt)), 1)
         heading = np.arctan2(*(b - a)[::-1])
@@ -149,7 +152,8 @@ def test_weights_are_those_of_floating_point():
     cloud.add_logs(0.5 * logs)
     cloud.add_logs(0.5 * logs)
     expected = np.exp(logs - logs.max())
-    assert np.allclose(cloud.weights(), expected / expected.sum(), rtol=3e-6, atol=1e-12)
+    quanta = 2 * 2.0**-32 / expected.sum()
+    assert np.allclose(cloud.weights(), expected / expected.sum(), rtol=3e-6, atol=quanta)
     assert cloud.effective_count() == pytest.approx(expected.sum() ** 2 / (expected**2).sum(), rel=1e-4)
 
 
@@ -234,7 +238,8 @@ def test_the_same_seed_gives_the_same_bits_on_every_instruction_set_and_thread_c
                 [sys.executable, "-c", program], capture_output=True, text=True, env=environment, check=True
             )
             found.add(done.stdout.strip())
-    assert len(found) == 1 and len(found.pop()) == len(hashlib.sha256().hexdigest())
+    assert len(found) == 1
+    assert len(found.pop()) == len(hashlib.sha256().hexdigest())
 
 
 # --- models of sensors ----------------------------------------------------------------------------------
@@ -258,7 +263,8 @@ def test_the_beam_model_localises():
     log = simulate(route(WAY), grid, scanner, rng=2)
     run = cs.localize(log, grid, filter="mcl", sensor=scanner, start=log.truth.poses[0], rng=1)
     error = (run.at(log.truth.times) - log.truth.poses)[:, :2]
-    assert run and np.sqrt((error**2).sum(axis=1).mean()) < 0.12
+    assert run
+    assert np.sqrt((error**2).sum(axis=1).mean()) < 0.12
 
 
 def test_thinned_ends_are_spread_evenly_along_walls():
@@ -289,7 +295,8 @@ def test_many_particles_agree_with_the_kalman_filter():
     difference = np.abs(relate_rows(kalman.poses[at], cloud.poses[ours]))
     assert (difference < 0.35 * deviation + 0.005).all()
     ratio = cloud.covariances[ours][:, [0, 1, 2], [0, 1, 2]] / deviation**2
-    assert (ratio > 0.6).all() and (ratio < 1.6).all()
+    assert (ratio > 0.6).all()
+    assert (ratio < 1.6).all()
 
 
 def test_standing_for_an_hour_neither_collapses_nor_drifts():
@@ -332,7 +339,8 @@ def test_a_global_start_finds_the_robot():
     for seed in range(3):
         run = cs.localize(log, grid, filter="mcl", sensor=CLEAN, rng=seed)
         error = np.hypot(*(run.at(log.truth.times) - log.truth.poses)[-50:, :2].T)
-        assert run.status == "localised" and error.max() < 0.2
+        assert run.status == "localised"
+        assert error.max() < 0.2
         assert run.events[0].kind == "search"
 
 
@@ -367,7 +375,8 @@ def test_a_symmetric_corridor_is_ambiguous():
     run = route([(3.0, 2.0), (8.0, 2.0)])
     log = simulate(run, grid, CLEAN, rng=1)
     found = cs.localize(log, grid, filter="mcl", sensor=CLEAN, rng=2)
-    assert found.status == "ambiguous" and not found
+    assert found.status == "ambiguous"
+    assert not found
     assert len(found.modes) == 2
     a, b = found.modes
     assert np.allclose(a.pose[:2] + b.pose[:2], [16.0, 4.0], atol=0.3)
@@ -384,28 +393,33 @@ def test_glass_changes_nothing():
     for _ in range(20):
         pf.update(scan)
     assert np.array_equal(before, pf.particles)
-    assert pf.updates == 0 and pf.status == "localised"
+    assert pf.updates == 0
+    assert pf.status == "localised"
 
 
 def test_scans_that_fit_nowhere_make_it_lost():
     grid = building()
     pf = ParticleFilter(grid, start=(5.0, 4.0, 0.0), rng=1)
-    angles = np.linspace(-np.pi, np.pi, 90)
-    ends = 0.9 * np.column_stack([np.cos(angles), np.sin(angles)])
+    angles = np.linspace(-np.pi, np.pi, 90)[:, None]
+    rng = np.random.default_rng(0)
     for _ in range(6):
         pf.predict((0.2, 0.0, 0.0))
-        pf.update(ends)
-    assert pf.status == "lost" and not pf
+        pf.update(rng.uniform(0.5, 9.0, (90, 1)) * np.concatenate([np.cos(angles), np.sin(angles)], axis=1))
+    assert pf.status == "lost"
+    assert not pf
     assert any(event.kind == "lost" for event in pf.events)
 
 
 def test_readings_of_landmarks_localise_from_anywhere():
-    landmarks = Landmarks(np.arange(5), np.array([[2.0, 2.0], [9.0, 3.0], [7.0, 11.0], [1.0, 9.0], [5.0, 6.5]]))
+    landmarks = Landmarks(
+        np.arange(5), np.array([[2.0, 2.0], [9.0, 3.0], [7.0, 11.0], [1.0, 9.0], [5.0, 6.5]])
+    )
     sensor = RangeBearing(range_sigma=0.1, bearing_sigma=0.03)
     log = simulate(route(WAY), landmarks, sensor, rng=3)
     run = cs.localize(log, landmarks, filter="mcl", sensor=sensor, rng=2)
     error = np.hypot(*(run.at(log.truth.times) - log.truth.poses)[-60:, :2].T)
-    assert run and error.max() < 0.3
+    assert run
+    assert error.max() < 0.3
 
 
 def test_the_histogram_filter_localises_and_admits_ambiguity():
@@ -413,24 +427,26 @@ def test_the_histogram_filter_localises_and_admits_ambiguity():
     log = simulate(route(WAY[:4]), grid, CLEAN, rng=3)
     run = cs.localize(log, grid, filter="histogram", sensor=CLEAN)
     error = np.hypot(*(run.at(log.truth.times) - log.truth.poses)[-50:, :2].T)
-    assert run and error.max() < 0.35
+    assert run
+    assert error.max() < 0.35
     twin = corridor()
     log = simulate(route([(3.0, 2.0), (6.0, 2.0)]), twin, CLEAN, rng=1)
     found = cs.localize(log, twin, filter="histogram", sensor=CLEAN)
-    assert found.status == "ambiguous" and len(found.modes) >= 2
+    assert found.status == "ambiguous"
+    assert len(found.modes) >= 2
 
 
 def test_a_step_of_the_histogram_filter_moves_mean_and_covariance():
     grid = building()
-    hf = HistogramFilter(grid, start=(5.0, 4.0, 0.5), headings=120, resolution=0.1)
+    hf = HistogramFilter(grid, start=(5.0, 4.0, 0.5), headings=72, resolution=0.2)
     before = hf.covariance
-    Q = np.diag([0.04, 0.02, 0.01])
+    Q = np.diag([0.04, 0.04, 0.01])
     hf.predict((0.6, 0.1, 0.3), covariance=Q)
     hf._move()
     expected = cs.to_xytheta(cs.pose_2d(xytheta=[5.0, 4.0, 0.5]) @ cs.pose_2d(xytheta=[0.6, 0.1, 0.3]))
     assert np.abs(relate_rows(expected, hf.pose)).max() < 0.06
     A = cs.adjoint_2d(cs.inverse_pose_2d(cs.pose_2d(xytheta=[0.6, 0.1, 0.3])))
-    assert np.allclose(np.diag(hf.covariance), np.diag(A @ before @ A.T + Q), rtol=0.35)
+    assert np.allclose(np.diag(hf.covariance), np.diag(A @ before @ A.T + Q), rtol=0.3)
     assert hf.belief.sum() == pytest.approx(1.0)
 
 
@@ -439,7 +455,8 @@ def test_the_threshold_is_learned_from_scores_of_the_log():
     for _ in range(FIRST_SCORES):
         monitor.add(0.65, True)
     assert monitor.threshold == pytest.approx(0.8 * 0.65)
-    assert not monitor.wants_search(0.6) and monitor.wants_search(0.5)
+    assert not monitor.wants_search(0.6)
+    assert monitor.wants_search(0.5)
 
 
 # --- bad input ------------------------------------------------------------------------------------------
@@ -474,7 +491,7 @@ def test_bad_input_is_named():
         pf.update(Scans([0.0, 1.0], np.ones((2, 5)), np.zeros(5)))
     with pytest.raises(InputError, match="seconds"):
         pf.predict((0.1, 0.0, 0.0), -1.0)
-    with pytest.raises(InputError, match="model of a laser scanner|model"):
+    with pytest.raises(UnknownNameError, match="did you mean 'beam'"):
         LaserScanner(model="beams")
     with pytest.raises(InputTypeError, match="takes Readings"):
         ParticleFilter(Landmarks([0], [(1.0, 1.0)])).update(np.zeros((5, 2)))

@@ -50,15 +50,11 @@ CSPACE_INLINE float log_float(float x) {
     constexpr std::int32_t root_half = 0x3f3504f3;  // the bits of √½
     const std::int32_t bits = bits_as<std::int32_t>(x), exponent = (bits - root_half) >> 23;
     const float z = bits_as<float>(bits - exponent * (1 << 23)) - 1.0f, e = float(exponent);
-    float p = 7.0376836292e-2f;
-    p = p * z - 1.1514610310e-1f;
-    p = p * z + 1.1676998740e-1f;
-    p = p * z - 1.2420140846e-1f;
-    p = p * z + 1.4249322787e-1f;
-    p = p * z - 1.6668057665e-1f;
-    p = p * z + 2.0000714765e-1f;
-    p = p * z - 2.4999993993e-1f;
-    p = p * z + 3.3333331174e-1f;
+    constexpr float c_9 = 7.0376836292e-2f, c_8 = -1.1514610310e-1f, c_7 = 1.1676998740e-1f;
+    constexpr float c_6 = -1.2420140846e-1f, c_5 = 1.4249322787e-1f, c_4 = -1.6668057665e-1f;
+    constexpr float c_3 = 2.0000714765e-1f, c_2 = -2.4999993993e-1f, c_1 = 3.3333331174e-1f;
+    const float high = ((c_9 * z + c_8) * z + c_7) * z + c_6;
+    const float p = ((((high * z + c_5) * z + c_4) * z + c_3) * z + c_2) * z + c_1;
     constexpr float ln2 = 0.693147182f;
     const float square = z * z;
     return z + (p * z * square - 0.5f * square) + e * ln2;

@@ -122,7 +122,9 @@ class LaserScanner:
             object.__setattr__(self, name, value)
         object.__setattr__(self, "mount", tuple(map(float, one_array(self.mount, "mount", (3,)))))
         if not self.hit > 0 or not self.rand > 0:
-            raise InputError("hit and rand are shares of beams above zero; without rand a beam excludes poses")
+            raise InputError(
+                "hit and rand are shares of beams above zero; without rand a beam excludes poses"
+            )
         if self.least_range >= self.most_range:
             raise InputError(
                 f"least_range is {self.least_range:g} m and most_range {self.most_range:g} m; it must be less"

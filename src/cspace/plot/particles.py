@@ -19,6 +19,8 @@ ARROW: Final = 0.02
 ELLIPSE: Final = 2.4477
 """Standard deviations of the ellipse that holds 95 % of a normal distribution of the plane."""
 CORNERS: Final = 48
+WIDEST: Final = 1.0
+"""Standard deviation of a mode among others [m] beyond which its ellipse says nothing."""
 
 
 def particles(pf: Any, *, ax: Any | None = None, grid: Any | None = None) -> list[Any]:
@@ -39,8 +41,9 @@ def particles(pf: Any, *, ax: Any | None = None, grid: Any | None = None) -> lis
     ahead = ARROW * side * np.stack([np.cos(some[:, 2]), np.sin(some[:, 2])], axis=-1)
     pieces = np.stack([some[:, :2], some[:, :2] + ahead], axis=1)
     artists += draw_lines(axes, pieces, colors=[colors.JOINT], linewidths=0.6, alpha=0.6, zorder=4)
-    for mode in pf.modes:
-        artists += draw_mode(axes, mode, side)
+    for k, mode in enumerate(pf.modes):
+        if mode.spread[0] < WIDEST or (k == 0 and len(pf.modes) == 1):
+            artists += draw_mode(axes, mode, side)
     if known is None:
         axes.set_aspect("equal")
         axes.autoscale_view()
@@ -60,7 +63,7 @@ def find_side(axes: Any, poses: Array) -> float:
     """The longer side of what is shown [m]."""
     (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
     spread = float(np.ptp(poses[:, :2], axis=0).max()) if len(poses) else 0.0
-    return max(x1 - x0, y1 - y0, spread)
+    return max(float(x1 - x0), float(y1 - y0), spread)
 
 
 def draw_mode(axes: Any, mode: Any, side: float) -> list[Any]:

@@ -39,7 +39,8 @@ CSPACE_INLINE void sum_beam_scores(const ScoreCells& map, const double* x, const
                                    const Heading* headings, int count, const float* beam_x,
                                    const float* beam_y, int beams, std::int32_t* sums) {
     const Floats zero = fill_floats(0.0f);
-    const Floats last_column = fill_floats(float(map.columns + 1)), last_row = fill_floats(float(map.rows + 1));
+    const Floats last_column = fill_floats(float(map.columns + 1)),
+                 last_row = fill_floats(float(map.rows + 1));
     for (int i = 0; i < count; i += float_lanes) {
         float column[float_lanes], row[float_lanes];
         for (int k = 0; k < float_lanes; ++k) {

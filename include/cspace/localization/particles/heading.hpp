@@ -30,8 +30,7 @@ namespace cspace::localization::inline CSPACE_ISA {
 
 CSPACE_INLINE void sin_cos_headings(const Heading* headings, Floats& sine, Floats& cosine) {
     float angle[float_lanes];
-    for (int i = 0; i < float_lanes; ++i)
-        angle[i] = float(std::int32_t(headings[i])) * float(heading_unit);
+    for (int i = 0; i < float_lanes; ++i) angle[i] = float(std::int32_t(headings[i])) * float(heading_unit);
     sin_cos(load_floats(angle), sine, cosine);
 }
 

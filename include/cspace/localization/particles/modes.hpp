@@ -61,7 +61,8 @@ class ModeMoments {
     void begin(double x, double y, Heading heading) { x_ = x, y_ = y, heading_ = heading; }
     void add(double x, double y, Heading heading, double weight) {
         const double turn = double(std::int32_t(heading - heading_)) * heading_unit;
-        total_ += weight, sum_[0] += weight * (x - x_), sum_[1] += weight * (y - y_), sum_[2] += weight * turn;
+        total_ += weight, sum_[0] += weight * (x - x_), sum_[1] += weight * (y - y_),
+            sum_[2] += weight * turn;
     }
     void move_to_mean() {
         x_ += sum_[0] / total_, y_ += sum_[1] / total_;

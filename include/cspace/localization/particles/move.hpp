@@ -10,11 +10,11 @@ namespace cspace::localization {
 
 // A step of odometry and its noise.
 struct MotionStep {
-    float x, y;           // of D, in the base before [m]
-    float cosine, sine;   // of its turn
-    Heading turn;         // its turn
-    float noise[6];       // rows of the lower triangle L of the covariance L Lᵀ of w = (x, y, θ) [m, rad]
-    DrawKey seed;         // of the draws
+    float x, y;            // of D, in the base before [m]
+    float cosine, sine;    // of its turn
+    Heading turn;          // its turn
+    float noise[6];        // rows of the lower triangle L of the covariance L Lᵀ of w = (x, y, θ) [m, rad]
+    DrawKey seed;          // of the draws
     std::uint32_t number;  // of the step
 };
 

@@ -18,8 +18,8 @@ struct PoseBin {
 
 // How bins are cut.
 struct BinRule {
-    double side;       // of a square [m]
-    int sectors;       // of the full circle
+    double side;  // of a square [m]
+    int sectors;  // of the full circle
     PoseBin bin_of(double x, double y, Heading heading) const {
         constexpr double farthest = 1e9;
         const auto index = [&](double at) {
@@ -40,9 +40,7 @@ class BinTable {
         return slot;
     }
     // −1 for a bin not seen.
-    int find(const PoseBin& bin) {
-        return bins_.empty() ? -1 : find_slot(bin);
-    }
+    int find(const PoseBin& bin) { return bins_.empty() ? -1 : find_slot(bin); }
     std::size_t size() const { return bins_.size(); }
     const PoseBin& operator[](std::size_t number) const { return bins_[number]; }
 

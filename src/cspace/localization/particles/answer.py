@@ -16,9 +16,8 @@ from cspace.tables import show_fields
 @show_fields
 @dataclass(frozen=True)
 class MapLocalizationStats:
-    """What a filter did: measurements used, those in which nothing was seen, and those outside of the odometry;
-    searches of the map; the mean number of particles (or cells) and the mean score of the best; seconds of
-    wall time."""
+    """What a filter did: measurements used, those without returns, and those outside of the odometry;
+    searches of the map; the mean number of particles (or cells) and the mean score of the best; seconds."""
 
     updates: int
     blind: int

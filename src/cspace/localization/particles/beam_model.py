@@ -9,11 +9,10 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.localization.sensors import LaserScanner
+from cspace.tolerances import LEAST_LIKELIHOOD
 
 CELL: Final = 0.05
 """Between two tabulated ranges [m], the side of the cells of usual maps."""
-LEAST_LIKELIHOOD: Final = 1e-12
-"""What no reading is less likely than [1/m]: a logarithm that is finite."""
 
 
 class BeamTable:
@@ -26,7 +25,7 @@ class BeamTable:
     def __init__(self, scanner: LaserScanner) -> None:
         self.most = scanner.most_range
         self.count = int(np.ceil(self.most / CELL)) + 1
-        walls = CELL * np.arange(self.count + 1)
+        walls: Array = CELL * np.arange(self.count + 1, dtype=np.float64)
         z = walls[: self.count]
         hit, short, none, rand = scanner.shares
         density = np.full((len(walls), self.count + 1), rand / self.most)
@@ -42,13 +41,16 @@ class BeamTable:
         none = np.isnan(measured) | (measured >= self.most)
         columns = np.where(none, self.count, np.round(np.where(none, 0.0, measured) / CELL))
         rows = np.minimum(np.round(walls / CELL), self.count)
-        return self.logs[rows.astype(np.int64), columns.astype(np.int64)]
+        found: Array = self.logs[rows.astype(np.int64), columns.astype(np.int64)]
+        return found
 
 
 def density_of_hits(z: Array, walls: Array, scanner: LaserScanner) -> Array:
     """Densities [1/m] of ends on the wall (w, z); none where the wall is out of reach."""
     sigma, most = scanner.range_sigma, scanner.most_range
-    share = np.array([0.5 * (erf((most - w) / (sigma * sqrt(2))) + erf(w / (sigma * sqrt(2)))) for w in walls])
+    share = np.array(
+        [0.5 * (erf((most - w) / (sigma * sqrt(2))) + erf(w / (sigma * sqrt(2)))) for w in walls]
+    )
     normal = np.exp(-0.5 * ((z - walls[:, None]) / sigma) ** 2) / (sigma * sqrt(2 * np.pi))
     return np.where(walls[:, None] < most, normal / np.maximum(share, LEAST_LIKELIHOOD)[:, None], 0.0)
 

@@ -19,14 +19,19 @@ from cspace.localization.filters.rows import (
     relate_rows,
 )
 from cspace.localization.particles.models import FEWEST_BEAMS, ScanModel
-from cspace.localization.particles.particle_filter import FULL_STEP, OTHER_SHARE, STANDING, measure_step, read_motion
+from cspace.localization.particles.particle_filter import (
+    FULL_STEP,
+    OTHER_SHARE,
+    measure_step,
+    read_motion,
+)
 from cspace.localization.particles.placing import FreePlaces
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner
 from cspace.maps import ByteField
-from cspace.mobile import MotionNoise
 from cspace.spatial import as_pose_2d, log_se2, pose_2d, rotation_2d, to_xytheta
 from cspace.tables import count_things, one_line
+from cspace.tolerances import LEAST_OF_BEST, STANDING, UNIFORM_SHARE
 
 MOST_CELLS: Final = 4_000_000
 """The most cells: a second per update with 60 beams."""
@@ -36,9 +41,6 @@ LISTED_MODES: Final = 5
 """The most modes that are listed."""
 LEAST_SHARE: Final = 0.01
 """Share of the probability from which a mode is listed."""
-UNIFORM: Final = 1e-6
-"""Share of the probability that each update spreads over all free cells, so that a robot that was carried
-away is found again."""
 BLUR_REACH: Final = 3.0
 """Standard deviations at which the blur of a step is cut off."""
 NARROWEST_BLUR: Final = 0.3
@@ -92,8 +94,8 @@ class HistogramFilter:
         columns, rows = np.ceil((high - low) / self.side).astype(int)
         if rows * columns * self.sectors > MOST_CELLS:
             raise InputError(
-                f"{rows} × {columns} × {self.sectors} cells are more than {MOST_CELLS}; give a coarser resolution"
-                " or fewer headings"
+                f"{rows} × {columns} × {self.sectors} cells are more than {MOST_CELLS}; give a coarser"
+                " resolution or fewer headings"
             )
         x, y = low[0] + self.side * (np.arange(columns) + 0.5), low[1] + self.side * (np.arange(rows) + 0.5)
         theta = (np.arange(self.sectors) + 0.5) * (2 * np.pi / self.sectors) - np.pi
@@ -111,7 +113,11 @@ class HistogramFilter:
         shape = np.shape(start)
         pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
         self._places.check_start(pose)
-        P = np.diag([0.01, 0.01, 0.0025]) if covariance is None else one_array(covariance, "start_covariance", (3, 3))
+        P = (
+            np.diag([0.01, 0.01, 0.0025])
+            if covariance is None
+            else one_array(covariance, "start_covariance", (3, 3))
+        )
         cell = 2 * np.pi / self.sectors
         P = P + np.diag([self.side**2, self.side**2, cell**2]) / 12
         xi = find_twist(pose, self._centers)
@@ -170,14 +176,14 @@ class HistogramFilter:
         if share <= STANDING / FULL_STEP:
             return
         self._since = np.zeros(3)
-        prior = (1 - UNIFORM) * self.belief + UNIFORM * self._free / self._free.sum()
+        prior = (1 - UNIFORM_SHARE) * self.belief + UNIFORM_SHARE * self._free / self._free.sum()
         logs = share * exponent * self.model.nats * 255.0 * len(used) * (scores - scores.max())
-        self.belief = prior * np.exp(logs) * np.where(self._free > 0, 1.0, UNIFORM)
+        self.belief = prior * np.exp(logs) * np.where(self._free > 0, 1.0, UNIFORM_SHARE)
         self.belief /= self.belief.sum()
 
     @property
     def modes(self) -> tuple[PoseMode, ...]:
-        """The best cells with what lies around them, of at least 1 % of the probability, the heaviest first."""
+        """The best cells with what lies around them, of 1 % of the probability or more, heaviest first."""
         if self._found is None:
             self._found = find_modes(self.belief, self._centers)
         return tuple(self._found)
@@ -205,8 +211,8 @@ class HistogramFilter:
 
     @property
     def status(self) -> str:
-        """"localised", "ambiguous" where other modes have much of the probability, "lost" before the first
-        scan."""
+        """One of "localised"; "ambiguous", with much of the probability in other modes; "lost", before the
+        first scan."""
         if not self.updates and not self._is_known:
             return "lost"
         first, *others = self.modes
@@ -217,14 +223,15 @@ class HistogramFilter:
     @property
     def reason(self) -> str:
         """The status as one sentence."""
-        return f"{count_things(len(self.modes), 'mode')}, the heaviest with {self.modes[0].share:.0%} of the probability"
+        listed = count_things(len(self.modes), "mode")
+        return f"{listed}, the heaviest with {self.modes[0].share:.0%} of the probability"
 
     def __bool__(self) -> bool:
         return self.status == "localised"
 
     def __len__(self) -> int:
         """How many cells there are."""
-        return self.belief.size
+        return int(self.belief.size)
 
     def __repr__(self) -> str:
         return one_line("HistogramFilter", f"{len(self)} cells: {self.status}, {self.reason}")
@@ -241,7 +248,9 @@ def shift_axis(values: Array, by: float, axis: int, *, wraps: bool = False) -> A
     end."""
     whole = int(np.floor(by))
     part = by - whole
-    return (1 - part) * roll_axis(values, whole, axis, wraps) + part * roll_axis(values, whole + 1, axis, wraps)
+    return (1 - part) * roll_axis(values, whole, axis, wraps) + part * roll_axis(
+        values, whole + 1, axis, wraps
+    )
 
 
 def roll_axis(values: Array, by: int, axis: int, wraps: bool) -> Array:
@@ -285,7 +294,3 @@ def find_modes(belief: Array, poses: Array) -> list[PoseMode]:
         modes.append(PoseMode(pose, (w[:, None] * away).T @ away, share))
         weights, poses = weights[~near], poses[~near]
     return sorted(modes, key=lambda mode: -mode.share)
-
-
-LEAST_OF_BEST: Final = 1e-4
-"""Probability over that of the best cell below which a cell belongs to no mode."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Any, Protocol
@@ -84,11 +83,13 @@ def localize_on_map(
     Q = np.zeros((len(split.times), 3, 3))
     Q[1:] = made.noise.covariance(split.steps, split.durations)
     steps, noise = follow_anchors(split.dead_reckoning().poses, Q, anchors)
-    here = dict.fromkeys(map(int, anchors), ())
+    here: dict[int, tuple[int, ...]] = {int(anchor): () for anchor in anchors}
     for at, which in zip(node, np.flatnonzero(inside), strict=True):
         here[int(at)] = (*here[int(at)], int(which))
     passed = run_filter(made, split.times, steps, noise, here, measurements, begun, limit)
-    return report_passage(name, split.times, made, passed, int(np.count_nonzero(~inside)), perf_counter() - begun)
+    return report_passage(
+        name, split.times, made, passed, int(np.count_nonzero(~inside)), perf_counter() - begun
+    )
 
 
 def list_measurements(log: Log, grid: Any, sensor: Any) -> tuple[Array, Any]:
@@ -100,7 +101,7 @@ def list_measurements(log: Log, grid: Any, sensor: Any) -> tuple[Array, Any]:
         times, first = np.unique(readings.times, return_index=True)
         ends = np.append(first[1:], len(readings))
         delay = sensor.delay if isinstance(sensor, RangeBearing) else 0.0
-        return times - delay, lambda k: readings.subset(np.arange(first[k], ends[k]))
+        return times - delay, lambda k: readings.subset(np.arange(int(first[k]), int(ends[k])))
     scans = log.scans
     if scans is None or not len(scans):
         raise InputError("the log has no scans; give Landmarks for its readings")
@@ -123,7 +124,9 @@ def run_filter(
     last = 0
     for count, (anchor, which) in enumerate(here.items()):
         if limit is not None and perf_counter() - begun > limit:
-            raise TimeLimitError(f"the filter reached {count} of {len(here)} measurements within its time_limit")
+            raise TimeLimitError(
+                f"the filter reached {count} of {len(here)} measurements within its time_limit"
+            )
         if anchor:
             between = slice(last + 1, anchor + 1)
             A = adjoin_rows(relate_rows(steps[between], ORIGIN))
@@ -131,12 +134,16 @@ def run_filter(
             passed.covariances[between] = carry_covariance(A, passed.covariances[last] + noise[between])
             passed.lost[between], passed.ambiguous[between] = passed.lost[last], passed.ambiguous[last]
             made.predict(
-                steps[anchor], float(times[anchor] - times[last]), covariance=carry_covariance(A[-1], noise[anchor])
+                steps[anchor],
+                float(times[anchor] - times[last]),
+                covariance=carry_covariance(A[-1], noise[anchor]),
             )
         for row in which:
             made.score = float("nan")
             made.update(measurements(row))
-            passed.nodes.append(anchor), passed.scores.append(made.score), passed.sizes.append(len(made))
+            passed.nodes.append(anchor)
+            passed.scores.append(made.score)
+            passed.sizes.append(len(made))
         mode, status = made.modes[0], made.status
         passed.poses[anchor], passed.covariances[anchor] = mode.pose, mode.covariance
         passed.lost[anchor], passed.ambiguous[anchor] = status == "lost", status == "ambiguous"

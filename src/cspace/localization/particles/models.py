@@ -15,7 +15,9 @@ from cspace.localization.particles.beam_model import BeamTable
 from cspace.localization.particles.thinning import read_ends, thin_ends
 from cspace.localization.scans.search import search_pose
 from cspace.localization.sensors import LaserScanner, RangeBearing
-from cspace.maps import ByteField, cast_rays
+from cspace.maps import ByteField, OccupancyGrid, cast_rays
+from cspace.spatial import rotation_2d
+from cspace.tolerances import FALSE_READINGS
 
 FEWEST_BEAMS: Final = 5
 """Ends below which a scan tells nothing: fewer fit anywhere."""
@@ -25,8 +27,10 @@ MOST_PLACES: Final = 3
 """Places found on the map that get particles."""
 BEAM_MODEL_PARTICLES: Final = 500
 """The most particles of the beam model: each ray takes a third of a microsecond."""
-FALSE_READINGS: Final = 1e-3
-"""Likelihood of a reading of a landmark that no landmark explains, over that of a perfect one."""
+NEW_SCORE: Final = 0.5
+"""The score (0 … 1) below which an end in an unknown cell belongs to no known wall."""
+WALL_SLACK: Final = 0.3
+"""How far before an end [m] a wall may stand that it does not lie behind of: errors of pose and map."""
 
 
 class CloudModel(Protocol):
@@ -37,6 +41,9 @@ class CloudModel(Protocol):
 
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
         """Weighs by a share of the evidence; the score of the best particle, None where nothing was seen."""
+
+    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
+        """The score without what the map cannot know, and the share of the measurement that this is."""
 
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """Poses (k, 3) that fit a measurement better than a score, the best first."""
@@ -49,7 +56,14 @@ class ScanModel:
 
     def __init__(self, grid: Any, scanner: LaserScanner) -> None:
         self.scanner = scanner
-        self.field = grid if isinstance(grid, ByteField) else grid.likelihood_field(scanner.sigma, scanner.floor)
+        # Unknown cells are free here: the far side of a wall is unknown, and beams end there.
+        self.known = getattr(grid, "known", None)
+        self.walls = None if isinstance(grid, ByteField) else find_walls(grid)
+        if isinstance(grid, ByteField):
+            self.field = grid
+        else:
+            assert self.walls is not None
+            self.field = self.walls.likelihood_field(scanner.sigma, scanner.floor)
         field = self.field
         self.map = _core.ScoreMap(field.scores, field.resolution, tuple(field.origin), field.outside)
         self.free = find_free_cells(grid, field)
@@ -58,7 +72,7 @@ class ScanModel:
         if scanner.model == "beam":
             if isinstance(grid, ByteField):
                 raise InputTypeError("the beam model casts rays; give a grid in place of a ByteField")
-            self.table, self.grid = BeamTable(scanner), grid.to_grid()
+            self.table, self.grid = BeamTable(scanner), self.walls
 
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
         """Weighs by the field or along the rays; the score is that of the field in both."""
@@ -94,13 +108,40 @@ class ScanModel:
         exponent = self.scanner.independent / max(self.scanner.beams, int(keep.sum()))
         return exponent * np.asarray(self.table.find(measured[keep], walls[:, keep]).sum(axis=1))
 
+    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
+        """The score (0 … 1) at a pose without the beams that end in unknown cells behind no wall, and their
+        share.
+
+        A robot that drives off its map sees what the map does not know; one that was carried away sees
+        through walls, and no walls where there are some.
+        """
+        if self.known is None:
+            return score, 0.0
+        ends = self.read_ends(measurement)
+        used, _ = self.choose_ends(ends)
+        p = used @ rotation_2d(pose[2]).T + pose[:2]
+        cells = np.floor((p - self.field.origin) / self.field.resolution).astype(int)
+        inside = ((cells >= 0) & (cells < self.known.shape[::-1])).all(axis=1)
+        columns, rows = np.where(inside[:, None], cells, 0).T
+        scores = np.where(inside, self.field.scores[rows, columns], 0) / 255.0
+        is_new = (~inside | ~self.known[rows, columns]) & (scores < NEW_SCORE)
+        away = p[is_new] - pose[:2]
+        far = np.hypot(away[:, 0], away[:, 1])
+        reach = cast_rays(self.walls, pose[:2], np.arctan2(away[:, 1], away[:, 0]))
+        excused = np.flatnonzero(is_new)[reach >= far - WALL_SLACK]
+        counted = np.delete(scores, excused)
+        unknown = len(excused) / len(scores)
+        return max(score, float(counted.mean()) if len(counted) else 0.0), unknown
+
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """The best separate poses on the whole map."""
         ends = self.read_ends(measurement)
         if len(ends) < FEWEST_BEAMS:
             return np.empty((0, 3))
         used = np.ascontiguousarray(ends[thin_ends(ends, SEARCH_BEAMS)])
-        return search_pose(used, self.field, most=MOST_PLACES, least_score=min(above, 1.0), free=self.free).poses
+        return search_pose(
+            used, self.field, most=MOST_PLACES, least_score=min(above, 1.0), free=self.free
+        ).poses
 
     def read_ends(self, measurement: Any) -> Array:
         """The ends (m, 2) in base of one scan, or the points (m, 2) given."""
@@ -109,6 +150,13 @@ class ScanModel:
                 raise InputError(f"update takes one scan, and these are {len(measurement)}; give scans[k]")
             return read_ends(measurement, 0, self.scanner.least_range, self.scanner.most_range)[0]
         return one_array(measurement, "scan", (None, 2), "ends of beams in base [m]")
+
+
+def find_walls(grid: Any) -> OccupancyGrid:
+    """The cells that are known to be blocked."""
+    walls = grid.to_grid(unknown="free") if hasattr(grid, "known") else grid.to_grid()
+    assert isinstance(walls, OccupancyGrid)
+    return walls
 
 
 def find_free_cells(grid: Any, field: ByteField) -> npt.NDArray[np.bool_] | None:
@@ -167,6 +215,10 @@ class SightingModel:
         c, s = np.cos(theta), np.sin(theta)
         return np.stack([x - c * mx + s * my, y - s * mx - c * my, theta], axis=-1)
 
+    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
+        """The score itself: a map of landmarks has no unknown parts."""
+        return score, 0.0
+
     def read(self, measurement: Any) -> Readings:
         """The readings, checked."""
         if not isinstance(measurement, Readings):
@@ -184,11 +236,14 @@ def make_model(grid: Any, sensor: LaserScanner | RangeBearing | None) -> ScanMod
     """The model of a sensor on a map. Raises InputTypeError for a map and a sensor that do not fit."""
     if isinstance(grid, Landmarks):
         if sensor is not None and not isinstance(sensor, RangeBearing):
-            raise InputTypeError(f"a map of landmarks needs sensor=RangeBearing(…), not {type(sensor).__name__}")
+            raise InputTypeError(
+                f"a map of landmarks needs sensor=RangeBearing(…), not {type(sensor).__name__}"
+            )
         return SightingModel(grid, sensor or RangeBearing())
     if not isinstance(grid, ByteField) and not hasattr(grid, "likelihood_field"):
         raise InputTypeError(
-            f"grid is a {type(grid).__name__}; give an OccupancyGrid, an EvidenceGrid, a ByteField or Landmarks"
+            f"grid is a {type(grid).__name__}; give an OccupancyGrid, an EvidenceGrid, a ByteField or"
+            " Landmarks"
         )
     if sensor is not None and not isinstance(sensor, LaserScanner):
         raise InputTypeError(f"a grid needs sensor=LaserScanner(…), not {type(sensor).__name__}")

@@ -1,4 +1,4 @@
-"""The particle filter: moves particles by odometry, weighs them by measurements, and finds the robot again."""
+"""The particle filter: moves particles by odometry, weighs them, and finds a lost robot again."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_generator, bounded_number, one_array, whole_number
 from cspace.errors import InputError, InputTypeError
-from cspace.localization.filters.rows import follow_rows, relate_rows
+from cspace.localization.filters.rows import find_twist, follow_rows
 from cspace.localization.particles.models import (
     BEAM_MODEL_PARTICLES,
     ScanModel,
     make_model,
 )
 from cspace.localization.particles.placing import FreePlaces, spread_poses
-from cspace.localization.particles.recovery import GAIN, LEAST_SCORE, ScoreMonitor
+from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
-from cspace.spatial import as_pose_2d, log_se2, pose_2d, to_xytheta
+from cspace.spatial import as_pose_2d, to_xytheta
 from cspace.tables import count_things, one_line
+from cspace.tolerances import STANDING
 
 PARTICLES: Final = 1000
 """The least number of particles unless given."""
@@ -39,20 +40,23 @@ SIZE_QUANTILE: Final = 2.326
 FULL_STEP: Final = 0.1
 """After this distance [m], or turn [rad], a measurement counts wholly; after less for less: the errors of
 measurements from one place are the same."""
-STANDING: Final = 1e-3
-"""A distance [m] or turn [rad] below which the robot stands: the jitter of odometry at rest."""
 LONGEST_STEP: Final = 0.1
 """Length [m] or turn [rad] of odometry that is added to particles at once."""
 START_DEVIATIONS: Final = (0.1, 0.1, 0.05)
-"""Standard deviations of a start [m, m, rad] unless given, and around places found on the map."""
-OTHER_SHARE: Final = 0.1
+"""Standard deviations of a start [m, m, rad] unless given."""
+PLACE_DEVIATIONS: Final = (0.05, 0.05, 0.02)
+"""Standard deviations around places found on the map [m, m, rad]: a cell, and a step of its headings."""
+OTHER_SHARE: Final = 0.15
 """Share of the weight of a second mode from which the place is ambiguous."""
 LISTED_SHARE: Final = 0.01
 """Share of the weight from which a mode is listed."""
 WIDEST: Final = (1.0, 0.5)
 """Standard deviations of the position [m] and heading [rad] beyond which the place is ambiguous."""
-FRESH_UPDATES: Final = 3
-"""Measurements after a search that count wholly, even where the robot stands."""
+FRESH_UPDATES: Final = 5
+"""Measurements after a search that count wholly, even where the robot stands, and with more particles."""
+SEARCH_GROWTH: Final = 5
+"""How many times the least number of particles there are in these updates, at most: of each place many must
+be near the pose that fits best, or places that look alike get weights by chance."""
 
 
 class ParticleFilter:
@@ -95,7 +99,8 @@ class ParticleFilter:
         self._cloud = _core.ParticleCloud(largest, int(self._rng.integers(2**63)))
         self._monitor = ScoreMonitor(self.model.threshold)
         self._pending, self._since, self._seconds, self._path = np.zeros(3), np.zeros(3), 0.0, 0.0
-        self._fresh = FRESH_UPDATES
+        self._fresh = FRESH_UPDATES if start is None else 1
+        self._grown = min(largest, SEARCH_GROWTH * self.least)
         self._found: list[PoseMode] | None = None
         self.updates, self.score = 0, float("nan")
         self._events: list[FilterEvent] = []
@@ -147,17 +152,18 @@ class ParticleFilter:
             self._seconds = 0.0
             return
         if covariance is None:
-            xi = log_se2(pose_2d(xytheta=self._pending))
+            xi = find_twist(np.zeros(3), self._pending)
             covariance = self.noise.covariance(xi, self._seconds)
         self._cloud.move(self._pending, np.ascontiguousarray(covariance).ravel(), self.threads)
         self._pending, self._seconds = np.zeros(3), 0.0
         self._found = None
 
     def update(self, scan: Any) -> None:
-        """Weighs the particles by a measurement: one scan of Scans, ends of beams in base (m, 2), or Readings.
+        """Weighs the particles by a measurement: one scan of Scans, ends of beams in base (m, 2), or
+        Readings.
 
-        Looks for other places where it fits nowhere, and resamples where few particles have the weight. A scan
-        without returns changes nothing.
+        Looks for other places where it fits nowhere, and resamples where few particles have the weight. A
+        scan without returns changes nothing.
         """
         self._move()
         share = min(1.0, measure_step(self._since) / FULL_STEP)
@@ -172,35 +178,47 @@ class ParticleFilter:
         self._fresh = max(self._fresh - 1, 0)
         if share > 0:
             self._since = np.zeros(3)
-        if self.recover and (self.is_searching or self._monitor.wants_search(score)):
-            self._search(scan, score)
+        unknown = 0.0
+        if score < self._monitor.threshold and not self.is_searching:
+            score, unknown = self.model.judge(scan, self.pose, score)
+        says_something = unknown < MOST_UNKNOWN
+        if says_something:
+            self._monitor.see(score)
+        is_low = says_something and self._monitor.wants_search(score)
+        if self.recover and (self.is_searching or is_low):
+            self._search(scan, score, unknown)
         elif share > 0:
             self._resample()
-        self._monitor.add(score, share > 0 and self.status == "localised")
+        if says_something:
+            self._monitor.add(score, share > 0 and self.status == "localised")
         self._note_status()
 
     def _resample(self) -> None:
         cloud = self._cloud
         if cloud.effective_count() < 0.5 * len(cloud):
-            cloud.resample(self.least, SIZE_ERROR, SIZE_QUANTILE)
+            needs_more = self._fresh or self._was == "ambiguous"
+            least = self._grown if needs_more else self.least
+            cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
 
-    def _search(self, scan: Any, score: float) -> None:
+    def _search(self, scan: Any, score: float, unknown: float) -> None:
         """Puts half of the particles on the best other places, at the start all of them."""
         is_start, self.is_searching = self.is_searching, False
-        above = LEAST_SCORE if is_start else max(LEAST_SCORE, score + GAIN)
+        above = LEAST_SCORE if is_start else self._monitor.least_of_places(score, unknown)
         poses = self.model.search(scan, above, self._rng)
         self._monitor.note_search(len(poses))
-        self._events.append(FilterEvent(self.updates, "search" if len(poses) else "no place", score, len(poses)))
+        self._events.append(
+            FilterEvent(self.updates, "search" if len(poses) else "no place", score, len(poses))
+        )
         if not len(poses):
             self.is_searching = is_start
             return
         cloud = self._cloud
-        P = np.diag(np.square(START_DEVIATIONS))
+        P = np.diag(np.square(PLACE_DEVIATIONS))
         if is_start:
-            cloud.place(spread_poses(cloud, poses, P, self._places, self.least))
+            cloud.place(spread_poses(cloud, poses, P, self._places, self._grown))
             self.model.weigh(cloud, scan, 1.0, self.threads)
         else:
-            cloud.resample(self.least, SIZE_ERROR, SIZE_QUANTILE)
+            cloud.resample(self._grown, SIZE_ERROR, SIZE_QUANTILE)
             kept = cloud.poses()[::2]
             added = spread_poses(cloud, poses, P, self._places, len(cloud) - len(kept))
             cloud.place(np.ascontiguousarray(np.concatenate([kept, added])))
@@ -222,9 +240,7 @@ class ParticleFilter:
             poses, covariances, shares = self._cloud.find_modes()
             poses = follow_rows(poses, self._pending)
             P = covariances.reshape(-1, 3, 3)
-            listed = [
-                PoseMode(*each) for each in zip(poses, P, map(float, shares), strict=True)
-            ]
+            listed = [PoseMode(*each) for each in zip(poses, P, map(float, shares), strict=True)]
             self._found = [mode for k, mode in enumerate(listed) if not k or mode.share >= LISTED_SHARE]
         return tuple(self._found)
 
@@ -255,9 +271,9 @@ class ParticleFilter:
 
     @property
     def status(self) -> str:
-        """"localised", "ambiguous" where there are several modes or a wide one, "lost" where measurements do
+        """One of "localised"; "ambiguous", with several modes or a wide one; "lost", where measurements do
         not fit."""
-        if self.is_searching and (self.updates or self.recover) or self._monitor.is_lost:
+        if (self.is_searching and (self.updates or self.recover)) or self._monitor.is_lost:
             return "lost"
         first, *others = self.modes
         far, turned = first.spread
@@ -274,7 +290,9 @@ class ParticleFilter:
                 return "nothing was measured yet, and the start is unknown"
             return f"the best particle scores {self.score:.2f}, below {self._monitor.threshold:.2f}"
         if status == "ambiguous":
-            return f"{count_things(len(self.modes), 'mode')}, the heaviest with {first.share:.0%} of the weight"
+            return (
+                f"{count_things(len(self.modes), 'mode')}, the heaviest with {first.share:.0%} of the weight"
+            )
         far, turned = first.spread
         return f"within {far:.2f} m and {np.degrees(turned):.1f}° (1σ), score {self.score:.2f}"
 
@@ -300,7 +318,8 @@ def read_motion(motion: Any | None) -> MotionNoise:
         return RandomWalk()
     if not hasattr(motion, "covariance"):
         raise InputTypeError(
-            f"motion is a {type(motion).__name__}; give a model of noise such as cspace.mobile.RandomWalk, or a vehicle"
+            f"motion is a {type(motion).__name__}; give a model of noise such as cspace.mobile.RandomWalk, or"
+            " a vehicle"
         )
     model: MotionNoise = motion
     return model
@@ -311,11 +330,17 @@ def read_sizes(model: Any, n: int | None, most: int | None) -> tuple[int, int]:
     limit = MOST_PARTICLES
     if isinstance(model, ScanModel) and model.table is not None:
         limit = BEAM_MODEL_PARTICLES
-    note = "the beam model casts a ray per beam; model='likelihood_field' takes more" if limit < PARTICLES else ""
+    note = (
+        "the beam model casts a ray per beam; model='likelihood_field' takes more"
+        if limit < PARTICLES
+        else ""
+    )
     least = whole_number(min(PARTICLES, limit) if n is None else n, "n", 1, limit, note or "fewer are enough")
     if most is None:
         return least, max(least, min(GROWTH * least, GROWN_PARTICLES, limit))
     largest = whole_number(most, "most", 1, limit, note)
     if largest < least:
-        raise InputError(f"most is {largest} and n {least}; the most particles cannot be fewer than the least")
+        raise InputError(
+            f"most is {largest} and n {least}; the most particles cannot be fewer than the least"
+        )
     return least, largest

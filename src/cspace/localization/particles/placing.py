@@ -57,14 +57,18 @@ class FreePlaces:
         cells = np.floor((points - self.low) / self.side)[:, ::-1]
         inside = ((cells >= 0) & (cells < self.blocked.shape)).all(axis=1)
         rows, columns = np.where(inside[:, None], cells, 0).astype(int).T
-        return inside & ~self.blocked[rows, columns]
+        free: npt.NDArray[np.bool_] = inside & ~self.blocked[rows, columns]
+        return free
 
     def find_coarse_cells(self, side: float, shape: tuple[int, int]) -> npt.NDArray[np.bool_]:
         """Which larger cells of a side [m], from the same corner, hold a free cell: (rows, columns)."""
         assert self.blocked is not None
         rows, columns = np.nonzero(~self.blocked)
         coarse = np.zeros(shape, dtype=bool)
-        at = [np.minimum(((k + 0.5) * self.side / side).astype(int), n - 1) for k, n in zip((rows, columns), shape, strict=True)]
+        at = [
+            np.minimum(((k + 0.5) * self.side / side).astype(int), n - 1)
+            for k, n in zip((rows, columns), shape, strict=True)
+        ]
         coarse[at[0], at[1]] = True
         return coarse
 
@@ -75,14 +79,16 @@ class FreePlaces:
             return
         if not ((pose[:2] >= self.low) & (pose[:2] <= self.high)).all():
             spans = f"x {self.low[0]:g} … {self.high[0]:g}, y {self.low[1]:g} … {self.high[1]:g} [m]"
-            raise InputError(f"start ({x:g}, {y:g}) is off the map, which spans {spans}; give start=None to search")
+            raise InputError(
+                f"start ({x:g}, {y:g}) is off the map, which spans {spans}; give start=None to search"
+            )
         reach = np.arange(-START_SLACK, START_SLACK + self.side, min(self.side, START_SLACK))
         around = np.stack(np.meshgrid(reach, reach), axis=-1).reshape(-1, 2)
         near = pose[:2] + around[np.hypot(*around.T) <= START_SLACK]
         if not self.are_free(np.concatenate([pose[None, :2], near])).any():
             raise InputError(
-                f"start ({x:g}, {y:g}) lies in a wall, {START_SLACK:g} m or more from the free cells; move it, or"
-                " give start=None to search"
+                f"start ({x:g}, {y:g}) lies in a wall, {START_SLACK:g} m or more from free cells; move it,"
+                " or give start=None to search"
             )
 
 

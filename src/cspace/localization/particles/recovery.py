@@ -1,4 +1,4 @@
-"""When a particle filter doubts its place: scores of the best particle against those it had while localised."""
+"""When a particle filter is lost: scores of the best particle against those it had while localised."""
 
 from __future__ import annotations
 
@@ -18,10 +18,19 @@ LOST_SHARE: Final = 0.8
 """Part of the threshold below which scores count for that."""
 LONGEST_WAIT: Final = 8
 """Most updates between two searches of the map that find nothing better."""
-GAIN: Final = 0.05
-"""By how much the score of another place must exceed that of the best particle."""
+GAINS: Final = (0.2, 0.1)
+"""By how much the score of another place must exceed that of the best particle, over the number of suspicious
+scores in a row, and the least: being carried away is rare, so a first bad scan is not enough for a place that
+fits a bit better."""
 LEAST_SCORE: Final = 0.4
-"""The least score of another place."""
+"""The least score of a place at the start."""
+UNKNOWN_GAIN: Final = 0.5
+"""By how much more for each beam that sees what the map does not know, as a share of the scan: where the map
+ends, bad scores are to be expected."""
+MOST_UNKNOWN: Final = 0.6
+"""Share of such beams from which a scan says nothing."""
+PLACE_SHARE: Final = 0.9
+"""The least score of another place later, over the threshold: places of maps that look alike fit by half."""
 
 
 class ScoreMonitor:
@@ -30,7 +39,7 @@ class ScoreMonitor:
     def __init__(self, threshold: float) -> None:
         self.first = threshold
         self.scores: list[float] = []
-        self.bad = 0
+        self.bad, self.low = 0, 0
         self._threshold = threshold
         self._wait, self._pause = 0, 1
 
@@ -38,6 +47,16 @@ class ScoreMonitor:
     def threshold(self) -> float:
         """The score below which another place is looked for."""
         return self._threshold
+
+    def see(self, score: float) -> None:
+        """Counts a score before the decision to search."""
+        self.low = self.low + 1 if score < self._threshold else 0
+
+    def least_of_places(self, score: float, unknown: float) -> float:
+        """What another place must score, given the score here, and the share of beams that the map cannot
+        know."""
+        gain = max(GAINS[0] / max(self.low, 1), GAINS[1]) + UNKNOWN_GAIN * unknown
+        return max(PLACE_SHARE * self._threshold, score + gain)
 
     def add(self, score: float, is_localised: bool) -> None:
         """Takes note of the score of an update."""

@@ -11,8 +11,8 @@ from cspace.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class PoseMode:
-    """A cluster of particles. pose (3,): x, y [m], θ [rad]. covariance (3, 3) of the disturbance ξ of T exp ξ,
-    in base. share: its part of the weight, 0 … 1."""
+    """A cluster of particles. pose (3,): x, y [m], θ [rad]. covariance (3, 3) of ξ in T exp ξ, in base.
+    share: its part of the weight, 0 … 1."""
 
     pose: Array
     covariance: Array

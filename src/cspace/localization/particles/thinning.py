@@ -10,7 +10,8 @@ from cspace.arrays import Array
 from cspace.localization.log import Ids, Scans
 
 LONGEST_GAP: Final = 0.5
-"""Between the ends of two beams [m] what counts as seen: the rest of a longer gap was not."""
+"""Between the ends of two beams on one wall [m]: across a longer gap nothing was seen, and an end between two
+of them is more likely a false one, which counts like any other beam."""
 
 
 def read_ends(scan: Scans, row: int, least: float, most: float) -> tuple[Array, Ids]:
@@ -30,7 +31,9 @@ def thin_ends(ends: Array, most: int) -> Ids:
     """
     if len(ends) <= most:
         return np.arange(len(ends))
-    steps = np.minimum(np.hypot(*np.diff(ends, axis=0).T), LONGEST_GAP)
+    steps = np.hypot(*np.diff(ends, axis=0).T)
+    on_wall = steps <= LONGEST_GAP
+    steps[~on_wall] = np.median(steps[on_wall]) if on_wall.any() else LONGEST_GAP
     along = np.concatenate([[0.0], np.cumsum(steps)])
     rows = np.searchsorted(along, np.linspace(0.0, along[-1], most))
     return np.unique(np.minimum(rows, len(ends) - 1))
