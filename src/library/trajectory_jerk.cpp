@@ -57,8 +57,6 @@ class JerkTimer {
         over_parts([&](size_t begin, size_t end) {
             kernels::build_all_jerk_rows(path_, begin, end, rows_.data(), largest_.data());
         });
-        for (size_t i = 0; i < samples_.inverse_square.size(); ++i)
-            largest_[i / 3] = std::min(largest_[i / 3], 1.0 / std::max(samples_.inverse_square[i], 1.0 / no_end));
         start_ = find_end(options.start, length_.front());
         end_ = find_end(options.end, length_.back());
     }
@@ -66,8 +64,9 @@ class JerkTimer {
     JerkTiming solve() {
         JerkTiming timing{false, {}, 0.0, 0.0, 0.0, 0};
         if (!find_first_motion()) return timing;
-        const int sampled = path_.sampled.along ? 3 : 0;
-        const double rows = double(count_) * (2.0 * (2 * path_.degree + 3 + sampled) * padded_ + 6.0) + 2.0;
+        const double own = 2.0 / 3.0 * double(path_.own_rows());
+        const double sampled = 0.5 * double(path_.torque_rows() + path_.speed_rows());
+        const double rows = double(count_) * (own + sampled + 6.0) + 2.0;
         double weight = rows / (first_gap * seconds()), last = seconds();
         for (; timing.steps < most_steps; ++timing.steps) {
             double decrement;

@@ -25,9 +25,11 @@ struct JerkPath {
         return (intervals[i].to - intervals[i].from) * lengths[intervals[i].piece];
     }
     // Numbers of one interval: three factors of X for every row of the accelerations, then of the jerks; then
-    // three factors and an offset for the sampled limits at three places.
+    // three factors and an offset for the sampled limits at three places, and for the speed of a frame.
     std::size_t own_rows() const { return std::size_t(3 * (2 * degree + 3) * padded); }
-    std::size_t row_size() const { return own_rows() + (sampled.along ? std::size_t(12 * padded) : 0); }
+    std::size_t torque_rows() const { return sampled.along ? std::size_t(12 * padded) : 0; }
+    std::size_t speed_rows() const { return sampled.inverse_square ? std::size_t(4 * joint_padding) : 0; }
+    std::size_t row_size() const { return own_rows() + torque_rows() + speed_rows(); }
 };
 
 // The squared speed on an interval: its Bernstein coefficients, or changes of them.
@@ -92,6 +94,16 @@ CSPACE_INLINE void build_sampled_rows(const JerkPath& path, std::size_t i, doubl
         }
 }
 
+// The rows of the speed of a frame on interval i: Bernstein coefficients of the squared speed over its limit,
+// a product of two quadratic polynomials. Those of one pack are rows of one limit.
+CSPACE_INLINE void build_speed_rows(const JerkPath& path, std::size_t i, double* rows) {
+    constexpr ProductWeights<2, 2> weights;
+    for (int k = 0; k < 4 * joint_padding; ++k) rows[k] = 0.0;
+    for (int k = 0; k <= 2; ++k)
+        for (int a = 0; a <= 2; ++a)
+            rows[a * joint_padding + k + a] += weights.at[k][a] * path.sampled.inverse_square[3 * i + std::size_t(k)];
+}
+
 // The rows of interval i, each divided by its limit, and the largest squared speed that keeps the velocities.
 template <int m>
 inline double build_jerk_rows(const JerkPath& path, std::size_t i, double* rows) {
@@ -126,6 +138,7 @@ inline double build_jerk_rows(const JerkPath& path, std::size_t i, double* rows)
                       made[r][a] * (r < m + 2 ? per_acceleration : per_jerk));
     }
     if (path.sampled.along) build_sampled_rows(path, i, rows + path.own_rows());
+    if (path.sampled.inverse_square) build_speed_rows(path, i, rows + path.own_rows() + path.torque_rows());
     return (1.0 - rounding_share) / lane(largest_lanes(most), 0);
 }
 
@@ -175,16 +188,18 @@ CSPACE_INLINE void visit_rows(const JerkPath& path, const double* rows, const Sq
             visit(row, fill<V>(limit), fill<V>(limit), fall);
         }
     }
-    if (!path.sampled.along) return;
     const double still[3] = {0.0, 0.0, 0.0};
-    const double* sampled = rows + path.own_rows();
-    for (int part = 0; part < 3; ++part, sampled += 4 * path.padded)
-        for (int j = 0; j < path.padded; j += Lanes<V>::count) {
+    const auto visit_sampled = [&](const double* own, int width) {
+        for (int j = 0; j < width; j += Lanes<V>::count) {
             V row[3];
-            for (int a = 0; a < 3; ++a) row[a] = load<V>(sampled + a * path.padded + j);
-            const V offset = load<V>(sampled + 3 * path.padded + j);
+            for (int a = 0; a < 3; ++a) row[a] = load<V>(own + a * width + j);
+            const V offset = load<V>(own + 3 * width + j);
             visit(row, 1.0 + offset, 1.0 - offset, still);
         }
+    };
+    const double* sampled = rows + path.own_rows();
+    for (int part = 0; path.sampled.along && part < 3; ++part) visit_sampled(sampled + 4 * part * path.padded, path.padded);
+    if (path.sampled.inverse_square) visit_sampled(sampled + path.torque_rows(), joint_padding);
 }
 
 // The terms of the barriers of all rows of an interval.
