@@ -174,8 +174,8 @@ void bind_trajectory_timing(nb::module_& m) {
             JerkTiming timing;
             {
                 const nb::gil_scoped_release release;
-                timing = time_path_with_jerk(path, limits, {jerk.data, std::size_t(jerk.size)}, given, options,
-                                             samples);
+                timing = time_path_with_jerk(path, limits, {jerk.data, std::size_t(jerk.size)}, given,
+                                             options, samples);
             }
             return std::make_tuple(timing.found,
                                    Doubles({npy_intp(timing.squares.size() / 3), 3}, timing.squares.data()),

@@ -947,6 +947,11 @@ def make_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None
     Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
     """
 
+def find_roots(coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], begin: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], end: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], converged: float) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Roots (k, n - 1) of polynomials (k, n) on intervals begin, end (k,), ascending, then NaN.
+    """
+
 def move_plain(states: object, limits: object, bounds: object, farthest: float) -> tuple[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], float, bool] | None:
     """
     The fastest motion between two states, or None where arguments are not plain rows that can be asked.

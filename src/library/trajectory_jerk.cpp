@@ -43,8 +43,9 @@ class JerkTimer {
           acceleration_(invert_limits(limits.acceleration, padded_)),
           jerk_(invert_limits(jerk, padded_)) {
         for (size_t i = 0; i < count_; ++i) intervals_.push_back({grid.piece[i], grid.from[i], grid.to[i]});
-        path_ = {slope_degree(path),   padded_,      slopes_.data(),   path.lengths.data(), velocity_.data(),
-                 acceleration_.data(), jerk_.data(), intervals_.data(), show_samples(samples_)};
+        path_ = {slope_degree(path),  padded_,           slopes_.data(),
+                 path.lengths.data(), velocity_.data(),  acceleration_.data(),
+                 jerk_.data(),        intervals_.data(), show_samples(samples_)};
         for (size_t i = 0; i < count_; ++i) length_.push_back(path_.length(i));
         rows_ = Aligned(count_ * path_.row_size());
         largest_.resize(count_);

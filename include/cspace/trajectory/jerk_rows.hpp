@@ -68,7 +68,8 @@ CSPACE_INLINE void add_product(const V* p, const double (&parts)[n + 1][3], doub
         }
 }
 
-// The rows of the sampled limits at the begin, the middle and the end of interval i, each divided by its limit.
+// The rows of the sampled limits at the begin, the middle and the end of interval i, each divided by its
+// limit.
 CSPACE_INLINE void build_sampled_rows(const JerkPath& path, std::size_t i, double* rows) {
     using V = Pack<native_width>;
     const SampledLimits& given = path.sampled;
@@ -101,7 +102,8 @@ CSPACE_INLINE void build_speed_rows(const JerkPath& path, std::size_t i, double*
     for (int k = 0; k < 4 * joint_padding; ++k) rows[k] = 0.0;
     for (int k = 0; k <= 2; ++k)
         for (int a = 0; a <= 2; ++a)
-            rows[a * joint_padding + k + a] += weights.at[k][a] * path.sampled.inverse_square[3 * i + std::size_t(k)];
+            rows[a * joint_padding + k + a] +=
+                weights.at[k][a] * path.sampled.inverse_square[3 * i + std::size_t(k)];
 }
 
 // The rows of interval i, each divided by its limit, and the largest squared speed that keeps the velocities.
@@ -198,7 +200,8 @@ CSPACE_INLINE void visit_rows(const JerkPath& path, const double* rows, const Sq
         }
     };
     const double* sampled = rows + path.own_rows();
-    for (int part = 0; path.sampled.along && part < 3; ++part) visit_sampled(sampled + 4 * part * path.padded, path.padded);
+    for (int part = 0; path.sampled.along && part < 3; ++part)
+        visit_sampled(sampled + 4 * part * path.padded, path.padded);
     if (path.sampled.inverse_square) visit_sampled(sampled + path.torque_rows(), joint_padding);
 }
 
