@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -136,7 +136,7 @@ class SampledLimits:
         """Whether there are any."""
         return self.torque is not None or self.frame is not None
 
-    def __call__(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
+    def __call__(self, piece: Any, begin: Array, end: Array) -> Samples:
         """The samples at the begin, the middle and the end of each interval, as the core wants them."""
         along, across, offset, reversal, inverse = self._sample(piece, begin, end)
         limit = None if self.torque is None else self.torque.limit
@@ -207,21 +207,24 @@ class SampledLimits:
     def tighten_by(self, excess: Excess) -> bool:
         """Whether nothing is exceeded; else the limits are tightened where it is."""
         kept, (over, used) = True, excess
-        if self.torque is not None and over is not None:
-            if (over > LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)).any():
-                kept = False
-                own = np.zeros_like(over) if self.margin is None else self.margin
-                self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
-        if used is not None:
-            if (used > 1.0 + LIMIT_ROUNDING).any():
-                kept = False
-                own = np.ones_like(used) if self.slower is None else self.slower
-                self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
+        slack = 0.0 if self.torque is None else LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)
+        if over is not None and (over > slack).any():
+            kept = False
+            own = np.zeros_like(over) if self.margin is None else self.margin
+            self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
+        if used is not None and (used > 1.0 + LIMIT_ROUNDING).any():
+            kept = False
+            own = np.ones_like(used) if self.slower is None else self.slower
+            self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
         return kept
 
 
+Samples: TypeAlias = tuple[Array | None, Array | None, Array | None, Array | None, Array | None, Array | None]
+"""Along, across, offset, margin and limit of torques, and the inverse of the squared speed of a frame."""
+
+
 class Excess(NamedTuple):
-    """What a motion exceeds, by interval: torques beyond their limits (k, dof), shares used of a frame's (k,)."""
+    """By interval: how far torques are beyond their limits (k, dof), and what is used of a frame's (k,)."""
 
     torque: Array | None
     frame: Array | None

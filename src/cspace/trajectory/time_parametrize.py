@@ -142,7 +142,7 @@ class _Timer:
         self.arrays = path.control_points, path.lengths, path.stop_flags
 
     def run(self, count: int | None, kept: Limits | None) -> TimedPath:
-        """The fastest motion on a grid of so many intervals, or on one of its own; kept: limits of position."""
+        """The fastest motion on so many intervals, or on a grid of its own. kept: limits of position."""
         if kept is not None and (left := self.find_position_left(kept)) is not None:
             return left
         if (still := self.find_locked_joint()) is not None:

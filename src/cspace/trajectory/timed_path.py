@@ -308,7 +308,7 @@ def _find_binding(shares: Array) -> npt.NDArray[np.intp]:
 def _name_all(
     binding: npt.NDArray[np.intp], shares: Array, asked: npt.NDArray[np.bool_]
 ) -> npt.NDArray[np.intp]:
-    """The limit of each interval; where none binds that of the one before or after it, if it is asked for too.
+    """The limit of each interval; where none binds that of the one before or after, if that is asked for.
 
     Between two limits there are intervals that use neither fully.
     """
