@@ -158,6 +158,19 @@ TEST(axes_agree_on_the_first_common_duration) {
     }
 }
 
+// An axis that was brought within its limits holds an acceleration at first. In the shortest time the peak
+// and the trough of its motion are the same then, up to rounding: the state of one that took three seconds
+// too long.
+TEST(changes_that_begin_with_a_hold_are_continuous_at_the_shortest_time) {
+    const AxisLimits l{0.84246212965737044, -1.415109006900853, 0.43743038963598169, -1.7828526381723742,
+                       1.5595535797711897};
+    const VelocityChange q{l.v_max, l.a_min, -1.0186794066103662, -1.0565557110646093, l};
+    const AxisTask task = make_axis_task(q, -0.169312889146368);
+    CHECK_NEAR(find_farthest(q, task.domain.first).displacement, task.domain.displacement, 1e-12);
+    CHECK(find_farthest(q, task.domain.first).bend < 0);
+    CHECK_NEAR(minimum_time(task), 1.1401489959994, 1e-10);
+}
+
 // Rows of the library are solved in lanes; here each axis is solved alone.
 TEST(rows_in_lanes_are_the_axes_alone) {
     Random random{6};
