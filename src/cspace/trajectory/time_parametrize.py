@@ -79,13 +79,12 @@ def time_parametrize(
     limits allow it; `below_feed` lists where they do not. robot: whose dynamics and kinematics those need, by
     default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends.
     grid: about so many intervals; by default they are halved until that changes the duration by less than
-    `tolerance`, relative (0.001). Under jerk limits there are 30 of a piece, 150 or more, unless a tolerance
-    is given. positions: whether the path has to keep the limits of position of limits, too.
+    `tolerance`, relative (0.001). Under jerk limits 30 of a piece, 150 or more, unless a tolerance is given.
+    positions: whether the limits of position of limits count, too.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits, the path
-    leaves those of position, or the speeds at the ends are impossible.
-    Raises InputError for a wrong shape, NaN, negative limits, joints without a limit of acceleration, and
-    jerk limits on a path whose second derivative jumps.
+    leaves those of position, or the speeds at the ends are impossible. Raises InputError for a wrong shape,
+    NaN, negative limits, joints without one of acceleration, and jerk limits where the path's bend jumps.
     Source: Pham and Pham 2018, with bounds over whole intervals; a barrier method under jerk limits.
     """
     if not isinstance(path, Path):
