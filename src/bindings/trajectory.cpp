@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "arrays_in_place.hpp"
 #include "bindings.hpp"
+#include "library/trajectory_roots.hpp"
 #include "library/trajectory_states.hpp"
 
 namespace nb = nanobind;
@@ -133,6 +134,20 @@ void bind_trajectory(nb::module_& m) {
     m.def("make_pieces", &make_arrays, "states"_a, "limits"_a, "shortest"_a, "motions"_a, "duration"_a,
           "mode"_a,
           "Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).");
+    m.def(
+        "find_roots",
+        [](const Matrix& coefficients, const Row& begin, const Row& end, double converged) {
+            const std::size_t rows = coefficients.shape(0), terms = coefficients.shape(1);
+            require_sizes(terms > 0 && has_shape(begin, rows) && has_shape(end, rows));
+            Doubles roots({npy_intp(rows), npy_intp(terms - 1)});
+            {
+                const nb::gil_scoped_release release;
+                find_roots(coefficients.data(), begin.data(), end.data(), rows, terms, converged, roots.data);
+            }
+            return roots;
+        },
+        "coefficients"_a, "begin"_a, "end"_a, "converged"_a,
+        "Roots (k, n - 1) of polynomials (k, n) on intervals begin, end (k,), ascending, then NaN.");
     m.def(
         "move_plain", &move_plain, "states"_a, "limits"_a, "bounds"_a, "farthest"_a,
         "The fastest motion between two states, or None where arguments are not plain rows that can be asked."

@@ -66,6 +66,19 @@ std::vector<double> read_samples(const std::optional<ConstDoubles>& given, std::
     return {given->data, given->data + given->size};
 }
 
+TimingSamples read_all_samples(const SampleArrays& given, std::size_t count, std::size_t width) {
+    const std::size_t rows = std::get<0>(given) ? 3 * count * width : 0;
+    require_size(!rows || (std::get<1>(given) && std::get<2>(given) && std::get<4>(given)));
+    TimingSamples samples;
+    samples.along = read_samples(std::get<0>(given), rows);
+    samples.across = read_samples(std::get<1>(given), rows);
+    samples.offset = read_samples(std::get<2>(given), rows);
+    samples.margin = read_samples(std::get<3>(given), count * width);
+    samples.limit = read_samples(std::get<4>(given), width);
+    samples.inverse_square = read_samples(std::get<5>(given), 3 * count);
+    return samples;
+}
+
 // sample(piece, from, to) in Python, with the lock of the interpreter.
 Sampler make_sampler(const nb::object& sample, int joints) {
     if (sample.is_none()) return {};
@@ -74,17 +87,7 @@ Sampler make_sampler(const nb::object& sample, int joints) {
         const GridArrays arrays = show_grid(grid);
         const auto given =
             nb::cast<SampleArrays>(sample(std::get<0>(arrays), std::get<1>(arrays), std::get<2>(arrays)));
-        const std::size_t width = std::size_t(joints), count = grid.size();
-        const std::size_t rows = std::get<0>(given) ? 3 * count * width : 0;
-        require_size(!rows || (std::get<1>(given) && std::get<2>(given) && std::get<4>(given)));
-        TimingSamples samples;
-        samples.along = read_samples(std::get<0>(given), rows);
-        samples.across = read_samples(std::get<1>(given), rows);
-        samples.offset = read_samples(std::get<2>(given), rows);
-        samples.margin = read_samples(std::get<3>(given), count * width);
-        samples.limit = read_samples(std::get<4>(given), width);
-        samples.inverse_square = read_samples(std::get<5>(given), 3 * count);
-        return samples;
+        return read_all_samples(given, grid.size(), std::size_t(joints));
     };
 }
 
@@ -159,24 +162,27 @@ void bind_trajectory_timing(nb::module_& m) {
         [](const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops,
            const ConstDoubles& velocity, const ConstDoubles& acceleration, const ConstDoubles& jerk,
            const std::tuple<Integers, ConstDoubles, ConstDoubles>& grid, const std::array<double, 2>& start,
-           const std::array<double, 2>& end, double duration, double tolerance) {
+           const std::array<double, 2>& end, double duration, double tolerance,
+           const std::optional<SampleArrays>& sampled) {
             const TimingPath path = read_path(controls, lengths, stops);
             const TimingLimits limits = read_limits(path, velocity, acceleration);
             require_size(jerk.size == path.joints);
             const TimingGrid given = read_grid(path, std::get<0>(grid), std::get<1>(grid), std::get<2>(grid));
+            TimingSamples samples;
+            if (sampled) samples = read_all_samples(*sampled, given.size(), std::size_t(path.joints));
             const JerkOptions options = {{start[0], start[1]}, {end[0], end[1]}, duration, tolerance};
             JerkTiming timing;
             {
                 const nb::gil_scoped_release release;
-                timing =
-                    time_path_with_jerk(path, limits, {jerk.data, std::size_t(jerk.size)}, given, options);
+                timing = time_path_with_jerk(path, limits, {jerk.data, std::size_t(jerk.size)}, given,
+                                             options, samples);
             }
             return std::make_tuple(timing.found,
                                    Doubles({npy_intp(timing.squares.size() / 3), 3}, timing.squares.data()),
                                    timing.start_jerk, timing.end_jerk, timing.duration, timing.steps);
         },
         "controls"_a, "lengths"_a, "stops"_a, "velocity"_a, "acceleration"_a, "jerk"_a, "grid"_a, "start"_a,
-        "end"_a, "duration"_a, "tolerance"_a,
+        "end"_a, "duration"_a, "tolerance"_a, "sampled"_a.none(),
         "Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, "
         "seconds,"
         " steps.");

@@ -986,6 +986,11 @@ def make_pieces(states: Annotated[NDArray[numpy.float64], dict(shape=(2, 3, None
     Polynomials of one motion: knots (dof, k + 1), coefficients (dof, k, 4) and origins (dof, k).
     """
 
+def find_roots(coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], begin: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], end: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], converged: float) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Roots (k, n - 1) of polynomials (k, n) on intervals begin, end (k,), ascending, then NaN.
+    """
+
 def move_plain(states: object, limits: object, bounds: object, farthest: float) -> tuple[tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], float, bool] | None:
     """
     The fastest motion between two states, or None where arguments are not plain rows that can be asked.
@@ -1008,7 +1013,7 @@ def evaluate_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.
     Configurations (m, dof) and their first two derivatives at places (m,) within pieces (m,).
     """
 
-def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], jerk: numpy.typing.NDArray[numpy.float64], grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], start: numpy.typing.ArrayLike, end: numpy.typing.ArrayLike, duration: float, tolerance: float) -> tuple[bool, numpy.typing.NDArray[numpy.float64], float, float, float, int]:
+def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], jerk: numpy.typing.NDArray[numpy.float64], grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], start: numpy.typing.ArrayLike, end: numpy.typing.ArrayLike, duration: float, tolerance: float, sampled: tuple[numpy.typing.NDArray[numpy.float64] | None, numpy.typing.NDArray[numpy.float64] | None, numpy.typing.NDArray[numpy.float64] | None, numpy.typing.NDArray[numpy.float64] | None, numpy.typing.NDArray[numpy.float64] | None, numpy.typing.NDArray[numpy.float64] | None] | None) -> tuple[bool, numpy.typing.NDArray[numpy.float64], float, float, float, int]:
     """
     Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, seconds, steps.
     """

@@ -612,6 +612,10 @@ STILL_JOINT: Final = 1e-12
 """Slope of a joint along a path, relative to the largest one, up to which it does not move: a thousand
 roundings."""
 
+SHORTENED_PARTS: Final = (0.0, 1e-4, 1e-2, 0.1, 0.3, 0.6)
+"""Shares by which the followed part of a Cartesian path is shortened until a motion ends there: near a
+singular configuration joints move without bound on the last of it, and a chain may end before a search."""
+
 LAUNCH_PART: Final = 1e-6
 """Length of the launch of a motion from rest, relative to its path: it takes a hundredth of the time."""
 

@@ -34,5 +34,8 @@ inline int slope_degree(const TimingPath& path) { return path.degree <= 3 ? 2 : 
 Aligned find_slopes(const TimingPath& path, int degree, int padded);
 // 1 / limit, 0 where there is none and where the joint may not move.
 std::vector<double> invert_limits(std::span<const double> limits, int padded);
+// Sampled limits with padded joints, and as the kernels read them.
+TimingSamples pad_samples(TimingSamples samples, int joints, int padded);
+SampledLimits show_samples(const TimingSamples& samples);
 
 }  // namespace cspace::trajectory

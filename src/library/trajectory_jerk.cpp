@@ -33,17 +33,19 @@ double launch_factor(double jerk) { return 0.25 * jerk * jerk * std::pow(6.0 / j
 class JerkTimer {
   public:
     JerkTimer(const TimingPath& path, const TimingLimits& limits, std::span<const double> jerk,
-              const TimingGrid& grid, const JerkOptions& options)
+              const TimingGrid& grid, const JerkOptions& options, const TimingSamples& samples)
         : options_(options),
           count_(grid.size()),
           padded_(padded_joints(path.joints)),
+          samples_(pad_samples(samples, path.joints, padded_)),
           slopes_(find_slopes(path, slope_degree(path), padded_)),
           velocity_(invert_limits(limits.velocity, padded_)),
           acceleration_(invert_limits(limits.acceleration, padded_)),
           jerk_(invert_limits(jerk, padded_)) {
         for (size_t i = 0; i < count_; ++i) intervals_.push_back({grid.piece[i], grid.from[i], grid.to[i]});
-        path_ = {slope_degree(path),   padded_,      slopes_.data(),   path.lengths.data(), velocity_.data(),
-                 acceleration_.data(), jerk_.data(), intervals_.data()};
+        path_ = {slope_degree(path),  padded_,           slopes_.data(),
+                 path.lengths.data(), velocity_.data(),  acceleration_.data(),
+                 jerk_.data(),        intervals_.data(), show_samples(samples_)};
         for (size_t i = 0; i < count_; ++i) length_.push_back(path_.length(i));
         rows_ = Aligned(count_ * path_.row_size());
         largest_.resize(count_);
@@ -63,7 +65,9 @@ class JerkTimer {
     JerkTiming solve() {
         JerkTiming timing{false, {}, 0.0, 0.0, 0.0, 0};
         if (!find_first_motion()) return timing;
-        const double rows = double(count_) * (2.0 * (2 * path_.degree + 3) * padded_ + 6.0) + 2.0;
+        const double own = 2.0 / 3.0 * double(path_.own_rows());
+        const double sampled = 0.5 * double(path_.torque_rows() + path_.speed_rows());
+        const double rows = double(count_) * (own + sampled + 6.0) + 2.0;
         double weight = rows / (first_gap * seconds()), last = seconds();
         for (; timing.steps < most_steps; ++timing.steps) {
             double decrement;
@@ -311,6 +315,7 @@ class JerkTimer {
     JerkOptions options_;
     size_t count_;
     int padded_;
+    TimingSamples samples_;
     Aligned slopes_, rows_{0};
     std::vector<double> velocity_, acceleration_, jerk_, length_, largest_, middle_, touched_, jerks_;
     std::vector<Interval> intervals_;
@@ -325,8 +330,8 @@ class JerkTimer {
 
 JerkTiming time_path_with_jerk(const TimingPath& path, const TimingLimits& limits,
                                std::span<const double> jerk, const TimingGrid& grid,
-                               const JerkOptions& options) {
-    return JerkTimer(path, limits, jerk, grid, options).solve();
+                               const JerkOptions& options, const TimingSamples& samples) {
+    return JerkTimer(path, limits, jerk, grid, options, samples).solve();
 }
 
 }  // namespace cspace::trajectory

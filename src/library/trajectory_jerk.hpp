@@ -24,8 +24,9 @@ struct JerkTiming {
     int steps;  // of Newton's method
 };
 
+// samples: of the grid, or empty.
 JerkTiming time_path_with_jerk(const TimingPath& path, const TimingLimits& limits,
                                std::span<const double> jerk, const TimingGrid& grid,
-                               const JerkOptions& options);
+                               const JerkOptions& options, const TimingSamples& samples);
 
 }  // namespace cspace::trajectory

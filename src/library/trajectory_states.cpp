@@ -499,7 +499,7 @@ OneMotion move_axes(const double* states, const double* limits, const double* lo
         make_pieces({dof, states, limits, shortest.data(), motions.data(), made.duration, Synchronize::time});
     const std::size_t n = made.pieces.pieces;
     made.keeps_within = true;
-    for (std::size_t i = 0; i < dof; ++i) {
+    for (std::size_t i = 0; i < dof && lower != nullptr; ++i) {
         for (std::size_t k = 0; k < n; ++k) {
             const double* t = made.pieces.knots.data() + i * (n + 1) + k;
             const double origin = made.pieces.origins[i * n + k];

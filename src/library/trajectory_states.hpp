@@ -52,7 +52,8 @@ StatePieces make_pieces(const StateMotion& motion);
 // goal within limits that a motion can keep before it: what solve_states takes for granted.
 bool can_be_asked(const double* states, const double* limits, std::size_t dof, double farthest);
 
-// One problem in the shortest time, and whether its positions keep between `lower` and `upper` (dof,).
+// One problem in the shortest time, and whether its positions keep between `lower` and `upper` (dof,), which
+// may be null.
 struct OneMotion {
     StatePieces pieces;
     double duration;

@@ -44,6 +44,32 @@ Aligned find_slopes(const TimingPath& path, int degree, int padded) {
 
 namespace {
 
+std::vector<double> pad_rows(std::span<const double> rows, int width, int padded) {
+    std::vector<double> made(rows.size() / size_t(width) * size_t(padded), 0.0);
+    for (size_t r = 0; r * size_t(width) < rows.size(); ++r)
+        std::copy_n(rows.begin() + std::ptrdiff_t(r) * width, width,
+                    made.begin() + std::ptrdiff_t(r) * padded);
+    return made;
+}
+
+}  // namespace
+
+TimingSamples pad_samples(TimingSamples samples, int joints, int padded) {
+    if (samples.along.empty()) return samples;
+    for (auto* rows : {&samples.along, &samples.across, &samples.offset, &samples.margin})
+        *rows = pad_rows(*rows, joints, padded);
+    samples.limit.resize(size_t(padded), no_end);  // what pads the joints has none
+    return samples;
+}
+
+SampledLimits show_samples(const TimingSamples& samples) {
+    const auto data = [](const std::vector<double>& rows) { return rows.empty() ? nullptr : rows.data(); };
+    return {data(samples.along),  data(samples.across), data(samples.offset),
+            data(samples.margin), data(samples.limit),  data(samples.inverse_square)};
+}
+
+namespace {
+
 constexpr size_t intervals_between_polls = 256;  // some fifty microseconds
 constexpr int first_parts = 4;                   // of a piece: halved once before anything is known of it
 constexpr double least_part = 0x1p-18;           // of a piece: beyond it rounding shows in the accelerations
@@ -53,14 +79,6 @@ constexpr size_t least_parts = 2;  // of a piece: with stops at both its ends it
 // Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
 // of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
 constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
-
-std::vector<double> pad_rows(std::span<const double> rows, int width, int padded) {
-    std::vector<double> made(rows.size() / size_t(width) * size_t(padded), 0.0);
-    for (size_t r = 0; r * size_t(width) < rows.size(); ++r)
-        std::copy_n(rows.begin() + std::ptrdiff_t(r) * width, width,
-                    made.begin() + std::ptrdiff_t(r) * padded);
-    return made;
-}
 
 // A path that is timed on one grid after another.
 class PathTimer {
@@ -97,7 +115,9 @@ class PathTimer {
         rows_.intervals = intervals_.data();
         rows_.stops = stops_.data();
         rows_.sampled = {};
-        if (sample) take_samples(sample(grid));
+        if (!sample) return;
+        samples_ = pad_samples(sample(grid), path_.joints, padded_);
+        rows_.sampled = show_samples(samples_);
     }
 
     Timing solve() {
@@ -136,22 +156,6 @@ class PathTimer {
                                   noise_of_acceleration * rows_.degree * per_length});
             }
         }
-    }
-
-    void take_samples(TimingSamples&& given) {
-        samples_ = std::move(given);
-        SampledLimits& sampled = rows_.sampled;
-        if (!samples_.inverse_square.empty()) sampled.inverse_square = samples_.inverse_square.data();
-        if (samples_.along.empty()) return;
-        for (auto* rows : {&samples_.along, &samples_.across, &samples_.offset, &samples_.margin})
-            *rows = pad_rows(*rows, path_.joints, padded_);
-        // What pads the joints has no limit.
-        samples_.limit.resize(size_t(padded_), no_end);
-        sampled.along = samples_.along.data();
-        sampled.across = samples_.across.data();
-        sampled.offset = samples_.offset.data();
-        sampled.margin = samples_.margin.empty() ? nullptr : samples_.margin.data();
-        sampled.limit = samples_.limit.data();
     }
 
     std::ptrdiff_t bound(SpeedRange last) {

@@ -74,7 +74,7 @@ def test_torques_without_efforts_are_asked_for(name):
     path = cs.spline(np.stack([q, q + 0.1]))
     with pytest.raises(CspaceError, match=r"no effort limits.*pass torque="):
         cs.time_parametrize(path, robot, torque=True, **LIMITS)
-    assert cs.time_parametrize(path, robot, torque=np.inf, **LIMITS)
+    assert cs.time_parametrize(path, robot, torque=np.inf, positions=False, **LIMITS)
 
 
 def test_limits_of_position_may_be_given(robot):
@@ -119,7 +119,7 @@ def test_joints_of_a_floating_robot_are_timed(name):
     robot = cs.load_robot(name, floating=True)
     q = np.zeros(len(robot.joint_names))
     path = cs.spline(np.stack([q, q + 0.3, q - 0.1]))
-    assert cs.time_parametrize(path, robot, **LIMITS)
+    assert cs.time_parametrize(path, robot, positions=False, **LIMITS)
     for needs in ({"torque": True}, {"torque": 5.0}, {"speed": 0.1}, {"turn_rate": 0.1}):
         with pytest.raises(CspaceError, match=r"the base of .* is floating"):
             cs.time_parametrize(path, robot, **needs, **LIMITS)

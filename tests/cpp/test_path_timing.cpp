@@ -132,7 +132,7 @@ TEST(a_straight_line_under_jerk_limits_takes_little_longer_than_seven_phases) {
         from = to;
     }
     const Launch launch = {5.0 * margin, 0.97 * 8.0};
-    const JerkTiming timing = time_path_with_jerk(path, {v, a}, j, grid, {launch, launch, 9.0, 1e-4});
+    const JerkTiming timing = time_path_with_jerk(path, {v, a}, j, grid, {launch, launch, 9.0, 1e-4}, {});
     const double best = 5.0 / 1.0 + 1.0 / 2.0 + 2.0 / 8.0;
     CHECK(timing.found && timing.duration >= best && timing.duration < 1.03 * best);
     for (std::size_t i = 0; i < grid.size(); ++i) {

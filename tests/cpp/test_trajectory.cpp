@@ -2,9 +2,12 @@
 // reaches; the shortest time is the first at which the goal lies in the interval, on a dense grid of times;
 // the slope and the second derivative are those of differences.
 #include <initializer_list>
+#include <vector>
 
 #include "check.hpp"
 #include "cspace/trajectory/synchronize.hpp"
+#include "library/trajectory_roots.hpp"
+#include "library/trajectory_states.hpp"
 #include "random.hpp"
 
 using namespace cspace::trajectory;
@@ -152,5 +155,75 @@ TEST(axes_agree_on_the_first_common_duration) {
         }
         const double ticks = common_duration(axes, 3, least, 0.01) / 0.01;
         CHECK_NEAR(ticks, std::round(ticks), 1e-8);
+    }
+}
+
+// An axis that was brought within its limits holds an acceleration at first. In the shortest time the peak
+// and the trough of its motion are the same then, up to rounding: the state of one that took three seconds
+// too long.
+TEST(changes_that_begin_with_a_hold_are_continuous_at_the_shortest_time) {
+    const AxisLimits l{0.84246212965737044, -1.415109006900853, 0.43743038963598169, -1.7828526381723742,
+                       1.5595535797711897};
+    const VelocityChange q{l.v_max, l.a_min, -1.0186794066103662, -1.0565557110646093, l};
+    const AxisTask task = make_axis_task(q, -0.169312889146368);
+    CHECK_NEAR(find_farthest(q, task.domain.first).displacement, task.domain.displacement, 1e-12);
+    CHECK(find_farthest(q, task.domain.first).bend < 0);
+    CHECK_NEAR(minimum_time(task), 1.1401489959994, 1e-10);
+}
+
+// Rows of the library are solved in lanes; here each axis is solved alone.
+TEST(rows_in_lanes_are_the_axes_alone) {
+    Random random{6};
+    constexpr std::size_t rows = 300, dof = 5;
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        std::vector<AxisLimits> limits;
+        std::vector<double> states(rows * 6 * dof), table(5 * dof), durations(rows, std::nan(""));
+        for (std::size_t i = 0; i < dof; ++i) {
+            const AxisLimits l = random_limits(random);
+            limits.push_back(l);
+            const double row[5] = {l.v_max, l.v_min, l.a_max, l.a_min, l.jerk};
+            for (std::size_t k = 0; k < 5; ++k) table[k * dof + i] = row[k];
+        }
+        for (std::size_t row = 0; row < rows; ++row)
+            for (std::size_t end = 0; end < 2; ++end)
+                for (std::size_t i = 0; i < dof; ++i) {
+                    AxisState s = random_state(random, limits[i]);
+                    if (end == 0 && row % 3 == 0) s.v *= 3, s.a *= 2;  // beyond the limits
+                    const double values[3] = {s.p, s.v, s.a};
+                    for (std::size_t k = 0; k < 3; ++k)
+                        states[((row * 2 + end) * 3 + k) * dof + i] = row % 7 == 0 && k > 0 ? 0 : values[k];
+                }
+        std::vector<std::int32_t> verdict(rows);
+        std::vector<double> duration(rows), shortest(rows * dof), motions(numbers_of_motion() * rows * dof);
+        solve_states({rows, dof, states.data(), table.data(), durations.data(), 0, Synchronize::time,
+                      verdict.data(), duration.data(), shortest.data(), motions.data()},
+                     2);
+        for (std::size_t row = 0; row < rows; ++row) {
+            Axis axes[dof];
+            double least = 0;
+            for (std::size_t i = 0; i < dof; ++i) {
+                const auto state = [&](std::size_t end) {
+                    const double* s = states.data() + (row * 2 + end) * 3 * dof + i;
+                    return AxisState{s[0], s[dof], s[2 * dof]};
+                };
+                set_axis(axes[i], state(0), state(1), limits[i]);
+                least = std::fmax(least, axes[i].shortest);
+                CHECK_NEAR(shortest[row * dof + i], axes[i].shortest, 1e-9 * (1 + least));
+            }
+            CHECK_NEAR(duration[row], common_duration(axes, dof, least, 0), 1e-9 * (1 + least));
+            const OneMotion alone =
+                move_axes(states.data() + row * 6 * dof, table.data(), nullptr, nullptr, dof);
+            CHECK(alone.duration == duration[row]);
+        }
+    }
+}
+
+TEST(roots_of_degenerate_polynomials_are_finite_in_number) {
+    const double polynomials[3][6] = {{0, 0, 0, 0, 0, 0}, {0, 0, 0, 1, 0, 0}, {-1, 5, -10, 10, -5, 1}};
+    for (const auto& c : polynomials) {
+        const double begin = 0, end = 2;
+        double roots[5];
+        find_roots(c, &begin, &end, 1, 6, 4e-16, roots);
+        for (int k = 1; k < 5; ++k) CHECK(!(roots[k] < roots[k - 1]));
     }
 }

@@ -110,7 +110,6 @@ def test_units_do_not_matter(scale):
         (lambda: line(), {"jerk": np.inf}, "infinite for all"),
         (lambda: line(), {"jerk": -1.0}, "0 or more"),
         (lambda: line(), {"jerk": 1.0, "start_speed": 1.0}, "from rest to rest"),
-        (lambda: line(1.0, 7), {"jerk": 1.0, "speed": 1.0, "robot": "panda"}, "cannot be combined"),
     ],
 )
 def test_bad_input_is_named(make, options, message):
@@ -125,3 +124,50 @@ def test_a_joint_whose_jerk_limit_is_zero_may_not_move():
     assert not refused
     assert "joint 1 moves" in refused.reason
     assert isinstance(line(), Path)
+
+
+@pytest.mark.parametrize("blended", [False, True])
+def test_jerk_limits_hold_together_with_torques_and_speeds(blended):
+    robot = cs.load_robot("panda")
+    middle, rng = robot.limits.range.mean(axis=0), np.random.default_rng(45)
+    effort = 0.55 * robot.limits.effort
+    for _ in range(3):
+        q = middle + 0.25 * np.diff(robot.limits.range, axis=0)[0] * rng.uniform(-1, 1, (4, 7))
+        path = cs.blend(q, 0.3) if blended else cs.spline(q)
+        options = {"torque": effort, "speed": 0.7, "turn_rate": 2.5}
+        timed = cs.time_parametrize(path, robot, jerk=400.0, positions=False, **options)
+        plain = cs.time_parametrize(path, robot, positions=False, **options)
+        free = cs.time_parametrize(path, robot, jerk=400.0, positions=False)
+        assert timed, timed.reason
+        assert not timed.proved
+        assert timed.duration >= max(plain.duration * (1 - 2e-3), free.duration * (1 - 1e-3))
+        assert timed.duration <= 1.5 * max(plain.duration, free.duration)
+        t = np.linspace(0, timed.duration, 4000)
+        q, qd, qdd, jerk = (timed(t, order) for order in range(4))
+        assert (np.abs(jerk) <= 400.0 * (1 + 1e-9)).all()
+        assert (np.abs(qdd) <= robot.limits.acceleration * (1 + 1e-9)).all()
+        assert (np.abs(robot.inverse_dynamics(q, qd, qdd)) <= effort * (1 + 1e-5)).all()
+        twist = np.einsum("nij,nj->ni", robot.jacobian(q), qd)
+        assert np.linalg.norm(twist[:, :3], axis=1).max() <= 0.7 * (1 + 1e-5)
+        assert np.linalg.norm(twist[:, 3:], axis=1).max() <= 2.5 * (1 + 1e-5)
+        assert {"jerk"} < {each.limit for each in timed.binding()}
+
+
+def test_a_torque_below_gravity_is_refused_with_jerk_limits_too():
+    robot = cs.load_robot("panda")
+    path = cs.spline([np.zeros(7), np.full(7, -0.5)])
+    refused = cs.time_parametrize(path, robot, jerk=400.0, torque=2.0, positions=False)
+    assert "against gravity" in refused.reason
+
+
+def test_a_tolerance_refines_the_grid_under_jerk_limits():
+    path = cs.spline(random_waypoints(np.random.default_rng(46), 5))
+    options = {"velocity": 2.0, "acceleration": 8.0, "jerk": 80.0}
+    coarse = cs.time_parametrize(path, **options)
+    fine = cs.time_parametrize(path, tolerance=4e-3, **options)
+    finest = cs.time_parametrize(path, grid=2400, **options)
+    assert fine.converged
+    assert not coarse.converged
+    assert finest.duration <= fine.duration <= coarse.duration
+    assert fine.duration <= finest.duration * 1.015
+    assert fine.proved

@@ -19,12 +19,17 @@ struct JerkPath {
     const double *slopes, *lengths;
     const double *inverse_velocity, *inverse_acceleration, *inverse_jerk;
     const Interval* intervals;
+    SampledLimits sampled;  // those of torques, or none
 
     double length(std::size_t i) const {
         return (intervals[i].to - intervals[i].from) * lengths[intervals[i].piece];
     }
-    // Numbers of one interval: three factors of X for every row of the accelerations, then of the jerks.
-    std::size_t row_size() const { return std::size_t(3 * (2 * degree + 3) * padded); }
+    // Numbers of one interval: three factors of X for every row of the accelerations, then of the jerks; then
+    // three factors and an offset for the sampled limits at three places, and for the speed of a frame.
+    std::size_t own_rows() const { return std::size_t(3 * (2 * degree + 3) * padded); }
+    std::size_t torque_rows() const { return sampled.along ? std::size_t(12 * padded) : 0; }
+    std::size_t speed_rows() const { return sampled.inverse_square ? std::size_t(4 * joint_padding) : 0; }
+    std::size_t row_size() const { return own_rows() + torque_rows() + speed_rows(); }
 };
 
 // The squared speed on an interval: its Bernstein coefficients, or changes of them.
@@ -63,6 +68,44 @@ CSPACE_INLINE void add_product(const V* p, const double (&parts)[n + 1][3], doub
         }
 }
 
+// The rows of the sampled limits at the begin, the middle and the end of interval i, each divided by its
+// limit.
+CSPACE_INLINE void build_sampled_rows(const JerkPath& path, std::size_t i, double* rows) {
+    using V = Pack<native_width>;
+    const SampledLimits& given = path.sampled;
+    const double per = 1.0 / path.length(i);
+    const double squares[3][3] = {{1, 0, 0}, {0.25, 0.5, 0.25}, {0, 0, 1}};
+    const double accelerations[3][3] = {{-per, per, 0}, {-0.5 * per, 0, 0.5 * per}, {0, -per, per}};
+    const std::size_t width = std::size_t(path.padded);
+    for (int part = 0; part < 3; ++part)
+        for (int j = 0; j < path.padded; j += Lanes<V>::count) {
+            V limit = load<V>(given.limit + j);
+            if (given.margin) limit = limit - load<V>(given.margin + i * width + std::size_t(j));
+            const auto exists = limit > 0.0;
+            limit = select(exists, limit, fill<V>(1.0));
+            const std::size_t at = (3 * i + std::size_t(part)) * width + std::size_t(j);
+            const V along = load<V>(given.along + at), across = load<V>(given.across + at);
+            double* own = rows + 4 * part * path.padded + j;
+            for (int a = 0; a < 3; ++a)
+                store(own + a * path.padded,
+                      (squares[part][a] * across + accelerations[part][a] * along) / limit);
+            // A limit that the margin uses up leaves no motion.
+            const V offset = load<V>(given.offset + at) / limit;
+            store(own + 3 * path.padded, select(exists, offset, fill<V>(2.0)));
+        }
+}
+
+// The rows of the speed of a frame on interval i: Bernstein coefficients of the squared speed over its limit,
+// a product of two quadratic polynomials. Those of one pack are rows of one limit.
+CSPACE_INLINE void build_speed_rows(const JerkPath& path, std::size_t i, double* rows) {
+    constexpr ProductWeights<2, 2> weights;
+    for (int k = 0; k < 4 * joint_padding; ++k) rows[k] = 0.0;
+    for (int k = 0; k <= 2; ++k)
+        for (int a = 0; a <= 2; ++a)
+            rows[a * joint_padding + k + a] +=
+                weights.at[k][a] * path.sampled.inverse_square[3 * i + std::size_t(k)];
+}
+
 // The rows of interval i, each divided by its limit, and the largest squared speed that keeps the velocities.
 template <int m>
 inline double build_jerk_rows(const JerkPath& path, std::size_t i, double* rows) {
@@ -96,6 +139,8 @@ inline double build_jerk_rows(const JerkPath& path, std::size_t i, double* rows)
                 store(rows + (3 * r + a) * path.padded + j,
                       made[r][a] * (r < m + 2 ? per_acceleration : per_jerk));
     }
+    if (path.sampled.along) build_sampled_rows(path, i, rows + path.own_rows());
+    if (path.sampled.inverse_square) build_speed_rows(path, i, rows + path.own_rows() + path.torque_rows());
     return (1.0 - rounding_share) / lane(largest_lanes(most), 0);
 }
 
@@ -123,8 +168,8 @@ CSPACE_INLINE double sum_lanes(V v) {
     return sum;
 }
 
-// Calls visit(row, limit, fall) for each pack of rows of an interval: |row · X| ≤ limit, where limit is that
-// at X and falls by fall · dX.
+// Calls visit(row, low, high, fall) for each pack of rows of an interval: −low ≤ row · X ≤ high, where these
+// are the limits at X, which fall by fall · dX.
 template <int m, class Visit>
 CSPACE_INLINE void visit_rows(const JerkPath& path, const double* rows, const Squares& x,
                               const Tangent& tangent, const Visit& visit) {
@@ -142,9 +187,22 @@ CSPACE_INLINE void visit_rows(const JerkPath& path, const double* rows, const Sq
         for (int j = 0; j < path.padded; j += Lanes<V>::count) {
             V row[3];
             for (int a = 0; a < 3; ++a) row[a] = load<V>(rows + (3 * r + a) * path.padded + j);
-            visit(row, limit, fall);
+            visit(row, fill<V>(limit), fill<V>(limit), fall);
         }
     }
+    const double still[3] = {0.0, 0.0, 0.0};
+    const auto visit_sampled = [&](const double* own, int width) {
+        for (int j = 0; j < width; j += Lanes<V>::count) {
+            V row[3];
+            for (int a = 0; a < 3; ++a) row[a] = load<V>(own + a * width + j);
+            const V offset = load<V>(own + 3 * width + j);
+            visit(row, 1.0 + offset, 1.0 - offset, still);
+        }
+    };
+    const double* sampled = rows + path.own_rows();
+    for (int part = 0; path.sampled.along && part < 3; ++part)
+        visit_sampled(sampled + 4 * part * path.padded, path.padded);
+    if (path.sampled.inverse_square) visit_sampled(sampled + path.torque_rows(), joint_padding);
 }
 
 // The terms of the barriers of all rows of an interval.
@@ -154,12 +212,12 @@ inline BarrierTerms sum_barriers(const JerkPath& path, const double* rows, const
     using V = Pack<native_width>;
     BarrierSum<V> sum;
     sum.clear();
-    visit_rows<m>(path, rows, x, tangent, [&](const V(&row)[3], double limit, const double (&fall)[3]) {
+    visit_rows<m>(path, rows, x, tangent, [&](const V(&row)[3], V low, V high, const double (&fall)[3]) {
         const V value = row[0] * x.at[0] + row[1] * x.at[1] + row[2] * x.at[2];
         const V above[3] = {fall[0] + row[0], fall[1] + row[1], fall[2] + row[2]};
         const V below[3] = {fall[0] - row[0], fall[1] - row[1], fall[2] - row[2]};
-        sum.add(above, limit - value);
-        sum.add(below, limit + value);
+        sum.add(above, high - value);
+        sum.add(below, low + value);
     });
     BarrierTerms terms;
     for (int a = 0; a < 3; ++a) terms.gradient[a] = sum_lanes(sum.g[a]);
@@ -174,11 +232,11 @@ inline double bound_step(const JerkPath& path, const double* rows, const Squares
     using V = Pack<native_width>;
     V most = fill<V>(0.0);  // of decrease over slack: the inverse of the step
     V least = fill<V>(1.0);
-    visit_rows<m>(path, rows, x, tangent, [&](const V(&row)[3], double limit, const double (&fall)[3]) {
+    visit_rows<m>(path, rows, x, tangent, [&](const V(&row)[3], V low, V high, const double (&fall)[3]) {
         const V value = row[0] * x.at[0] + row[1] * x.at[1] + row[2] * x.at[2];
         const V moved = row[0] * change.at[0] + row[1] * change.at[1] + row[2] * change.at[2];
         const double lower = fall[0] * change.at[0] + fall[1] * change.at[1] + fall[2] * change.at[2];
-        const V above = limit - value, below = limit + value;
+        const V above = high - value, below = low + value;
         least = min(least, min(above, below));
         most = max(most, max((lower + moved) / above, (lower - moved) / below));
     });

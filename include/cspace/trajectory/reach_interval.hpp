@@ -111,14 +111,24 @@ struct Peaks {
     }
 };
 
+// What rounding may leave of the square of the distance from a held acceleration to the other one, where it
+// is zero.
+template <class V>
+CSPACE_INLINE V square_rounding(const VelocityChangeOf<V>& q, V T, V held) {
+    const V a0 = q.a0, af = q.af;
+    return acceleration_rounding *
+           (q.limits.jerk * (abs(q.vf - q.v0) + abs(held) * T) + a0 * a0 + af * af + 4 * held * held);
+}
+
 // With p = a_max where `asked`; returns where l and the hold are possible.
 template <class V>
 CSPACE_INLINE mask_of<V> hold_peak(const VelocityChangeOf<V>& q, V T, mask_of<V> asked, Peaks<V>& found) {
     const V J = q.limits.jerk, a0 = q.a0, af = q.af, p = q.limits.a_max, dv = q.vf - q.v0;
     const V c = J * dv - J * p * T + p * (2 * p + af - a0) - (2 * p * p - a0 * a0 + af * af) / 2;
     const V s2 = p * p - c;
-    const V l = c / (p + root(s2)), hold = T - (2 * (p - l) + af - a0) / J;
-    const auto fits = asked && s2 >= 0 && l >= q.limits.a_min && hold >= -time_rounding * T;
+    const V l = min(c / (p + root(s2)), p), hold = T - (2 * (p - l) + af - a0) / J;
+    const auto fits =
+        asked && s2 >= -square_rounding(q, T, p) && l >= q.limits.a_min && hold >= -time_rounding * T;
     const V bend = p * (p - 4 * l) / (4 * (p - l));
     found.replace(fits, {p, l, not_negative(hold), fill<V>(0.0), bend, number_of<V>(Regime::peak_held)});
     return fits;
@@ -130,8 +140,9 @@ CSPACE_INLINE mask_of<V> hold_trough(const VelocityChangeOf<V>& q, V T, mask_of<
     const V J = q.limits.jerk, a0 = q.a0, af = q.af, l = q.limits.a_min, dv = q.vf - q.v0;
     const V c = J * l * T - l * (af - a0 - 2 * l) + (af * af - a0 * a0 - 2 * l * l) / 2 - J * dv;
     const V s2 = l * l - c;
-    const V p = -c / (root(s2) - l), hold = T - (2 * (p - l) + af - a0) / J;
-    const auto fits = asked && s2 >= 0 && p <= q.limits.a_max && hold >= -time_rounding * T;
+    const V p = max(-c / (root(s2) - l), l), hold = T - (2 * (p - l) + af - a0) / J;
+    const auto fits =
+        asked && s2 >= -square_rounding(q, T, l) && p <= q.limits.a_max && hold >= -time_rounding * T;
     const V bend = -l * (4 * p - l) / (4 * (p - l));
     found.replace(fits, {p, l, fill<V>(0.0), not_negative(hold), bend, number_of<V>(Regime::trough_held)});
     return fits;

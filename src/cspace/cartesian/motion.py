@@ -21,7 +21,7 @@ from cspace.model import Limits
 from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike, one_pose
 from cspace.tables import count_things, one_line, shown
-from cspace.tolerances import LIMIT_ROUNDING, PATH_START, SHORTEST_PATH_PIECE
+from cspace.tolerances import LIMIT_ROUNDING, PATH_START, SHORTENED_PARTS, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_makers import arc_path, is_repeated, pose_path
 from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path, stay_at
 from cspace.trajectory.path import Path
@@ -35,10 +35,6 @@ if TYPE_CHECKING:
 RANKING_GRID: Final = 100
 """Intervals with which branches are compared: their durations are off by a few percent, alike for all."""
 
-
-SHORTENED: Final = (0.0, 1e-4, 1e-2, 0.1, 0.3, 0.6)
-"""Shares by which the part of a path that is followed is shortened until a motion ends there: beside a
-singular configuration joints move without bound on the last of it, and a chain may end before a search."""
 
 HALVINGS: Final = 5
 """Of the last of these shares."""
@@ -240,11 +236,11 @@ def _follow_part(
             return None
         return _follow(robot, path.part(end * (1.0 - share)), start, free_axis, limits, tolerance) or None
 
-    tried = ((share, follow(share)) for share in SHORTENED)
+    tried = ((share, follow(share)) for share in SHORTENED_PARTS)
     high, best = next(((share, each) for share, each in tried if each), (1.0, None))
     if best is None:
         return path, found
-    low = max((share for share in SHORTENED if share < high), default=0.0)
+    low = max((share for share in SHORTENED_PARTS if share < high), default=0.0)
     for _ in range(HALVINGS if high > low else 0):
         middle = 0.5 * (low + high)
         if followed := follow(middle):

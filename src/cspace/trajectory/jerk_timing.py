@@ -15,6 +15,7 @@ from cspace.tolerances import BARRIER_GAP, LAUNCH_PART
 from cspace.trajectory.graded_grid import Section, divide_gradually
 from cspace.trajectory.jerk_timed_path import LANDING, LAUNCH, QUADRATIC
 from cspace.trajectory.path import Path, restrict_pieces
+from cspace.trajectory.sampled_limits import SampledLimits
 from cspace.trajectory.timed_path import Grid, TimedPath
 
 LEAST_INTERVALS: Final = 24
@@ -81,10 +82,12 @@ def time_section(
     limits: JerkLimits,
     count: int,
     plain: TimedPath,
+    sampled: SampledLimits | None,
 ) -> SectionLaw | None:
     """The fastest motion along a section from rest to rest; None if none keeps the limits.
 
-    arrays: the path as the core reads it. plain: the motion without jerk limits.
+    arrays: the path as the core reads it. plain: the motion without jerk limits. sampled: those of torque and
+    of a frame, if there are any.
     """
     ends = path.breaks[section.first], path.breaks[section.last]
     lengths = path.lengths[section.first : section.last]
@@ -106,6 +109,7 @@ def time_section(
         (margin, landing),
         FIRST_SLOWER * float(times[1] - times[0]),
         BARRIER_GAP,
+        None if sampled is None else sampled(*grid),
     )
     return _add_launches(grid, section, squares, (first, last)) if found else None
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -131,7 +131,12 @@ class SampledLimits:
     slower: Array | None = None
     _last: tuple[tuple[Any, ...], tuple[Array | None, ...]] | None = None
 
-    def __call__(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
+    @property
+    def exist(self) -> bool:
+        """Whether there are any."""
+        return self.torque is not None or self.frame is not None
+
+    def __call__(self, piece: Any, begin: Array, end: Array) -> Samples:
         """The samples at the begin, the middle and the end of each interval, as the core wants them."""
         along, across, offset, reversal, inverse = self._sample(piece, begin, end)
         limit = None if self.torque is None else self.torque.limit
@@ -173,10 +178,20 @@ class SampledLimits:
 
     def tighten(self, timed: TimedPath) -> bool:
         """Whether no limit is exceeded at samples of each interval; else the limits there are tightened."""
+        if self.torque is not None:
+            self.expected = timed.grid, timed.squared_speed
+        return self.tighten_by(self.measure(timed))
+
+    def renewed(self, expected: tuple[Array, Array]) -> SampledLimits:
+        """The same limits, not tightened, for another grid."""
+        return SampledLimits(self.path, self.torque, self.frame, expected)
+
+    def measure(self, timed: TimedPath) -> Excess:
+        """How far limits are exceeded at samples of each interval."""
         shares = np.arange(CHECKED_PLACES + 1.0) / CHECKED_PLACES
         at = timed._look_at(tuple(shares))
         q, qd, qdd = move_along_path(self.path, at)
-        kept = True
+        over = used = None
         if self.torque is not None:
             tau = self.torque.torques(q, qd, qdd)
             tau = tau.reshape(len(shares), -1, self.path.dof)
@@ -185,19 +200,46 @@ class SampledLimits:
                 dry = np.where(reverses, self.torque.dry, 0.0)
                 tau = np.abs(tau - dry * np.sign(qd).reshape(tau.shape)) + dry
             over = (np.abs(tau) - self.torque.limit).max(axis=0)
-            if (over > LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)).any():
-                kept = False
-                own = np.zeros_like(over) if self.margin is None else self.margin
-                self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
-            self.expected = timed.grid, timed.squared_speed
         if self.frame is not None:
-            used = self.frame.shares(q, qd)
-            used = used.reshape(len(shares), -1).max(axis=0)
-            if (used > 1.0 + LIMIT_ROUNDING).any():
-                kept = False
-                own = np.ones_like(used) if self.slower is None else self.slower
-                self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
+            used = self.frame.shares(q, qd).reshape(len(shares), -1).max(axis=0)
+        return Excess(over, used)
+
+    def tighten_by(self, excess: Excess) -> bool:
+        """Whether nothing is exceeded; else the limits are tightened where it is."""
+        kept, (over, used) = True, excess
+        slack = 0.0 if self.torque is None else LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)
+        if over is not None and (over > slack).any():
+            kept = False
+            own = np.zeros_like(over) if self.margin is None else self.margin
+            self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
+        if used is not None and (used > 1.0 + LIMIT_ROUNDING).any():
+            kept = False
+            own = np.ones_like(used) if self.slower is None else self.slower
+            self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
         return kept
+
+
+Samples: TypeAlias = tuple[Array | None, Array | None, Array | None, Array | None, Array | None, Array | None]
+"""Along, across, offset, margin and limit of torques, and the inverse of the squared speed of a frame."""
+
+
+class Excess(NamedTuple):
+    """By interval: how far torques are beyond their limits (k, dof), and what is used of a frame's (k,)."""
+
+    torque: Array | None
+    frame: Array | None
+
+    def of_section(self, begin: int, end: int) -> Excess:
+        """That of intervals begin … end − 1, the first and the last counted with their neighbours inside."""
+
+        def inside(rows: Array | None) -> Array | None:
+            if rows is None:
+                return None
+            own = rows[begin + 1 : end - 1].copy()
+            own[0], own[-1] = np.maximum(own[0], rows[begin]), np.maximum(own[-1], rows[end - 1])
+            return own
+
+        return Excess(inside(self.torque), inside(self.frame))
 
 
 def _inverse_squares(shares: Array) -> Array:

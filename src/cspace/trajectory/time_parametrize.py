@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -37,6 +38,9 @@ from cspace.trajectory.timed_path import Grid, TimedPath
 MOST_INTERVALS: Final = 10_000_000
 """Of a grid that is given as a number."""
 
+MOST_JERK_INTERVALS: Final = 3000
+"""From which on grids are not halved further under jerk limits: a solution takes half a second."""
+
 EMPTY_GRID: Final = Grid(np.zeros(0, dtype=np.int32), np.zeros(0), np.zeros(0))
 
 
@@ -65,7 +69,7 @@ def time_parametrize(
     The squared speed of the parameter is linear on each interval of a grid, and quadratic under jerk limits.
     Limits of velocity, acceleration and jerk hold everywhere on an interval, which is proved by Bernstein
     coefficients. Limits of torque and of a frame are sampled at three places of an interval, checked at ten
-    and tightened where exceeded; they do not go with jerk limits.
+    and tightened where exceeded.
 
     path: a Path, such as of spline or blend. limits: Limits or a robot. velocity, acceleration: in their
     place, one number or (dof,) [rad/s or m/s, and per s]; inf for none. jerk: likewise, per s², or True for
@@ -75,13 +79,12 @@ def time_parametrize(
     limits allow it; `below_feed` lists where they do not. robot: whose dynamics and kinematics those need, by
     default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends.
     grid: about so many intervals; by default they are halved until that changes the duration by less than
-    `tolerance`, relative (0.001). Under jerk limits there are 30 of a piece, 150 or more, unless a tolerance
-    is given. positions: whether the path has to keep the limits of position of limits, too.
+    `tolerance`, relative (0.001). Under jerk limits 30 of a piece, 150 or more, unless a tolerance is given.
+    positions: whether the limits of position of limits count, too.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits, the path
-    leaves those of position, or the speeds at the ends are impossible.
-    Raises InputError for a wrong shape, NaN, negative limits, joints without a limit of acceleration, and
-    jerk limits on a path whose second derivative jumps.
+    leaves those of position, or the speeds at the ends are impossible. Raises InputError for a wrong shape,
+    NaN, negative limits, joints without one of acceleration, and jerk limits where the path's bend jumps.
     Source: Pham and Pham 2018, with bounds over whole intervals; a barrier method under jerk limits.
     """
     if not isinstance(path, Path):
@@ -95,15 +98,13 @@ def time_parametrize(
     v = _read_limit("velocity", velocity, given, labels, required=False)
     a = _read_limit("acceleration", acceleration, given, labels, required=True)
     sampled = SampledLimits(
-        path,
-        _read_torque(torque, own, path, gravity),
-        _read_frame(speed, turn_rate, feed, own, frame),
+        path, _read_torque(torque, own, path, gravity), _read_frame(speed, turn_rate, feed, own, frame)
     )
     timer = _Timer(
         path,
         v,
         a,
-        sampled if sampled.torque is not None or sampled.frame is not None else None,
+        sampled if sampled.exist else None,
         bounded_number(start_speed, "start_speed", 0.0, "it must be 0 or more", FARTHEST),
         bounded_number(end_speed, "end_speed", 0.0, "it must be 0 or more", FARTHEST),
         None if tolerance is None else positive_number(tolerance, "tolerance"),
@@ -111,9 +112,8 @@ def time_parametrize(
         None if own is None else own.joint_names,
         _read_jerk(jerk, given, labels),
     )
-    if positions and isinstance(given, Limits) and (left := timer.find_position_left(given)) is not None:
-        return left
-    return timer.run(None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS))
+    count = None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS)
+    return timer.run(count, given if positions and isinstance(given, Limits) else None)
 
 
 class _Timer:
@@ -140,8 +140,10 @@ class _Timer:
         self.ratios = LimitShares(labels, velocity, acceleration, jerk, torque, frame)
         self.arrays = path.control_points, path.lengths, path.stop_flags
 
-    def run(self, count: int | None) -> TimedPath:
-        """The fastest motion on a grid of so many intervals, or on one of its own."""
+    def run(self, count: int | None, kept: Limits | None) -> TimedPath:
+        """The fastest motion on so many intervals, or on a grid of its own. kept: limits of position."""
+        if kept is not None and (left := self.find_position_left(kept)) is not None:
+            return left
         if (still := self.find_locked_joint()) is not None:
             return still
         if self.jerk is not None:
@@ -218,25 +220,53 @@ class _Timer:
         return timed
 
     def time_with_jerk(self, count: int | None) -> TimedPath:
-        """The fastest motion with limits of jerk too, from rest to rest."""
-        if self.sampled is not None:
-            raise InputTypeError("jerk= cannot be combined with torque=, speed= and turn_rate=")
+        """The fastest motion with limits of jerk too, from rest to rest; finer grids if a tolerance asks."""
         if any(self.ends):
             raise InputError("jerk= is for motions from rest to rest; leave out start_speed= and end_speed=")
-        assert self.jerk is not None
         refuse_jumps(self.path)
-        plain = self._solve(None, None)
+        plain = self.time(None)
         if not plain:
             return plain
+        number = default_intervals(self.path) if count is None else count
+        timed = self.time_with_jerk_on(number, plain)
+        while timed and count is None and self.tolerance is not None and number < MOST_JERK_INTERVALS:
+            number *= 2
+            last, timed = timed.duration, self.time_with_jerk_on(number, plain)
+            if abs(last - timed.duration) <= self.tolerance * timed.duration:
+                timed.converged = True
+                break
+        return timed
+
+    def time_with_jerk_on(self, number: int, plain: TimedPath) -> TimedPath:
+        """The same on a grid of about so many intervals; plain: the motion without limits of jerk."""
+        assert self.jerk is not None
         limits = JerkLimits(self.velocity, self.acceleration, self.jerk)
-        laws: list[SectionLaw] = []
-        for section in find_sections(self.path):
-            number = default_intervals(self.path) if count is None else count
-            found = time_section(self.path, section, self.arrays, limits, number, plain)
-            if found is None:
-                s = float(self.path.breaks[section.first])
-                return self._refuse(f"no motion from s = {s:.6g} on keeps the limits", s)
-            laws.append(found)
+        sections = find_sections(self.path)
+        expected = plain.grid, plain.squared_speed
+        sampled = [None if self.sampled is None else self.sampled.renewed(expected) for _ in sections]
+        for _ in range(MOST_ROUNDS + 1):
+            laws: list[SectionLaw] = []
+            for section, own in zip(sections, sampled, strict=True):
+                found = time_section(self.path, section, self.arrays, limits, number, plain, own)
+                if found is None:
+                    s = float(self.path.breaks[section.first])
+                    return self._refuse(f"no motion from s = {s:.6g} on keeps the limits", s)
+                laws.append(found)
+            timed = self._join_sections(laws)
+            if self.sampled is None:
+                return timed
+            excess = self.sampled.measure(timed)
+            ends = np.cumsum([0, *(len(each.law) for each in laws)]).tolist()
+            kept = True
+            for own, (begin, end) in zip(sampled, pairwise(ends), strict=True):
+                assert own is not None
+                own.expected = timed.grid, timed.squared_speed
+                kept &= own.tighten_by(excess.of_section(begin, end))
+            if kept:
+                return timed
+        return self._refuse(f"limits are still exceeded after {MOST_ROUNDS} rounds; pass a finer grid=")
+
+    def _join_sections(self, laws: list[SectionLaw]) -> JerkTimedPath:
         return JerkTimedPath(
             self.path,
             Grid(*(np.concatenate([each.grid[k] for each in laws]) for k in range(3))),
@@ -245,6 +275,7 @@ class _Timer:
             np.concatenate([each.jerk for each in laws]),
             ratios=self.ratios,
             joint_names=self.joint_names,
+            proved=self.sampled is None,
         )
 
     def _solve(self, grid: Grid | None, sample: SampledLimits | None) -> TimedPath:

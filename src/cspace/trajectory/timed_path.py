@@ -227,7 +227,7 @@ class TimedPath(Trajectory):
         held = shares[row].min(axis=0)
         others = shares.max(axis=1)
         others[row] = 0.0
-        most = np.where(held < NEAR_LIMIT, others.argmax(axis=0), row)
+        most = np.where(held < NEAR_LIMIT, _name_all(_find_binding(others), others, held < NEAR_LIMIT), row)
         feed = self._ratios.frame.speed  # type: ignore[union-attr]
         return tuple(
             SlowStretch(
@@ -303,6 +303,22 @@ def _find_binding(shares: Array) -> npt.NDArray[np.intp]:
     most: npt.NDArray[np.intp] = shares.argmax(axis=0)
     most[shares.max(axis=0) < NEAR_LIMIT] = -1
     return most
+
+
+def _name_all(
+    binding: npt.NDArray[np.intp], shares: Array, asked: npt.NDArray[np.bool_]
+) -> npt.NDArray[np.intp]:
+    """The limit of each interval; where none binds that of the one before or after, if that is asked for.
+
+    Between two limits there are intervals that use neither fully.
+    """
+    made = binding.copy()
+    for order in (range(1, len(made)), range(len(made) - 2, -1, -1)):
+        before = -1 if order.step > 0 else 1
+        for i in order:
+            if made[i] < 0 and asked[i] and asked[i + before]:
+                made[i] = made[i + before]
+    return np.where(made < 0, shares.argmax(axis=0), made)
 
 
 def _find_runs(values: npt.NDArray[np.intp]) -> list[tuple[int, int]]:
