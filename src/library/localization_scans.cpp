@@ -4,7 +4,6 @@
 
 #include "cspace/localization/scans/laser_slam.hpp"
 #include "cspace/localization/scans/line_icp.hpp"
-#include "cspace/localization/scans/refine_pose.hpp"
 #include "kernels/localization_correlation.hpp"
 #include "localization_fronts.hpp"
 

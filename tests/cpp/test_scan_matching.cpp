@@ -7,7 +7,6 @@
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/scans/laser_slam.hpp"
 #include "cspace/localization/scans/line_icp.hpp"
-#include "cspace/localization/scans/refine_pose.hpp"
 #include "random.hpp"
 
 namespace {

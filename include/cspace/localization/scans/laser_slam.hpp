@@ -15,7 +15,7 @@
 #include "cspace/localization/graph/optimizer.hpp"
 #include "cspace/localization/scans/correlative_search.hpp"
 #include "cspace/localization/scans/loop_consistency.hpp"
-#include "cspace/localization/scans/refine_linear.hpp"
+#include "cspace/localization/scans/refine_pose.hpp"
 #include "cspace/localization/scans/thin_points.hpp"
 
 namespace cspace::localization {
@@ -47,6 +47,8 @@ inline constexpr double least_score = 0.3;                     // of a match aga
 inline constexpr double window_rest = 0.15, window_share = 0.3;
 inline constexpr double turn_rest = 0.12, turn_share = 0.4;
 inline constexpr double prior_rest = 0.05, prior_share = 0.15;
+// Where that finds nothing, the window is so much larger, and the score has to be better.
+inline constexpr double wide_reach = 0.5, wide_turn = 0.6, least_wide_score = 0.5;
 // Deviation of an odometry step that no scan confirms.
 inline constexpr double blind_share = 0.15;
 // Loops: the scans to either side of a candidate, and how far along the drive it must be.
@@ -159,13 +161,20 @@ class LaserSlam {
         const double weight = 1 / (2 * search::independent_beams);
         const std::size_t begin = kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans));
         lay_field(scan(k), guess, window, begin, kept_.size());
-        const SearchPeak peak =
+        SearchPeak peak =
             search_.find_peak(field_, scan(k), guess, window,
                               {weight / (place * place), weight / (heading * heading)}, slam::least_score);
+        if (!peak.is_found) {  // did the wheels slip?
+            const SearchWindow wide{window.reach + slam::wide_reach, window.turn + slam::wide_turn};
+            lay_field(scan(k), guess, wide, begin, kept_.size());
+            const SearchPeak other =
+                search_.find_peak(field_, scan(k), guess, wide, {}, slam::least_wide_score);
+            if (other.is_found && !other.is_ambiguous) peak = other;
+        }
         ScanEdge edge{k - 1, k, {}, {}, 0, 0};
         Pose pose = guess;
         if (peak.is_found) {
-            pose = refine_linearly(field_, scan(k), peak.pose);
+            pose = refine_pose(field_, scan(k), peak.pose);
             edge.covariance = peak.covariance, edge.score = peak.score, edge.second = peak.second;
         } else {
             const double x = slam::prior_rest + slam::blind_share * length;
@@ -225,7 +234,7 @@ class LaserSlam {
             const SearchPeak peak =
                 search_.find_peak(field_, thin_, guess, window, {}, slam::least_loop_score);
             if (!peak.is_found) continue;
-            const Pose pose = refine_linearly(field_, scan(k), peak.pose);
+            const Pose pose = refine_pose(field_, scan(k), peak.pose);
             const int from = kept_[c];
             add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance,
                       peak.score, peak.second},

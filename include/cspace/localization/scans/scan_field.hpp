@@ -65,7 +65,7 @@ class PointStamp {
 
   private:
     static constexpr double reach = 2.5;  // of a stamp [σ]: beyond it a score is below 4 %
-    static constexpr int parts = 4;       // of a cell's side, for the place of the point in it
+    static constexpr int parts = 8;       // of a cell's side, for the place of the point in it
     static constexpr int pack = 16;
 
     static void raise_pack(std::uint8_t* to, const std::uint8_t* from) {
