@@ -47,7 +47,7 @@ inline constexpr double least_score = 0.3;                     // of a match aga
 inline constexpr double window_rest = 0.15, window_share = 0.3;
 inline constexpr double turn_rest = 0.12, turn_share = 0.4;
 inline constexpr double prior_rest = 0.05, prior_share = 0.15;
-// Where that finds nothing or little, the window is so much larger, and the score has to be better.
+// Where that finds nothing, the window is so much larger, and the score has to be better.
 inline constexpr double wide_reach = 0.5, wide_turn = 0.6, least_wide_score = 0.5;
 // Deviation of an odometry step that no scan confirms.
 inline constexpr double blind_share = 0.15;
@@ -164,7 +164,7 @@ class LaserSlam {
         SearchPeak peak =
             search_.find_peak(field_, scan(k), guess, window,
                               {weight / (place * place), weight / (heading * heading)}, slam::least_score);
-        if (!peak.is_found || peak.score < slam::least_wide_score) {  // did the wheels slip?
+        if (!peak.is_found) {  // did the wheels slip?
             const SearchWindow wide{window.reach + slam::wide_reach, window.turn + slam::wide_turn};
             lay_field(scan(k), guess, wide, begin, kept_.size());
             const SearchPeak other =

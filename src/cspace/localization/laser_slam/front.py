@@ -277,7 +277,7 @@ class Mapper:
 def sample_odometry(odometry: Odometry, times: Array) -> TimedPoses:
     """The poses of dead reckoning at times within it, the first one at the origin."""
     reckoned = odometry.split(times).dead_reckoning()
-    rows = np.minimum(np.searchsorted(reckoned.times, times, side="right") - 1, len(reckoned) - 1)
+    rows = np.searchsorted(reckoned.times, times)  # of equal stamps of a mended clock the first
     T = pose_2d(xytheta=reckoned.poses[rows])
     moved = inverse_pose_2d(T[:1]) @ T
     headings = np.arctan2(moved[:, 1, 0], moved[:, 0, 0])
