@@ -1,6 +1,8 @@
 // The last centimetre of a scan match: Gauss–Newton on the field, interpolated between the centers of cells.
 //
-// Each point sees a bell f = exp(−d²/2σ²) of its distance d from a wall, with the curvature f/σ² across the wall. Steps of these curvatures are those of reweighted least squares with the weights f (Holland & Welsch 1977).
+// Each point sees a bell f = exp(−d²/2σ²) of its distance d from a wall, with the curvature f/σ² across the
+// wall. Steps of these curvatures are those of reweighted least squares with the weights f (Holland & Welsch
+// 1977).
 #pragma once
 
 #include <algorithm>
@@ -19,8 +21,8 @@ struct FieldValue {
     double value = 0, dx = 0, dy = 0;
 };
 
-// Weights of four neighbours, and their derivatives (Catmull & Rom 1974): linear ones would draw every peak to the
-// center of a cell.
+// Weights of four neighbours, and their derivatives (Catmull & Rom 1974): linear ones would draw every peak
+// to the center of a cell.
 struct CubicWeights {
     double value[4], slope[4];
 

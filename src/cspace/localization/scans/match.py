@@ -45,9 +45,7 @@ class ScanMatch:
 
     def __repr__(self) -> str:
         x, y, theta = self.pose
-        text = (
-            f"{self.status}: ({x:.3f}, {y:.3f}, {theta:.4f}), score {self.score:.3f}"
-        )
+        text = f"{self.status}: ({x:.3f}, {y:.3f}, {theta:.4f}), score {self.score:.3f}"
         return one_line("ScanMatch", text)
 
 
@@ -73,7 +71,8 @@ def match_scan(
     scan: Scans of one row, or points in base (m, 2) [m] in the order of the beams. field: a ByteField, such
     as that of EvidenceGrid.likelihood_field; or another scan, of which a field of bells exp(−d²/2σ²) is made
     with `resolution` and `sigma` [m]. guess: (3,) or (3, 3). window: half its sides [m] and [rad].
-    least_score: of a match. Raises InputError for a scan without points, and UnknownNameError for another method.
+    least_score: of a match. Raises InputError for a scan without points, and UnknownNameError for another
+    method.
     """
     if method not in METHODS:
         raise suggest("method", method, METHODS)
