@@ -35,11 +35,12 @@ def main(folder: Path) -> None:
     print(modes, modes.poses[0].round(2), "true", poses[held_out].round(2))
     assert np.hypot(*(modes.poses[0] - poses[held_out])[:2]) < 0.1
 
-    evidence.save_ros(folder / "room.yaml")
-    again = cs.OccupancyGrid.from_ros(folder / "room.yaml")
-    route = cs.navigate(again, poses[0, :2], (7.0, 5.0), planner="a_star", radius=0.2)
+    route = cs.navigate(evidence.to_grid(), poses[0, :2], (7.0, 5.0), planner="a_star", radius=0.2)
     print(route)
     assert route
+    axes = cs.plot.world(evidence)[0].axes
+    axes.plot(*route.path.T)
+    axes.figure.savefig(folder / "room.png")
 
 
 if __name__ == "__main__":
