@@ -1,7 +1,10 @@
 // Scan matching and laser SLAM, for cspace.localization.
 #include "library/localization_scans.hpp"
 
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
+
+#include <tuple>
 
 #include "maps_points.hpp"
 
@@ -17,11 +20,15 @@ ScoreArray read_field(const cspace::maps::CellBytes& scores, double resolution, 
     return {scores.data, scores.rows, scores.columns, resolution, origin, outside};
 }
 // Found, ambiguous, pose, covariance, score, second.
-nb::tuple write_match(const ScanMatchResult& found) {
-    return nb::make_tuple(found.is_found, found.is_ambiguous, make_array<PoseRow>({{found.pose}}),
-                          make_array<SquareRow>({{found.covariance}}), found.score, found.second);
+using MatchParts = std::tuple<bool, bool, cspace::Table<PoseRow>, cspace::Table<SquareRow>, double, double>;
+MatchParts write_match(const ScanMatchResult& found) {
+    return {found.is_found,       found.is_ambiguous, {{found.pose}},
+            {{found.covariance}}, found.score,        found.second};
 }
-nb::tuple write_relations(const std::vector<ScanRelation>& relations) {
+using RelationParts =
+    std::tuple<cspace::Table<std::int32_t>, cspace::Table<PoseRow>, cspace::Table<SquareRow>,
+               cspace::Table<double>, cspace::Table<std::int32_t>>;
+RelationParts write_relations(const std::vector<ScanRelation>& relations) {
     cspace::Table<std::int32_t> ends{{}, 2};
     cspace::Table<PoseRow> poses;
     cspace::Table<SquareRow> covariances;
@@ -34,8 +41,8 @@ nb::tuple write_relations(const std::vector<ScanRelation>& relations) {
         scores.values.insert(scores.values.end(), {relation.score, relation.second});
         verdicts.values.push_back(relation.verdict);
     }
-    return nb::make_tuple(std::move(ends), std::move(poses), std::move(covariances), std::move(scores),
-                          std::move(verdicts));
+    return {std::move(ends), std::move(poses), std::move(covariances), std::move(scores),
+            std::move(verdicts)};
 }
 
 }  // namespace
@@ -74,7 +81,7 @@ void bind_localization_scans(nb::module_& m) {
         "make_field_of_points",
         [](std::span<const Point> points, double resolution, double sigma) {
             PointField field = make_field_of_points(points, resolution, sigma);
-            return nb::make_tuple(
+            return std::make_tuple(
                 cspace::Table<std::uint8_t>{std::move(field.scores), std::size_t(field.columns)},
                 field.origin.x, field.origin.y);
         },
@@ -88,8 +95,8 @@ void bind_localization_scans(nb::module_& m) {
                 const nb::gil_scoped_release released;
                 kept = thin_scans(points, begins, most);
             }
-            return nb::make_tuple(cspace::Table<Point>{std::move(kept)},
-                                  cspace::Table<std::int32_t>{std::move(begins)});
+            return std::make_tuple(cspace::Table<Point>{std::move(kept)},
+                                   cspace::Table<std::int32_t>{std::move(begins)});
         },
         "points"_a, "first"_a, "most"_a, "At most so many points of each scan, and where each scan begins.");
     nb::class_<LaserSlamRun>(m, "LaserSlamRun", "Laser SLAM on a pose graph, as far as it is done.")
@@ -103,8 +110,8 @@ void bind_localization_scans(nb::module_& m) {
         .def_prop_ro("done", &LaserSlamRun::done)
         .def_prop_ro("tried", &LaserSlamRun::tried)
         .def_prop_ro("optimizations", &LaserSlamRun::optimizations)
-        .def_prop_ro("poses", [](const LaserSlamRun& run) { return make_array<PoseRow>({run.poses()}); })
-        .def_prop_ro("matched", [](const LaserSlamRun& run) { return make_array<PoseRow>({run.matched()}); })
+        .def_prop_ro("poses", [](const LaserSlamRun& run) { return cspace::Table<PoseRow>{run.poses()}; })
+        .def_prop_ro("matched", [](const LaserSlamRun& run) { return cspace::Table<PoseRow>{run.matched()}; })
         .def_prop_ro(
             "edges", [](const LaserSlamRun& run) { return write_relations(run.edges()); },
             "Ends, poses, covariances, scores with second scores, and verdicts.")

@@ -1111,18 +1111,18 @@ class ParticleCloud:
     def draw_normals(self, count: int) -> numpy.typing.NDArray[numpy.float64]:
         """Standard normal numbers (count, 3) of a step of their own."""
 
-def match_points(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float, turn: float, refines: bool) -> tuple:
+def match_points(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float, turn: float, refines: bool) -> tuple[bool, bool, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float, float]:
     """
     Found, ambiguous, pose, covariance, score and second score of a correlative match.
     """
 
-def match_point_lines(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, reference: numpy.typing.NDArray[numpy.float64], points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float) -> tuple:
+def match_point_lines(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, reference: numpy.typing.NDArray[numpy.float64], points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float) -> tuple[bool, bool, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float, float]:
     """The same by point-to-line ICP."""
 
-def make_field_of_points(points: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float) -> tuple:
+def make_field_of_points(points: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float) -> tuple[numpy.typing.NDArray[numpy.uint8], float, float]:
     """The scores and the origin of a field of bells about points."""
 
-def thin_scans(points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], most: int) -> tuple:
+def thin_scans(points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], most: int) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
     """At most so many points of each scan, and where each scan begins."""
 
 class LaserSlamRun:
@@ -1143,17 +1143,17 @@ class LaserSlamRun:
     def optimizations(self) -> int: ...
 
     @property
-    def poses(self) -> object: ...
+    def poses(self) -> numpy.typing.NDArray[numpy.float64]: ...
 
     @property
-    def matched(self) -> object: ...
+    def matched(self) -> numpy.typing.NDArray[numpy.float64]: ...
 
     @property
-    def edges(self) -> tuple:
+    def edges(self) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
         """Ends, poses, covariances, scores with second scores, and verdicts."""
 
     @property
-    def loops(self) -> tuple:
+    def loops(self) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
         """The same of all loops that were found."""
 
 class LandmarkFilter:
@@ -1245,7 +1245,7 @@ class IncrementalSolver:
 
     def cost(self) -> float: ...
 
-    def arrays(self) -> tuple:
+    def arrays(self) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.uint8]]:
         """
         Edges, motions, information, sightings, points, their information, and has_bearing, flat.
         """

@@ -8,6 +8,7 @@ from time import perf_counter
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace._core import LaserSlamRun, TimeOver, set_deadline
 from cspace.arrays import Array, positive_number
@@ -181,7 +182,7 @@ class Mapper:
         robust = "dcs" if len(graph.edges) >= len(graph.poses) else None
         self.answer = graph.optimize(start="given", robust=robust)
 
-    def make_graph(self) -> tuple[PoseGraph, Array]:
+    def make_graph(self) -> tuple[PoseGraph, npt.NDArray[np.intp]]:
         """The graph of what is done, and the rows of the loops in it."""
         assert self.core is not None
         poses = self.core.poses
@@ -251,7 +252,7 @@ class Mapper:
             return "lost", f"the last {LOST_AFTER} scans or more match nothing; their poses are odometry"
         return "mapped", f"{stats.scans - stats.unmatched} scans matched, {stats.rejected} loops rejected"
 
-    def list_loops(self, used: Array, edges: int) -> tuple[LoopClosure, ...]:
+    def list_loops(self, used: npt.NDArray[np.intp], edges: int) -> tuple[LoopClosure, ...]:
         """All loops that were found; edges: of the graph that come before the accepted ones."""
         assert self.core is not None
         ends, motions, covariances, scores, verdicts = self.core.loops

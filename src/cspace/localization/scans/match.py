@@ -89,11 +89,11 @@ def match_scan(
             raise InputError('field is a ByteField; method="icp" needs the points of another scan')
         reference, made = None, field
     else:
-        reference = read_scan(field, "field")
-        made = make_field(reference, resolution, sigma)
+        other = read_scan(field, "field")
+        reference, made = other if method == "icp" else None, make_field(other, resolution, sigma)
     place = (made.scores, made.resolution, made.origin, made.outside)
     with guard_memory("window", window, reach * reach * turn / made.resolution**2, "give a smaller window"):
-        if method == "icp":
+        if reference is not None:
             found = _core.match_point_lines(*place, reference, points, near, reach)
         else:
             found = _core.match_points(*place, points, near, reach, turn, True)
