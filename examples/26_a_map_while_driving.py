@@ -43,8 +43,10 @@ def main(folder: Path) -> None:
     print(f"{found.stats.accepted} loops accepted, {found.stats.rejected} rejected")
 
     # The map serves planning and localisation.
-    found.map.save_ros(folder / "map.yaml")
     print(found.map, found.map.to_grid())
+    axes = cs.plot.world(found.map)[0].axes
+    axes.plot(*found.poses[:, :2].T)
+    axes.figure.savefig(folder / "building.png")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ def main(folder: Path) -> None:
     run = cs.navigation.follow([(0, 0), (9, 0), (9, 6), (0, 6), (0, 1)], vehicle=cs.Unicycle())
     points = [(3, -1.5), (6, -1.5), (10.5, 1), (10.5, 5), (7, 7.5), (3, 7.5), (-1.5, 5), (-1.5, 1), (4.5, 3)]
     sensor = RangeBearing(range_sigma=0.1, bearing_sigma=0.02, most_range=4.0)
-    log = simulate(run, Landmarks(range(9), points), sensor=sensor, rng=3)
+    log = simulate(run, Landmarks(np.arange(9), np.array(points)), sensor=sensor, rng=3)
     truth = log.truth
     assert truth is not None
     start = truth.poses[0]
@@ -44,6 +44,7 @@ def main(folder: Path) -> None:
     best = answers["invariant"]
     rows = np.column_stack([best.times, best.poses])
     np.savetxt(folder / "drive.csv", rows, fmt="%.4f", delimiter=",", header="time,x,y,theta")
+    assert best.landmarks.covariances is not None
     ellipses = np.sqrt(np.linalg.eigvalsh(best.landmarks.covariances))
     print(f"landmarks are known to {ellipses.min():.3f} to {ellipses.max():.3f} m")
 

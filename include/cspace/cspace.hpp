@@ -42,7 +42,6 @@
 #include "cspace/localization/scans/laser_slam.hpp"
 #include "cspace/localization/scans/line_icp.hpp"
 #include "cspace/localization/scans/map_search.hpp"
-#include "cspace/maps/byte_field.hpp"
 #include "cspace/maps/evidence.hpp"
 #include "cspace/maps/grid_outlines.hpp"
 #include "cspace/maps/likelihood_field.hpp"

@@ -4,11 +4,11 @@ import time
 
 import numpy as np
 import pytest
-from tests.data import shared_data
 
 import cspace as cs
 from cspace.localization import LaserScanner, Log, Scans, simulate
 from cspace.mobile import Odometry, RandomWalk
+from data import shared_data
 
 NOISE = RandomWalk(distance=2e-3, side=5e-4, turn=3e-3, drift=2e-3)
 
