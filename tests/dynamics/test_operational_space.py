@@ -9,6 +9,7 @@ import cspace as cs
 from cspace.errors import InputError
 from dynamics.test_motion_and_force import ARMS, TREES
 from kinematics.robots import random_q
+from model.random_robots import random_pose
 
 SIX = [ARMS[0], ARMS[1], ARMS[4]]
 
@@ -53,4 +54,24 @@ def test_a_straight_planar_arm_cannot_be_pushed_along_itself():
     with pytest.raises(InputError, match="length 0"):
         bent.effective_mass([0, 0, 0])
     with pytest.raises(InputError, match="q has shape"):
-        robot.operational_space([[0.0, 0.0]])
+        robot.operational_space([[0.0, 0.0, 0.0]])
+
+
+@pytest.mark.parametrize("robot", [*SIX, *TREES[:2]], ids=lambda robot: robot.name)
+def test_rows_of_a_batch_are_those_alone(robot):
+    rng = np.random.default_rng(6)
+    q, d = random_q(robot, rng, 4).reshape(2, 2, -1), rng.normal(size=(2, 2, 3))
+    T = random_pose(rng)
+    many = robot.operational_space(q, robot.frames[-1], T_world_base=T)
+    assert many.lost.shape == (2, 2, 6, 6)
+    assert "4 rows" in repr(many)
+    for i in np.ndindex(2, 2):
+        one = robot.operational_space(q[i], robot.frames[-1], T_world_base=T)
+        scale = np.abs(one.mobility).max(initial=1e-300)
+        np.testing.assert_allclose(many.mobility[i], one.mobility, atol=1e-12 * scale)
+        np.testing.assert_allclose(
+            many.inertia[i], one.inertia, rtol=1e-6, atol=1e-6 * np.abs(one.inertia).max()
+        )
+        assert many.rank[i] == one.rank == 6 - len(one.lost)
+        assert not many.lost[i][len(one.lost) :].any()
+        assert many.effective_mass(d)[i] == pytest.approx(one.effective_mass(d[i]), rel=1e-9)
