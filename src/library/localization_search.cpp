@@ -34,7 +34,7 @@ Table<ModeRow> search_map(const FieldView& view, std::span<const std::uint8_t> a
     MapSearch<KernelSums> search(field, allowed, points,
                                  {int(rule[0]), rule[1], rule[2], int(rule[3]), rule[4], rule[5]});
     Table<ModeRow> modes;
-    for (const PoseMode& mode : search.find())
+    for (const FoundPose& mode : search.find())
         modes.values.push_back({mode.x, mode.y, mode.theta, mode.score});
     return modes;
 }

@@ -30,12 +30,12 @@ BitGrid random_grid(check::Random& random, int most) {
 }
 
 // All poses in order of heading, row and column; the first of the greatest scores that is apart from others.
-std::vector<PoseMode> try_all(const ByteField& field, const std::vector<std::uint8_t>& allowed,
-                              const std::vector<Point>& points, const MapSearchRule& rule) {
-    std::vector<PoseMode> modes;
+std::vector<FoundPose> try_all(const ByteField& field, const std::vector<std::uint8_t>& allowed,
+                               const std::vector<Point>& points, const MapSearchRule& rule) {
+    std::vector<FoundPose> modes;
     const double whole = 255.0 * double(points.size());
     while (int(modes.size()) < rule.most) {
-        PoseMode best{0, 0, 0, -1};
+        FoundPose best{0, 0, 0, -1};
         for (int k = 0; k < rule.headings; ++k) {
             double turn = 2 * std::numbers::pi * k / rule.headings;
             if (turn > std::numbers::pi) turn -= 2 * std::numbers::pi;
@@ -46,7 +46,7 @@ std::vector<PoseMode> try_all(const ByteField& field, const std::vector<std::uin
                     if (!allowed.empty() && !allowed[std::size_t(row * field.columns + column)]) continue;
                     const Point at = field.frame.center({row, column});
                     bool is_near = false;
-                    for (const PoseMode& mode : modes)
+                    for (const FoundPose& mode : modes)
                         is_near |= distance({mode.x, mode.y}, at) <= rule.apart &&
                                    std::abs(short_way(turn - mode.theta)) <= rule.apart_heading;
                     if (is_near) continue;
@@ -110,8 +110,8 @@ TEST(a_search_of_large_blocks_first_is_that_of_all_poses) {
         rule.headings = 1 + random.below(8);
         rule.apart = random.uniform(0, 9) * frame.resolution;
         rule.most_blocks = random.below(3) == 0 ? 1 + 9 * rule.headings : std::int64_t(1) << 25;
-        const std::vector<PoseMode> wanted = try_all(field, allowed, points, rule);
-        const std::vector<PoseMode> got = MapSearch<>(field, allowed, points, rule).find();
+        const std::vector<FoundPose> wanted = try_all(field, allowed, points, rule);
+        const std::vector<FoundPose> got = MapSearch<>(field, allowed, points, rule).find();
         CHECK(got.size() == wanted.size());
         for (std::size_t k = 0; k < got.size() && k < wanted.size(); ++k) {
             CHECK(got[k].x == wanted[k].x && got[k].y == wanted[k].y && got[k].theta == wanted[k].theta);

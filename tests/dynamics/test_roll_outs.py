@@ -305,6 +305,6 @@ def test_many_long_roll_outs_take_less_than_twice_their_answer(rng):
     run = robot.simulate(q, qd, control=PD(q[0], 1.0, 0.1), duration=1.0, dt=1e-3, every=10)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    answer = sum(each.nbytes for each in (run.q, run.qd, run.tau, run.energy))
+    answer = sum(each.nbytes for each in (run.q, run.qd, run.tau, run.energy, run.momentum))
     assert run.q.shape[:2] == (10**4, 101)
     assert peak < 1.2 * answer

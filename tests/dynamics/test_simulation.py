@@ -507,7 +507,7 @@ def test_recorded_states_are_most_of_the_memory():
     run = robot.simulate(q, [0, 0], **given)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert peak < 2.0 * sum(each.nbytes for each in (run.q, run.qd, run.tau, run.energy))
+    assert peak < 2.0 * sum(each.nbytes for each in (run.q, run.qd, run.tau, run.energy, run.momentum))
 
 
 def test_an_interrupt_ends_a_simulation():

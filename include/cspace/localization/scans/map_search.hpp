@@ -25,7 +25,7 @@
 
 namespace cspace::localization {
 
-struct PoseMode {
+struct FoundPose {
     double x, y, theta;  // [m], [rad] in (−π, π]
     double score;        // mean of the scores of the points, 0 … 1
 };
@@ -241,7 +241,7 @@ class MapSearch {
 
     // The best pose, then the best of those apart from it, and so on. Among equal scores the one of the first
     // heading, row and column comes first.
-    std::vector<PoseMode> find() {
+    std::vector<FoundPose> find() {
         find_offsets();
         bound_blocks();
         int limit = int(whole_) + 1;
@@ -285,7 +285,7 @@ class MapSearch {
     std::int64_t batch_ = 4096;  // blocks that are put into the queue at once
     InterruptPoll poll_{32};
     std::int64_t scored_ = 0;
-    std::vector<PoseMode> modes_;
+    std::vector<FoundPose> modes_;
     std::vector<std::int64_t> at_;  // of each point: where the cells of a block are in the image
 
     int choose_level() const {
@@ -415,14 +415,14 @@ class MapSearch {
         score_poses(
             {pose.score, map_search::finest, pose.heading, pose.row & aligned, pose.column & aligned});
     }
-    PoseMode mode_of(const Block& block) const {
+    FoundPose mode_of(const Block& block) const {
         const Point at = field_.frame.center({block.row, block.column});
         return {at.x, at.y, heading(block.heading), block.score / whole_};
     }
     // Whether all poses of a block are too near to one found.
     bool is_near_mode(const Block& block) const {
         const int last = (1 << block.level) - 1;
-        return std::any_of(modes_.begin(), modes_.end(), [&](const PoseMode& mode) {
+        return std::any_of(modes_.begin(), modes_.end(), [&](const FoundPose& mode) {
             if (std::abs(short_way(heading(block.heading) - mode.theta)) > rule_.apart_heading) return false;
             double far = 0;
             for (int k = 0; k < 4; ++k)
