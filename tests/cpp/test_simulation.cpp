@@ -17,7 +17,7 @@ namespace {
 
 // A simulation of random rows, with all its arrays.
 struct Rows {
-    std::vector<double> q, qd, T, tau, stopped, time, length, records[5];
+    std::vector<double> q, qd, T, tau, stopped, time, length, records[6];
     std::vector<int> status, joint;
     std::vector<long long> next;
     std::vector<double> kp, kd, goal;
@@ -41,8 +41,8 @@ struct Rows {
         status.resize(rows);
         joint.resize(rows);
         next.resize(rows);
-        const std::size_t widths[] = {n, dof, dof, 1, 16};
-        for (int k = 0; k < 5; ++k) records[k].resize(rows * count * widths[k]);
+        const std::size_t widths[] = {n, dof, dof, 1, 16, 6};
+        for (int k = 0; k < 6; ++k) records[k].resize(rows * count * widths[k]);
         kp.assign(n, 3.0);
         kd.assign(n, 0.4);
         goal = random_numbers(random, n);
@@ -55,7 +55,7 @@ struct Rows {
         task.tolerance = 1e-9;
         task.steps = steps;
         task.every = 1;
-        task.is_held = true;
+        task.is_held = task.keeps_pieces = true;
         task.control = {
             ControlLaw::pd, {}, {kp.data(), 0}, {kd.data(), 0}, {goal.data(), 0}, true, {}, 0, {}, {}};
         point();
@@ -78,11 +78,9 @@ struct Rows {
         task.control.kp.values = kp.data();
         task.control.kd.values = kd.data();
         task.control.goal.values = goal.data();
-        task.records = {records[0].data(),
-                        records[1].data(),
-                        records[2].data(),
-                        records[3].data(),
-                        task.mechanics.floating ? records[4].data() : nullptr,
+        task.records = {records[0].data(),          records[1].data(),
+                        records[2].data(),          records[3].data(),
+                        records[5].data(),          task.mechanics.floating ? records[4].data() : nullptr,
                         std::size_t(task.steps) + 1};
     }
 };
@@ -181,11 +179,11 @@ TEST(roll_outs_do_not_depend_on_threads_interruptions_or_other_rows) {
             roll(one, 1);
             roll(four, 4);
             for (const int status : one.status) CHECK(status == ended);
-            for (int k = 0; k < 5; ++k) CHECK(one.records[k] == four.records[k]);
+            for (int k = 0; k < 6; ++k) CHECK(one.records[k] == four.records[k]);
             if (method == Method::adaptive) continue;
             for (long long k = 0; k <= start.task.steps; ++k)
                 roll_out(parts.task, 21, k, k + 1, 1, Deadline::max());
-            for (int k = 0; k < 5; ++k) CHECK(one.records[k] == parts.records[k]);
+            for (int k = 0; k < 6; ++k) CHECK(one.records[k] == parts.records[k]);
             // A row alone is not computed in lanes.
             Rows alone = start;
             alone.point();
@@ -214,7 +212,7 @@ TEST(a_free_robot_keeps_its_energy_to_the_order_of_the_method) {
             if (half) {
                 rows.task.dt /= 2.0;
                 rows.task.steps *= 2;
-                for (int k = 0; k < 5; ++k) rows.records[k].resize(2 * rows.records[k].size());
+                for (int k = 0; k < 6; ++k) rows.records[k].resize(2 * rows.records[k].size());
                 rows.point();
                 rows.task.control = {};
             }
