@@ -102,10 +102,10 @@ def match_scan(
 
 def read_window(window: Any) -> tuple[float, float]:
     """Half the sides of a window, [m] and [rad]."""
-    sides = one_array(window, "window", (2,), "half the sides [m] and [rad]")
-    positive_number(sides[0], "window", largest=LARGEST_WINDOW)
-    positive_number(sides[1], "window", "its angle is above zero, at most π", largest=np.pi)
-    return float(sides[0]), float(sides[1])
+    reach, turn = one_array(window, "window", (2,), "half the sides [m] and [rad]").tolist()
+    positive_number(reach, "window", largest=LARGEST_WINDOW)
+    positive_number(turn, "window", "its angle is above zero, at most π", largest=np.pi)
+    return reach, turn
 
 
 def make_field(points: Array, resolution: float, sigma: float) -> ByteField:
