@@ -140,35 +140,37 @@ q (..., n) [rad or m], gravity (3,) [m/s²], T_world_base (..., 4, 4), out (...)
 InputError for a wrong shape or NaN and where no link has a mass.)doc";
 
 const char inverse_derivatives_doc[] =
-    R"doc(inverse_dynamics_derivatives($self, q, qd, qdd, *, gravity=(0, 0, -9.81), friction=True, T_world_base=None, out=None, threads=None)
+    R"doc(inverse_dynamics_derivatives($self, q, qd, qdd, *, gravity=(0, 0, -9.81), wrenches=None, expressed_in='base', friction=True, T_world_base=None, out=None, threads=None)
 --
 
 ∂tau/∂q, ∂tau/∂q̇ and ∂tau/∂q̈ = M of inverse dynamics.
 
 The position of a floating base is varied by a displacement [v; ω] in the axes of the world, its velocities and
-accelerations in these axes kept. Dry friction counts as constant.
+accelerations in these axes kept. Dry friction counts as constant. Wrenches keep their numbers in the axes that
+expressed_in names, and move with their frames.
 
-q (..., n) [rad or m], qd, qdd (..., dof), gravity (3,), friction, T_world_base (..., 4, 4), threads: as in
-inverse_dynamics. out (..., 3, dof, dof): float64 array to write into; the answers are parts of it.
+q (..., n) [rad or m], qd, qdd (..., dof), gravity (3,), wrenches, expressed_in, friction, T_world_base (..., 4,
+4), threads: as in inverse_dynamics. out (..., 3, dof, dof): float64 array to write into; the answers are parts
+of it.
 
 Returns dq, dqd and M, each (..., dof, dof): row i holds the derivatives of tau[i]. Raises InputError for a wrong
-shape or NaN and where no link has a mass.
+shape or NaN and where no link has a mass, UnknownNameError for an unknown frame.
 
 Carpentier and Mansard 2018; Singh, Russell and Wensing 2022.)doc";
 
 const char forward_derivatives_doc[] =
-    R"doc(forward_dynamics_derivatives($self, q, qd, tau, *, gravity=(0, 0, -9.81), friction=True, T_world_base=None, out=None, threads=None)
+    R"doc(forward_dynamics_derivatives($self, q, qd, tau, *, gravity=(0, 0, -9.81), wrenches=None, expressed_in='base', friction=True, T_world_base=None, out=None, threads=None)
 --
 
 ∂q̈/∂q, ∂q̈/∂q̇ and ∂q̈/∂tau = M⁻¹ of forward dynamics.
 
 They are −M⁻¹ times those of inverse dynamics at the acceleration that tau causes.
 
-q (..., n), qd, tau (..., dof), gravity, friction, T_world_base, threads: as in forward_dynamics. out (..., 3,
-dof, dof): as in inverse_dynamics_derivatives.
+q (..., n), qd, tau (..., dof), gravity, wrenches, expressed_in, friction, T_world_base, threads: as in
+forward_dynamics. out (..., 3, dof, dof): as in inverse_dynamics_derivatives.
 
 Returns dq, dqd and M⁻¹, each (..., dof, dof). Raises InputError for a wrong shape or NaN, and where a joint moves
-no inertia.)doc";
+no inertia, UnknownNameError for an unknown frame.)doc";
 
 const char regressor_doc[] =
     R"doc(regressor($self, q, qd, qdd, *, gravity=(0, 0, -9.81), friction=True, T_world_base=None, out=None, threads=None)

@@ -138,6 +138,45 @@ def test_derivatives_of_forward_dynamics_are_its_slopes(robot, rng):
     np.testing.assert_allclose(dtau, slope, atol=1e-5 * scale(slope))
 
 
+@pytest.mark.parametrize("axes", ["base", "tip"])
+@pytest.mark.parametrize("robot", [*ROBOTS, *FREE], ids=lambda robot: robot.name)
+def test_derivatives_with_wrenches_are_slopes(robot, axes, rng):
+    q, n, still = random_q(robot, rng), robot.dof, {"friction": False}
+    T, b = (random_pose(rng), 6) if robot.floating else (None, 0)
+    qd, qdd = rng.normal(size=(2, n))
+    frames = dict.fromkeys([robot.base, *rng.choice(robot.frames, size=2)])
+    pushed = {"wrenches": {frame: rng.normal(size=6) * 10 for frame in frames}, "expressed_in": axes, **still}
+
+    def placed(d):
+        return {"T_world_base": moved(T, d[:6])} if robot.floating else {}
+
+    def torques(d):
+        return robot.inverse_dynamics(q + d[b:], qd, qdd, **placed(d), **pushed)
+
+    def responses(d):
+        return robot.forward_dynamics(q + d[b:], qd, tau, **placed(d), **pushed)
+
+    tau = torques(np.zeros(n))
+    slope = differences(torques, n)
+    dq = robot.inverse_dynamics_derivatives(q, qd, qdd, **placed(np.zeros(6)), **pushed)[0]
+    np.testing.assert_allclose(dq, slope, atol=1e-7 * scale(slope))
+    slope = differences(responses, n)
+    dq = robot.forward_dynamics_derivatives(q, qd, tau, **placed(np.zeros(6)), **pushed)[0]
+    np.testing.assert_allclose(dq, slope, atol=1e-5 * scale(slope))
+
+
+def test_derivatives_with_a_wrench_for_each_row_are_those_of_single_rows(rng):
+    robot = ARMS[0]
+    q, (qd, qdd) = random_q(robot, rng, 5), rng.normal(size=(2, 5, robot.dof))
+    w = rng.normal(size=(3, 5, 6))
+    tip = robot.frames[-1]
+    for compute in (robot.inverse_dynamics_derivatives, robot.forward_dynamics_derivatives):
+        all_rows = compute(q, qd, qdd, wrenches={tip: w})[0]
+        for i, j in np.ndindex(3, 5):
+            one = compute(q[j], qd[j], qdd[j], wrenches={tip: w[i, j]})[0]
+            np.testing.assert_allclose(all_rows[i, j], one, atol=1e-11 * scale(one))
+
+
 @pytest.mark.parametrize("robot", [*ROBOTS, *FREE], ids=lambda robot: robot.name)
 def test_derivatives_of_forward_dynamics_are_those_of_inverse_dynamics_through_the_mass_matrix(robot, rng):
     q, placed = random_q(robot, rng), {"T_world_base": random_pose(rng)} if robot.floating else {}
