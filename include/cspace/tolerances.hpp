@@ -129,5 +129,13 @@ inline constexpr double same_distance = 1e-12, same_gradient = 1e-9;
 inline constexpr double singular_inertia = 1e-13;
 // The same in floats, which leave rounding of 1e-7.
 inline constexpr float singular_inertia_of_floats = 1e-6f;
+// Closed loops: φ, without units, up to which they are closed, and from which on nothing is gained by another
+// step.
+inline constexpr double loop_closed = 1e-12, loop_projected = 2e-14;
+// A row of K, relative to the largest, that depends on others; and by how much more for each unit of φ, since
+// the rows of open loops are not quite dependent.
+inline constexpr double loop_rank = 1e-9, loop_rank_slack = 100.0;
+// Kinetic energy of a unit motion, relative to the largest one, that is none: the rounding of M.
+inline constexpr double massless_motion = 1e-16;
 
 }  // namespace cspace::tolerance

@@ -5,7 +5,7 @@
 
 // clang-format off
 #define CSPACE_BINDINGS(bind)                                                                              \
-    bind(math) bind(kinematics) bind(kinematics_rows) bind(spatial_rotations) bind(ik_subproblems)         \
+    bind(math) bind(kinematics) bind(kinematics_rows) bind(kinematics_loops) bind(spatial_rotations) bind(ik_subproblems)         \
     bind(ik_solver) bind(dynamics) bind(robot) bind(ik_result) bind(ik) bind(ik_self_motion) bind(ik_goals)               \
     bind(ik_numeric) bind(ik_redundancy) bind(ik_tracking) bind(ik_description) bind(maps) bind(shapes)    \
     bind(collision) bind(collision_solids) bind(planning_arm) bind(navigation_route) bind(navigation_grid) \

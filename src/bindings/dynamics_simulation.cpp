@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cspace/dynamics/make_links.hpp"
+#include "kinematics_loops.hpp"
 #include "kinematics_rows.hpp"
 #include "library/dynamics_roll_out.hpp"
 
@@ -52,6 +53,15 @@ class Simulator {
         task_.tolerance = tolerance;
         task_.lower = keep(lower, n_);
         task_.upper = keep(upper, n_);
+    }
+
+    // Loops that stay closed, and the rank of each row so far.
+    void close_loops(nb::object table, const Flags& rank) {
+        kept_.push_back(table);
+        loops_ = nb::cast<const LoopTable&>(table).view();
+        require(loops_.dof == dof_ && loops_.n_coordinates == n_ && task_.method == Method::runge_kutta);
+        task_.mechanics.loops = &loops_;
+        task_.rank = keep(rank, rows_);
     }
 
     // The state of each row (rows, …), and whether one pose (16,) serves all.
@@ -203,6 +213,7 @@ class Simulator {
 
     nb::object robot_;
     dynamics::RollOut task_{};
+    kinematics::ClosedLoops loops_{};
     npy_intp rows_ = 0, n_ = 0, dof_ = 0;
     long long motion_steps_ = 0;
     int threads_;
@@ -230,6 +241,8 @@ void bind_dynamics_simulation(nb::module_& m) {
              "joint"_a, "stopped"_a, "The arrays of the states of all rows, which are written to.")
         .def("hold_records", &Simulator::hold_records, "q"_a, "qd"_a, "tau"_a, "energy"_a, "momentum"_a,
              "T_world_base"_a.none(), "The arrays (rows, count, …) into which states are recorded.")
+        .def("close_loops", &Simulator::close_loops, "loops"_a, "rank"_a,
+             "A LoopTable whose loops stay closed, and the rank of each row, after the state.")
         .def("set_torques", &Simulator::set_torques, "tau"_a.none(), "Torques that are given.")
         .def("set_pd", &Simulator::set_pd, "kp"_a, "kd"_a, "goal"_a, "carries_weight"_a,
              "Proportional and derivative control.")

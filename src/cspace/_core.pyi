@@ -90,6 +90,17 @@ class KinematicsBase:
     def dof(self) -> int:
         """Number of velocities: one per coordinate, and six more for a floating base."""
 
+class LoopTable:
+    """The numbers of closed loops; see kinematics.LoopConstraints."""
+
+    def __init__(self, joints: numpy.typing.NDArray[numpy.float64], loops: numpy.typing.NDArray[numpy.float64], rows: numpy.typing.NDArray[numpy.float64], sides: numpy.typing.NDArray[numpy.float64], unit: numpy.typing.NDArray[numpy.float64], n_coordinates: int, length: float) -> None:
+        """
+        joints (…, 22): parent, coordinate, column, whether it turns, ratio, offset, place; loops (…, 44); rows (…, 15); sides (loops, joints); unit (dof,).
+        """
+
+    def evaluate(self, q: numpy.typing.NDArray[numpy.float64], qd: numpy.typing.NDArray[numpy.float64] | None, phi: numpy.typing.NDArray[numpy.float64] | None, over: numpy.typing.NDArray[numpy.bool] | None, K: numpy.typing.NDArray[numpy.float64] | None, wrenches: numpy.typing.NDArray[numpy.float64] | None, k: numpy.typing.NDArray[numpy.float64] | None, threads: int) -> None:
+        """Fills in the arrays of as many rows as q (rows, n) has."""
+
 def quaternion_matrices(q: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], scalar_last: bool, R: Annotated[NDArray[numpy.float64], dict(shape=(None, 3, 3), order='C', device='cpu')]) -> bool:
     """
     Rotations of quaternions (n, 4) of any length, written into R (n, 3, 3); False if a row needs care.
@@ -950,6 +961,11 @@ class Simulator:
 
     def hold_records(self, q: numpy.typing.NDArray[numpy.float64], qd: numpy.typing.NDArray[numpy.float64], tau: numpy.typing.NDArray[numpy.float64], energy: numpy.typing.NDArray[numpy.float64], momentum: numpy.typing.NDArray[numpy.float64], T_world_base: numpy.typing.NDArray[numpy.float64] | None) -> None:
         """The arrays (rows, count, …) into which states are recorded."""
+
+    def close_loops(self, loops: object, rank: numpy.typing.NDArray[numpy.int32]) -> None:
+        """
+        A LoopTable whose loops stay closed, and the rank of each row, after the state.
+        """
 
     def set_torques(self, tau: numpy.typing.NDArray[numpy.float64] | None) -> None:
         """Torques that are given."""

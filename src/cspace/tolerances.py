@@ -556,9 +556,6 @@ LOOP_CLOSED: Final = 1e-12
 """Size of the residual of closed loops, relative to the mechanism, up to which they are closed: a hundred
 products of poses leave 1e-14."""
 
-LOOP_PROJECTED: Final = 2e-14
-"""Size of this residual at which a projection ends: a few roundings of the poses."""
-
 LOOP_OPEN: Final = 1e-6
 """Size of this residual above which forces are not computed: configurations typed with seven digits pass, and
 a pin that far off is an error."""

@@ -24,12 +24,19 @@ RollOutMemory<V> make_memory(const RollOut& task, void* bytes) {
     memory.fresh = take(dof);
     memory.control = take(5 * n);
     // The axes of a chain take its sines and six numbers per joint.
-    memory.work = {take(80 * links + 8 * (links + 8)),  take(dof * dof), take(dof * dof),
-                   take(6 * task.mechanics.n_wrenches), take(dof),       take(dof)};
+    memory.work = {take(80 * links + 8 * (links + 8)),
+                   take(dof * dof),
+                   take(dof * dof),
+                   take(6 * task.mechanics.n_wrenches),
+                   take(dof),
+                   take(dof),
+                   {},
+                   {}};
     memory.stages = {take(15 * dof), take(7 * dof), take(dof), take(dof), take_state()};
     memory.variational = {take(dof), take(dof),       take(dof), take(dof),   take(dof),
                           take(dof), take(dof * dof), take(dof), take_state()};
     for (int j = 0; j < dof; ++j) memory.variational.zero[j] = fill<V>(0.0);
+    if (task.mechanics.loops) memory.work.loops = make_loop_memory(*task.mechanics.loops, scratch.next);
     return memory;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "cspace/dynamics/allowed_motions.hpp"
 #include "cspace/dynamics/roll_out_task.hpp"
 #include "dispatch.hpp"
 
@@ -14,7 +15,9 @@ inline std::size_t scratch_bytes(const RollOut& task) {
     const std::size_t n = std::size_t(task.mechanics.bodies.n_links), dof = std::size_t(task.mechanics.dof());
     const std::size_t joints = std::size_t(task.mechanics.bodies.n_coordinates);
     const std::size_t wrenches = std::size_t(task.mechanics.n_wrenches);
-    return 8 * part_rows * (80 * n + 8 * (n + 8) + dof * (3 * dof + 44) + 14 * joints + 6 * wrenches + 64);
+    const std::size_t loops = task.mechanics.loops ? loop_memory_bytes(*task.mechanics.loops) + 64 : 0;
+    return loops +
+           8 * part_rows * (80 * n + 8 * (n + 8) + dof * (3 * dof + 44) + 14 * joints + 6 * wrenches + 64);
 }
 
 }  // namespace cspace::dynamics

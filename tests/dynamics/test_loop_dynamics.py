@@ -1,5 +1,7 @@
 """Dynamics of closed loops: laws, and minimal coordinates as the oracle."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -221,7 +223,6 @@ def test_a_floating_base():
     """A free mechanism keeps its momentum: internal torques change none of it."""
     linkage = FourBar(1.0, 0.3, 0.9, 0.7)
     description = linkage.robot.description
-    from dataclasses import replace
 
     from cspace.model import Inertial, Link
 
@@ -279,7 +280,6 @@ def test_energy_falls_with_the_order_of_the_method():
     assert errors[0] / errors[1] > 14
 
 
-@pytest.mark.slow
 @case
 def test_loops_stay_closed_over_ten_thousand_steps(make):
     rng = np.random.default_rng(8)
@@ -299,6 +299,64 @@ def test_loops_stay_closed_over_ten_thousand_steps(make):
     assert run
     assert len(run) == 10_001
     assert np.linalg.norm(constraints.residual(run.q), axis=-1).max() <= 1e-12
+
+
+@case
+def test_one_step_is_that_of_runge_and_kutta(make):
+    """Four times the accelerations of constrained forward dynamics, where the loops stay nearly closed."""
+    rng = np.random.default_rng(11)
+    constraints, q, driven = make(rng)
+    qd, _ = motion(constraints, q, driven, rng)
+    tau, h = rng.normal(size=constraints.robot.dof), 1e-4
+
+    def rate(state):
+        at, speed = state
+        closed = dynamics.simulate_loops(constraints, at, speed, duration=1e-12, dt=1e-12)  # projects only
+        qdd = dynamics.constrained_forward_dynamics(constraints, closed.q[0], closed.qd[0], tau)
+        return np.array([speed, qdd])
+
+    start = np.array([q, qd])
+    a = rate(start)
+    b = rate(start + h / 2 * a)
+    c = rate(start + h / 2 * b)
+    d = rate(start + h * c)
+    after = start + h / 6 * (a + 2 * b + 2 * c + d)
+    run = dynamics.simulate_loops(constraints, q, qd, control=tau, duration=h, dt=h)
+    size = np.abs(a[1]).max()
+    np.testing.assert_allclose(run.q[-1], after[0], atol=1e-9 * h * size)
+    np.testing.assert_allclose(run.qd[-1], after[1], atol=1e-6 * h * size)
+
+
+def test_a_mechanism_stops_at_a_limit_of_a_joint():
+    linkage = FourBar(1.0, 0.3, 0.9, 0.7)
+    description = linkage.robot.description
+    joints = tuple(
+        replace(joint, lower=-3.0, upper=0.8) if joint.name == "crank" else joint
+        for joint in description.joints
+    )
+    robot = Robot(replace(description, joints=joints))
+    constraints = LoopConstraints(robot, linkage.loops)
+    q = linkage.assembly_modes({"crank": 0.5}).q[0]
+    qd = linkage.velocities(q, {"crank": 3.0})
+    still = {"gravity": (0, 0, 0), "duration": 1.0, "dt": 1e-3}
+    run = dynamics.simulate_loops(constraints, q, qd, stop_at_limits=True, **still)
+    assert run.reason.startswith("limit reached: joint 'crank'")
+    assert 0.8 < run.q[-1, 0] < 0.81
+    assert dynamics.simulate_loops(constraints, q, qd, **still).reason == "ended"
+
+
+def test_compiled_controllers_are_their_functions():
+    linkage = FourBar(1.0, 0.3, 0.9, 0.7)
+    q = linkage.assembly_modes({"crank": 0.5}).q[0]
+    law = dynamics.PD(q + 0.1, kp=20.0, kd=2.0)
+    compiled = linkage.simulate(q, np.zeros(3), control=law, duration=0.2, dt=1e-3)
+
+    def called(t, q, qd):
+        return law(linkage.robot, t, q, qd)
+
+    slow = linkage.simulate(q, np.zeros(3), control=called, duration=0.2, dt=1e-3)
+    np.testing.assert_allclose(compiled.q, slow.q, atol=1e-11)
+    np.testing.assert_allclose(compiled.tau, slow.tau, atol=1e-9)
 
 
 def test_a_batch_of_simulations_is_one_by_one():

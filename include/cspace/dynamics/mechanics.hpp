@@ -4,6 +4,7 @@
 // axes, then those of the joints.
 #pragma once
 
+#include "cspace/dynamics/closed_loop_motion.hpp"
 #include "cspace/dynamics/forward_dynamics.hpp"
 #include "cspace/dynamics/mass_matrix.hpp"
 #include "cspace/dynamics/roll_out_task.hpp"
@@ -15,14 +16,6 @@
 
 namespace cspace::dynamics {
 
-// A square matrix by rows, as linear.hpp takes it.
-template <class V>
-struct MatrixRows {
-    V* values;
-    int n;
-    CSPACE_INLINE V* operator[](int row) const { return values + row * n; }
-};
-
 // q (n,), qd (dof,) and the pose of the base.
 template <class V>
 struct State {
@@ -31,11 +24,13 @@ struct State {
 };
 
 // Memory for a pack: what the functions on links keep, the mass matrix and a factor by rows, wrenches (…, 6),
-// and two vectors (dof,).
+// and two vectors (dof,). loops: for one row of a mechanism; rank: in each lane, see settle_row.
 template <class V>
 struct Workspace {
     void* links;
     V *M, *factor, *wrenches, *force, *other;
+    LoopMemory loops;
+    int rank[8];
 };
 
 }  // namespace cspace::dynamics
@@ -121,12 +116,18 @@ void subtract_friction(const Mechanics& mechanics, const V* qd, V* force) {
     }
 }
 
-// M (dof, dof) by rows at a state, and its factor L D Lᵀ. False where it is singular.
+// M (dof, dof) by rows at a state.
+template <class V>
+void find_mass_matrix(const Mechanics& mechanics, const State<V>& state, Workspace<V>& work) {
+    mass_matrix(mechanics.bodies, state.q, state.T.R, mechanics.floating,
+                static_cast<LinkComposite<V>*>(work.links), work.M);
+}
+
+// M at a state, and its factor L D Lᵀ. False where it is singular.
 template <class V>
 mask_of<V> factor_mass_matrix(const Mechanics& mechanics, const State<V>& state, Workspace<V>& work) {
     const int dof = mechanics.dof();
-    mass_matrix(mechanics.bodies, state.q, state.T.R, mechanics.floating,
-                static_cast<LinkComposite<V>*>(work.links), work.M);
+    find_mass_matrix(mechanics, state, work);
     for (int i = 0; i < dof * dof; ++i) work.factor[i] = work.M[i];
     MatrixRows<V> rows = {work.factor, dof};
     mask_of<V> regular = factor_ldl(rows, dof);
@@ -144,22 +145,80 @@ CSPACE_INLINE Motion<V> resting_base(const Mechanics& mechanics, const State<V>&
             transpose_times(state.T.R, -fill3<V>(mechanics.gravity))};
 }
 
+// force − b (dof,): what is left to accelerate the robot.
+template <class V>
+void subtract_bias(const Mechanics& mechanics, const State<V>& state, const V* force, Workspace<V>& work,
+                   V* rest) {
+    const int first = mechanics.first(), dof = mechanics.dof();
+    const Wrench<V> on_base = inverse_dynamics(mechanics.bodies, resting_base(mechanics, state), state.q,
+                                               state.qd + first, static_cast<const V*>(nullptr), false,
+                                               static_cast<LinkMotion<V>*>(work.links), rest + first);
+    if (first) {
+        put_vector(rest, state.T.R * on_base.f);
+        put_vector(rest + 3, state.T.R * on_base.n);
+    }
+    for (int j = 0; j < dof; ++j) rest[j] = force[j] - rest[j];
+}
+
 // M⁻¹ (force − b) with the dense mass matrix, for coordinates that move several joints.
 template <class V>
 mask_of<V> solve_accelerations(const Mechanics& mechanics, const State<V>& state, const V* force,
                                Workspace<V>& work, V* qdd) {
-    const int first = mechanics.first(), dof = mechanics.dof();
+    const int dof = mechanics.dof();
     const mask_of<V> regular = factor_mass_matrix(mechanics, state, work);
-    const Wrench<V> on_base = inverse_dynamics(mechanics.bodies, resting_base(mechanics, state), state.q,
-                                               state.qd + first, static_cast<const V*>(nullptr), false,
-                                               static_cast<LinkMotion<V>*>(work.links), qdd + first);
-    if (first) {
-        put_vector(qdd, state.T.R * on_base.f);
-        put_vector(qdd + 3, state.T.R * on_base.n);
-    }
-    for (int j = 0; j < dof; ++j) qdd[j] = force[j] - qdd[j];
+    subtract_bias(mechanics, state, force, work, qdd);
     solve_ldl(MatrixRows<V>{work.factor, dof}, dof, qdd);
     return regular;
+}
+
+// Takes values of one lane, and puts them there.
+template <class V>
+void take_lane(const V* values, int l, int count, double* to) {
+    for (int i = 0; i < count; ++i) to[i] = lane(values[i], l);
+}
+template <class V>
+void put_lane(const double* values, int l, int count, V* to) {
+    for (int i = 0; i < count; ++i) set_lane(to[i], l, values[i]);
+}
+
+// The accelerations of a mechanism whose loops are closed, row by row.
+template <class V>
+mask_of<V> constrained_accelerations(const Mechanics& mechanics, const State<V>& state, const V* force,
+                                     Workspace<V>& work, V* qdd) {
+    const ClosedLoops& loops = *mechanics.loops;
+    LoopMemory& memory = work.loops;
+    const int dof = mechanics.dof();
+    find_mass_matrix(mechanics, state, work);
+    subtract_bias(mechanics, state, force, work, qdd);
+    V regular = fill<V>(0.0);
+    for (int l = 0; l < Lanes<V>::count; ++l) {
+        take_lane(state.q, l, loops.n_coordinates, memory.q);
+        take_lane(state.qd, l, dof, memory.qd);
+        take_lane(work.M, l, dof * dof, memory.M);
+        take_lane(qdd, l, dof, memory.force);
+        set_lane(regular, l, accelerate_row(loops, work.rank[l], memory) ? 1.0 : 0.0);
+        put_lane(memory.x, l, dof, qdd);
+    }
+    return regular > 0.5;
+}
+
+// Closes the loops of a state; false in the lanes where they cannot be closed.
+template <class V>
+mask_of<V> settle_state(const Mechanics& mechanics, State<V>& state, Workspace<V>& work) {
+    const ClosedLoops& loops = *mechanics.loops;
+    LoopMemory& memory = work.loops;
+    const int dof = mechanics.dof();
+    find_mass_matrix(mechanics, state, work);
+    V closed = fill<V>(0.0);
+    for (int l = 0; l < Lanes<V>::count; ++l) {
+        take_lane(state.q, l, loops.n_coordinates, memory.q);
+        take_lane(state.qd, l, dof, memory.qd);
+        take_lane(work.M, l, dof * dof, memory.M);
+        set_lane(closed, l, settle_row(loops, work.rank[l], memory) ? 1.0 : 0.0);
+        put_lane(memory.q, l, loops.n_coordinates, state.q);
+        put_lane(memory.qd, l, dof, state.qd);
+    }
+    return closed > 0.5;
 }
 
 // The acceleration of a floating base, in its axes and less gravity, from what it feels of all links.
@@ -189,6 +248,7 @@ CSPACE_INLINE mask_of<V> accelerate_base(const Articulated<V>& felt, const Vec3<
 template <class V>
 mask_of<V> accelerations(const Mechanics& mechanics, const State<V>& state, const V* force,
                          Workspace<V>& work, V* qdd) {
+    if (mechanics.loops) return constrained_accelerations(mechanics, state, force, work, qdd);
     if (mechanics.bodies.shares) return solve_accelerations(mechanics, state, force, work, qdd);
     const int first = mechanics.first();
     auto* const links = static_cast<LinkResponse<V>*>(work.links);

@@ -66,6 +66,8 @@ void load_state(const RollOut& task, RollOutPack<V>& pack, RollOutMemory<V>& mem
         const FrameWrench& at = task.mechanics.wrenches[k];
         load_rows(at.wrench + i * at.stride, at.stride, count, 6, memory.work.wrenches + 6 * k);
     }
+    for (int l = 0; task.rank && l < Lanes<V>::count; ++l)
+        memory.work.rank[l] = task.rank[i + std::size_t(std::min(l, count - 1))];
 }
 template <class V>
 void store_state(const RollOut& task, const RollOutPack<V>& pack, const RollOutMemory<V>& memory) {
@@ -74,6 +76,7 @@ void store_state(const RollOut& task, const RollOutPack<V>& pack, const RollOutM
     store_rows(memory.state.q, n, task.q + i * std::size_t(n), std::size_t(n), count);
     store_rows(memory.state.qd, dof, task.qd + i * std::size_t(dof), std::size_t(dof), count);
     store_rows(memory.tau, dof, task.tau + i * std::size_t(dof), std::size_t(dof), count);
+    for (int l = 0; task.rank && l < count; ++l) task.rank[i + std::size_t(l)] = memory.work.rank[l];
     if (!task.mechanics.floating) return;
     V matrix[16];
     kinematics::write_matrix(memory.state.T, matrix);
@@ -212,6 +215,9 @@ void roll_fixed_steps(const RollOut& task, std::size_t i, int count, long long k
     load_state(task, pack, memory);
     const bool is_variational = task.method == Method::variational;
     const mask_of<V> always = fill<V>(0.0) == fill<V>(0.0);
+    if (k == 0 && task.mechanics.loops)
+        end_lanes(task, pack, pack.runs && !settle_state(task.mechanics, memory.state, memory.work), broken,
+                  fill<V>(0.0));
     if (is_variational && k < task.steps && any(pack.runs))
         factor_mass_matrix(task.mechanics, memory.state, memory.work);
     for (; k < k_end && any(pack.runs); ++k) {
@@ -225,11 +231,11 @@ void roll_fixed_steps(const RollOut& task, std::size_t i, int count, long long k
         }
         const double later = task.find_time(k + 1);
         const V h = fill<V>(later - task.find_time(k));
-        const mask_of<V> solved = is_variational
-                                      ? step_variational(task.mechanics, memory.state, memory.tau, h,
-                                                         memory.work, memory.variational, memory.after)
-                                      : step_runge_kutta(task.mechanics, memory.state, memory.tau, h,
-                                                         memory.work, memory.stages, memory.after);
+        mask_of<V> solved = is_variational ? step_variational(task.mechanics, memory.state, memory.tau, h,
+                                                              memory.work, memory.variational, memory.after)
+                                           : step_runge_kutta(task.mechanics, memory.state, memory.tau, h,
+                                                              memory.work, memory.stages, memory.after);
+        if (task.mechanics.loops) solved = settle_state(task.mechanics, memory.after, memory.work) && solved;
         take_step(task, pack, always, solved, time, fill<V>(later), memory);
     }
     store_state(task, pack, memory);

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "cspace/dynamics/multibody.hpp"
+#include "cspace/kinematics/closed_loops.hpp"
 #include "cspace/model/chain.hpp"
 
 namespace cspace::dynamics {
@@ -26,6 +27,7 @@ struct Mechanics {
     double friction_speed;        // where dry friction has 76 % of its value
     const FrameWrench* wrenches;
     int n_wrenches;
+    const kinematics::ClosedLoops* loops;  // that stay closed, or null
     bool in_tip;  // wrenches are in the axes of their frames, otherwise in those of the base
     CSPACE_INLINE int first() const { return floating ? 6 : 0; }
     CSPACE_INLINE int dof() const { return first() + bodies.n_coordinates; }
@@ -84,6 +86,7 @@ struct RollOut {
     std::size_t T_stride;         // 0: one pose for all rows, of a base that does not float
     double* tau;                  // (rows, dof): what the control said last
     int *status, *joint;          // of each row; the joint at its limit
+    int* rank;                    // of K of each row, the largest so far at closed loops; null without loops
     double* stopped;              // when it did
     double *time, *length;        // of the adaptive method: the time of each row and its next step
     long long* next;              // and the step of its next record

@@ -9,6 +9,18 @@
 
 #include "cspace/math/lanes.hpp"
 
+namespace cspace {
+
+// A matrix of run-time size by rows of n numbers.
+template <class V>
+struct MatrixRows {
+    V* values;
+    int n;
+    CSPACE_INLINE V* operator[](int row) const { return values + row * n; }
+};
+
+}  // namespace cspace
+
 namespace cspace::inline CSPACE_ISA {
 namespace linear {
 

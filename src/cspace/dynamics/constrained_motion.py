@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.kinematics import LoopConstraints
-from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.loop_constraints import Placement
-from cspace.kinematics.loop_freedom import find_column_scale, find_rank_tolerance, find_scaled_jacobian
+from cspace.kinematics.loop_freedom import find_rank_tolerance, find_scaled_jacobian
 from cspace.tolerances import MASSLESS_MOTION
 
 Flags = NDArray[np.bool_]
@@ -64,17 +63,13 @@ class AllowedMotions:
         return result
 
 
-def find_allowed_motions(
-    constraints: LoopConstraints, at: Placement, rank: Numbers | None = None
-) -> AllowedMotions:
-    """The motions that closed loops allow at a placement. rank (...): no more rows are independent."""
+def find_allowed_motions(constraints: LoopConstraints, at: Placement) -> AllowedMotions:
+    """The motions that closed loops allow at a placement."""
     K = find_scaled_jacobian(constraints, at)
     U, s, Vt = np.linalg.svd(K)
     n, m = K.shape[-1], s.shape[-1]
     tolerance = find_rank_tolerance(constraints, at)[..., None]
     kept = s > tolerance * s[..., :1]
-    if rank is not None:
-        kept &= np.arange(m) < rank[..., None]
     free = np.ones((*K.shape[:-2], n), dtype=bool)
     free[..., :m] = ~kept
     return AllowedMotions(
@@ -83,21 +78,19 @@ def find_allowed_motions(
         Vt.swapaxes(-1, -2),
         free,
         constraints.scale,
-        find_column_scale(constraints),
+        constraints.unit,
     )
 
 
-def solve_least_energy(allowed: AllowedMotions, M: Array, b: Array, p: Array | None, name: str) -> Array:
+def solve_least_energy(allowed: AllowedMotions, M: Array, b: Array, p: Array, name: str) -> Array:
     """The x (..., n) with K x = b (..., r) that makes ½ xᵀ M x − pᵀ x least; see the head of this file.
 
-    p (..., n); None for zero. name: of the robot. Raises InputError where an allowed motion has no kinetic
+    p (..., n). name: of the robot. Raises InputError where an allowed motion has no kinetic
     energy.
     """
     x = allowed.solve_rates(b)
     G = allowed.find_basis()
-    pull = -np.einsum("...ij,...j->...i", M, x)
-    if p is not None:
-        pull = pull + p
+    pull = p - np.einsum("...ij,...j->...i", M, x)
     H = G.swapaxes(-1, -2) @ M @ G
     diagonal = np.arange(H.shape[-1])
     own = H[..., diagonal, diagonal]

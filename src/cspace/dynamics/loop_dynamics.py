@@ -4,7 +4,7 @@ projection."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,10 +22,7 @@ from cspace.kinematics.loop_closure import number_coordinates
 from cspace.kinematics.loop_constraints import Placement
 from cspace.spatial.checks import PoseLike
 from cspace.tables import count_things, join_words
-from cspace.tolerances import FARTHEST, LOOP_MOTION, LOOP_OPEN, LOOP_PROJECTED, LOOP_RANK, LOOP_SINGULAR
-
-MOST_PROJECTIONS: Final = 8
-"""Newton steps of a projection: each squares the residual."""
+from cspace.tolerances import FARTHEST, LOOP_MOTION, LOOP_OPEN, LOOP_RANK, LOOP_SINGULAR
 
 
 def constrained_forward_dynamics(
@@ -60,28 +57,12 @@ def constrained_forward_dynamics(
     assert batch.tau is not None
     check_motion(constraints, at, qd=batch.qd)
     allowed = find_allowed_motions(constraints, at)
-    qdd = solve_accelerations(
-        constraints, at, allowed, batch.q, batch.qd, batch.tau, acts, batch.T_world_base, threads
-    )
+    robot, T, none = constraints.robot, batch.T_world_base, np.zeros_like(batch.qd)
+    h = inverse_dynamics(robot, batch.q, batch.qd, none, T_world_base=T, threads=threads, **acts)
+    M = mass_matrix(robot, batch.q, T_world_base=T, threads=threads)
+    k = constraints.find_bias(at, batch.qd)
+    qdd = solve_least_energy(allowed, M, -k, batch.tau - h, robot.name)
     return fill_output(out, qdd, (*batch.shape, constraints.robot.dof))
-
-
-def solve_accelerations(
-    constraints: LoopConstraints,
-    at: Placement,
-    allowed: AllowedMotions,
-    q: Array,
-    qd: Array,
-    tau: Array,
-    acts: dict[str, Any],
-    T_world_base: PoseLike | None,
-    threads: int | None,
-) -> Array:
-    """The accelerations (..., dof) at a placement; acts: keywords of inverse_dynamics."""
-    robot = constraints.robot
-    h = inverse_dynamics(robot, q, qd, np.zeros_like(qd), T_world_base=T_world_base, threads=threads, **acts)
-    M = mass_matrix(robot, q, T_world_base=T_world_base, threads=threads)
-    return solve_least_energy(allowed, M, -constraints.find_bias(at, qd), tau - h, robot.name)
 
 
 def constrained_inverse_dynamics(
@@ -244,42 +225,6 @@ def find_rates(
             " drive as many joints as there are degrees of freedom"
         )
     return fill_output(out, x, (*batch.shape, robot.dof))
-
-
-def project_state(
-    constraints: LoopConstraints,
-    q: Array,
-    qd: Array,
-    M: Array,
-    rank: Numbers | None = None,
-) -> tuple[Array, Array, Placement]:
-    """The state nearest to one (rows, n), (rows, dof) whose loops are closed and stay closed, and its
-    placement.
-
-    Nearest in the metric of the kinetic energy, M (rows, dof, dof), so that the motion changes as little as
-    possible: q ← q − M⁻¹ Kᵀ (K M⁻¹ Kᵀ)⁺ φ until φ is at rounding, and q̇ likewise. The pose of a floating
-    base stays. rank (rows,): of K, so that rows which depend on others are not taken for independent while
-    the loops are open.
-    """
-    robot, n = constraints.robot, len(constraints.robot.joint_names)
-    at = constraints.place(q)
-    phi = constraints.find_residual(at)
-    size = np.linalg.norm(phi * constraints.scale, axis=-1)
-    for _ in range(MOST_PROJECTIONS):
-        if (size <= LOOP_PROJECTED).all():
-            break
-        allowed = find_allowed_motions(constraints, at, rank)
-        step = solve_least_energy(allowed, M, -phi, None, robot.name)[..., robot.dof - n :]
-        tried = q + step
-        after = constraints.place(tried)
-        phi_after = constraints.find_residual(after)
-        size_after = np.linalg.norm(phi_after * constraints.scale, axis=-1)
-        if not (size_after < size).any():
-            break
-        q, at, phi, size = tried, after, phi_after, size_after
-    allowed = find_allowed_motions(constraints, at, rank)
-    speed = np.einsum("...ij,...j->...i", constraints.find_jacobian(at), qd)
-    return q, qd + solve_least_energy(allowed, M, -speed, None, robot.name), at
 
 
 def pack_acts(

@@ -19,6 +19,7 @@ from cspace.dynamics.momentum import centroidal_momentum, kinetic_energy, potent
 from cspace.dynamics.rows import Wrenches, check_mapping, check_wrench
 from cspace.dynamics.simulation import DenseSteps
 from cspace.errors import InputError, InputTypeError
+from cspace.kinematics import LoopConstraints
 from cspace.kinematics.batch import frame_number
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.tolerances import FARTHEST
@@ -37,7 +38,8 @@ steps of an arm, some milliseconds."""
 @dataclass(frozen=True, eq=False)
 class Task:
     """The arguments of a simulation, checked; steps is how many of length dt, the last one up to the
-    duration. control: a function, PD, ComputedTorque, torques (..., dof), or None."""
+    duration. control: a function, PD, ComputedTorque, torques (..., dof), or None. loops: that stay
+    closed."""
 
     mechanics: Mechanics
     method: str
@@ -52,6 +54,7 @@ class Task:
     tolerance: float
     dense: bool
     deadline: float
+    loops: LoopConstraints | None = None
 
     @property
     def is_held(self) -> bool:
@@ -96,6 +99,7 @@ class Record:
 
     q, qd, T_world_base, tau: the states (rows, …) as they are now; T_world_base is (1, 16) where one base
     serves all rows. status, joint, stopped (rows,): how each row ended, at which joint, and when.
+    rank (rows,): of K at closed loops, the largest so far.
     """
 
     def __init__(self, task: Task) -> None:
@@ -108,6 +112,7 @@ class Record:
         self.tau = np.zeros((rows, dof))
         self.status, self.joint = np.zeros((2, rows), dtype=np.int32)
         self.stopped = np.zeros(rows)
+        self.rank = np.full(rows, -1, dtype=np.int32)
         self.pieces: DenseSteps | None = None
         sizes = {"energy": (), "momentum": (6,), "q": (n,), "qd": (dof,), "tau": (dof,)}
         self.states: dict[str, Array] = {
@@ -192,6 +197,8 @@ def make_simulator(task: Task, record: Record) -> _core.Simulator:
     simulator.hold_state(
         record.q, record.qd, record.T_world_base, record.tau, record.status, record.joint, record.stopped
     )
+    if task.loops is not None:
+        simulator.close_loops(task.loops.table, record.rank)
     states = record.states
     simulator.hold_records(
         states["q"],

@@ -29,6 +29,7 @@ from cspace.dynamics.rows import EARTH, Wrenches, check_gravity, dynamic_rows, r
 from cspace.dynamics.simulation import Simulation
 from cspace.dynamics.stiffness import name_stiff_friction, name_stiff_gain
 from cspace.errors import InputError
+from cspace.kinematics import LoopConstraints
 from cspace.kinematics.batch import check_choice, check_flag, check_robot, thread_count
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
@@ -97,18 +98,24 @@ def simulate(
 
     Marsden and West 2001 (variational); Dormand and Prince 1980 (adaptive).
     """
-    check_flag(stop_at_limits, "stop_at_limits")
-    mechanics = _make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
+    check_robot(robot)
+    loops = robot.description.loops if hasattr(robot, "description") else ()
+    if loops:
+        raise InputError(
+            f"{robot.name} has closed loops ({loops[0].name}), which simulate does not keep closed; use"
+            " cspace.Mechanism(robot).simulate"
+        )
+    mechanics = make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
     q = spread_rows(q, control, wrenches)
-    start = _check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
+    start = check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
     law = check_control(control, start.qd.shape)
     name = _choose_method(method, mechanics, start, dt)
     lengths, recorded = (duration, dt, tolerance), (every, dense)
-    task = _make_task(mechanics, name, start, law, wrenches, lengths, recorded, stop_at_limits, time_limit)
+    task = make_task(mechanics, name, start, law, wrenches, lengths, recorded, stop_at_limits, time_limit)
     rest = np.zeros_like(start.qd)
     forward_dynamics(robot, start.q, rest, rest, T_world_base=start.T_world_base)  # raises if M is singular
     with guard_memory("duration / dt", f"{task.steps} steps", task.size, "record fewer states (every=)"):
-        return _make_answer(task, run_steps(task))
+        return make_answer(task, run_steps(task))
 
 
 def _check_step(dt: float) -> float:
@@ -131,7 +138,7 @@ def _choose_method(method: str | None, mechanics: Mechanics, start: State, dt: f
     return method
 
 
-def _make_mechanics(
+def make_mechanics(
     robot: KinematicModel,
     gravity: ArrayLike,
     expressed_in: str,
@@ -140,13 +147,6 @@ def _make_mechanics(
     threads: int | None,
 ) -> Mechanics:
     """What acts on a robot at every time, checked."""
-    check_robot(robot)
-    loops = robot.description.loops if hasattr(robot, "description") else ()
-    if loops:
-        raise InputError(
-            f"{robot.name} has closed loops ({loops[0].name}), which simulate does not keep closed; use"
-            " cspace.Mechanism(robot).simulate"
-        )
     damping, dry = find_resistances(robot) if check_flag(friction, "friction") else np.zeros((2, robot.dof))
     return Mechanics(
         robot,
@@ -159,7 +159,7 @@ def _make_mechanics(
     )
 
 
-def _make_task(
+def make_task(
     mechanics: Mechanics,
     method: str,
     start: State,
@@ -169,8 +169,10 @@ def _make_task(
     recorded: tuple[int, bool],
     stop_at_limits: bool,
     time_limit: float | None,
+    loops: LoopConstraints | None = None,
 ) -> Task:
-    """The arguments of a simulation, checked. lengths: duration, dt, tolerance. recorded: every, dense."""
+    """The arguments of a simulation, checked. lengths: duration, dt, tolerance. recorded: every, dense.
+    loops: that stay closed."""
     duration, dt, tolerance = lengths
     every, dense = recorded
     length = positive_number(duration, "duration", "it must be one positive number [s]")
@@ -190,14 +192,15 @@ def _make_task(
         step,
         max(1, math.ceil(length / step - WHOLE_STEP)),
         whole_number(every, "every", 1, MOST_STEPS),
-        stop_at_limits,
+        check_flag(stop_at_limits, "stop_at_limits"),
         positive_number(tolerance, "tolerance"),
         check_flag(dense, "dense"),
         late,
+        loops,
     )
 
 
-def _check_start(
+def check_start(
     robot: KinematicModel,
     q: ArrayLike,
     qd: ArrayLike,
@@ -228,7 +231,7 @@ def _check_start(
     return start
 
 
-def _make_answer(task: Task, record: Record) -> Simulation:
+def make_answer(task: Task, record: Record) -> Simulation:
     """The answer of what was recorded."""
     shape, count, states = task.shape, len(record.times), record.states
     q, qd, tau = (states[name].reshape(*shape, *states[name].shape[1:]) for name in ("q", "qd", "tau"))

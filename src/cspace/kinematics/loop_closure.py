@@ -16,7 +16,7 @@ from cspace.arrays import Array, as_floats, as_generator, leading_axes, positive
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.loop_constraints import LoopConstraints
-from cspace.kinematics.loop_freedom import find_column_scale, find_rank_tolerance, find_scaled_jacobian
+from cspace.kinematics.loop_freedom import find_rank_tolerance, find_scaled_jacobian
 from cspace.kinematics.loop_newton import close_rows, polish_rows, select_columns, solve_least
 from cspace.kinematics.workspace import random_configurations
 from cspace.math.wrapping import wrap_near
@@ -265,7 +265,7 @@ def step_towards(
     """
     begin, done = q[numbers].copy(), 0.0
     share = min(stride, 1.0)
-    unit = find_column_scale(constraints)[constraints.robot.dof - len(constraints.robot.joint_names) :]
+    unit = constraints.unit[constraints.robot.dof - len(constraints.robot.joint_names) :]
     way = max(1.0, np.abs((goal - begin) / unit[numbers]).max(initial=0.0))
     while done < 1.0:
         if perf_counter() > deadline:
@@ -396,7 +396,7 @@ def is_stuck(constraints: LoopConstraints, q: Array, numbers: Numbers, passive: 
     if left == 0:
         return False
     probes = np.repeat(q[None], 2 * max(numbers.size, 1), axis=0)
-    unit = find_column_scale(constraints)[constraints.robot.dof - q.size :]
+    unit = constraints.unit[constraints.robot.dof - q.size :]
     if numbers.size:
         for i, number in enumerate(numbers):
             probes[2 * i, number] += PROBE * unit[number]
@@ -425,7 +425,7 @@ def count_left(constraints: LoopConstraints, q: Array, passive: Numbers) -> int:
 def pick_modes(constraints: LoopConstraints, q: Array, passive: Numbers) -> Array:
     """Different configurations among those given (m, n), with angles in (−π, π], sorted."""
     q = wrap_revolute(constraints, q, np.zeros(q.shape[1]), passive)
-    unit = find_column_scale(constraints)[constraints.robot.dof - q.shape[1] :]
+    unit = constraints.unit[constraints.robot.dof - q.shape[1] :]
     turns = np.array([kind == "R" for kind in constraints.robot.joint_types])
     kept: list[Array] = []
     for row in q[np.lexsort(np.round(q / unit, 6).T[::-1])]:

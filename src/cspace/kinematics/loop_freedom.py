@@ -51,16 +51,7 @@ def loop_freedom(constraints: LoopConstraints, q: ArrayLike) -> LoopFreedom:
 def find_scaled_jacobian(constraints: LoopConstraints, at: Placement) -> Array:
     """K (..., r, dof) without units: lengths are divided by the size of the mechanism."""
     K = constraints.find_jacobian(at) * constraints.scale[:, None]
-    return K * find_column_scale(constraints)
-
-
-def find_column_scale(constraints: LoopConstraints) -> Array:
-    """(dof,): the unit of each velocity, the size of the mechanism for one of a prismatic joint."""
-    robot = constraints.robot
-    size = np.ones(robot.dof)
-    slides = np.array([kind == "P" for kind in robot.joint_types], dtype=bool)
-    size[robot.dof - len(slides) :][slides] = constraints.length
-    return size
+    return K * constraints.unit
 
 
 def find_rank_tolerance(constraints: LoopConstraints, at: Placement) -> Array:
@@ -69,7 +60,7 @@ def find_rank_tolerance(constraints: LoopConstraints, at: Placement) -> Array:
 
     Rows that depend on each other where the loops are closed do so less by as much as these are open.
     """
-    phi = np.linalg.norm(constraints.find_residual(at) * constraints.scale, axis=-1)
+    phi = np.linalg.norm(at.phi * constraints.scale, axis=-1)
     result: Array = LOOP_RANK + LOOP_RANK_SLACK * phi
     return result
 

@@ -9,7 +9,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.loop_constraints import LoopConstraints, Placement
-from cspace.kinematics.loop_freedom import find_column_scale, find_rank_tolerance, find_scaled_jacobian
+from cspace.kinematics.loop_freedom import find_rank_tolerance, find_scaled_jacobian
 from cspace.tolerances import LOOP_CLOSED
 
 MOST_STEPS: Final = 200
@@ -48,7 +48,7 @@ def reduce_residuals(constraints: LoopConstraints, q: Array, passive: Numbers) -
     damping = np.full(len(q), FIRST_DAMPING)
     for _ in range(MOST_STEPS):
         at = constraints.place(q[active])
-        phi = constraints.find_residual(at) * constraints.scale
+        phi = at.phi * constraints.scale
         size = np.linalg.norm(phi, axis=-1)
         J, unit = select_columns(constraints, at, passive)
         slope = np.einsum("mri,mr->mi", J, phi)
@@ -63,9 +63,7 @@ def reduce_residuals(constraints: LoopConstraints, q: Array, passive: Numbers) -
         step = shorten_steps(-np.linalg.solve(H, slope[..., None])[..., 0])
         tried = q[active]
         tried[:, passive] += step * unit
-        after = np.linalg.norm(
-            constraints.find_residual(constraints.place(tried)) * constraints.scale, axis=-1
-        )
+        after = np.linalg.norm(constraints.place(tried).phi * constraints.scale, axis=-1)
         better = after < size
         q[active[better]] = tried[better]
         damping[active] = np.where(better, damping[active] * LESS, damping[active] * MORE)
@@ -79,14 +77,14 @@ def polish_rows(
     if passive.size == 0 or len(q) == 0:
         return q
     at = constraints.place(q)
-    size = np.linalg.norm(constraints.find_residual(at) * constraints.scale, axis=-1)
+    size = np.linalg.norm(at.phi * constraints.scale, axis=-1)
     for _ in range(steps):
-        phi = constraints.find_residual(at) * constraints.scale
+        phi = at.phi * constraints.scale
         J, unit = select_columns(constraints, at, passive)
         tried = q.copy()
         tried[:, passive] += shorten_steps(-solve_least(J, phi, find_rank_tolerance(constraints, at))) * unit
         after_at = constraints.place(tried)
-        after = np.linalg.norm(constraints.find_residual(after_at) * constraints.scale, axis=-1)
+        after = np.linalg.norm(after_at.phi * constraints.scale, axis=-1)
         better = after < size
         if not better.any():
             break
@@ -99,7 +97,7 @@ def polish_rows(
 def select_columns(constraints: LoopConstraints, at: Placement, passive: Numbers) -> tuple[Array, Array]:
     """The scaled columns of K (..., r, k) of coordinates, and their units (k,)."""
     columns = passive + constraints.robot.dof - len(constraints.robot.joint_names)
-    return find_scaled_jacobian(constraints, at)[..., columns], find_column_scale(constraints)[columns]
+    return find_scaled_jacobian(constraints, at)[..., columns], constraints.unit[columns]
 
 
 def solve_least(J: Array, b: Array, tolerance: Array) -> Array:

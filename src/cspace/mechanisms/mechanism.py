@@ -161,8 +161,8 @@ class Mechanism:
         """The motion from a state q (..., n), qd (..., dof) on, with loops that stay closed to rounding.
 
         control: torques (..., dof), or a function of t, q and qd that returns them, such as dynamics.PD.
-        options: gravity, wrenches, expressed_in, friction, friction_speed, T_world_base, every, time_limit,
-        threads. See dynamics.simulate_loops, which also names the errors.
+        options: gravity, wrenches, expressed_in, friction, friction_speed, T_world_base, every,
+        stop_at_limits, time_limit, threads. See dynamics.simulate_loops, which also names the errors.
         """
         return dynamics.simulate_loops(
             self.constraints, q, qd, control=control, duration=duration, dt=dt, **options
