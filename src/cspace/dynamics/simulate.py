@@ -98,13 +98,7 @@ def simulate(
 
     Marsden and West 2001 (variational); Dormand and Prince 1980 (adaptive).
     """
-    check_robot(robot)
-    loops = robot.description.loops if hasattr(robot, "description") else ()
-    if loops:
-        raise InputError(
-            f"{robot.name} has closed loops ({loops[0].name}), which simulate does not keep closed; use"
-            " cspace.Mechanism(robot).simulate"
-        )
+    _refuse_loops(robot)
     mechanics = make_mechanics(robot, gravity, expressed_in, friction, friction_speed, threads)
     q = spread_rows(q, control, wrenches)
     start = check_start(robot, q, qd, T_world_base, threads, stop_at_limits)
@@ -116,6 +110,17 @@ def simulate(
     forward_dynamics(robot, start.q, rest, rest, T_world_base=start.T_world_base)  # raises if M is singular
     with guard_memory("duration / dt", f"{task.steps} steps", task.size, "record fewer states (every=)"):
         return make_answer(task, run_steps(task))
+
+
+def _refuse_loops(robot: KinematicModel) -> None:
+    """Raise InputError for a robot whose description closes loops."""
+    check_robot(robot)
+    loops = robot.description.loops if hasattr(robot, "description") else ()
+    if loops:
+        raise InputError(
+            f"{robot.name} has closed loops ({loops[0].name}), which simulate does not keep closed; use"
+            " cspace.Mechanism(robot).simulate"
+        )
 
 
 def _check_step(dt: float) -> float:
