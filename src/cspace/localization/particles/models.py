@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, Protocol
+from typing import Any, Final, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.localization.log import UNKNOWN, Landmarks, Readings, Scans
 from cspace.localization.particles.beam_model import BeamTable
 from cspace.localization.particles.thinning import read_ends, thin_ends
+from cspace.localization.scans.match import match_scan
 from cspace.localization.scans.search import search_pose
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.maps import ByteField, OccupancyGrid, cast_rays
@@ -31,6 +32,18 @@ NEW_SCORE: Final = 0.5
 """The score (0 … 1) below which an end in an unknown cell belongs to no known wall."""
 WALL_SLACK: Final = 0.3
 """How far before an end [m] a wall may stand that it does not lie behind of: errors of pose and map."""
+NEAR_WINDOW: Final = (0.8, 0.26)
+"""How far from a mode [m, rad] a scan is matched where it fits worse than usual: wheels slip by half a metre
+between two scans."""
+
+
+class Judgement(NamedTuple):
+    """What a bad score says: score (0 … 1) without what the map cannot know; unknown, the share of the
+    measurement that this is; missing, the share that a full measurement has more."""
+
+    score: float
+    unknown: float = 0.0
+    missing: float = 0.0
 
 
 class CloudModel(Protocol):
@@ -42,8 +55,11 @@ class CloudModel(Protocol):
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
         """Weighs by a share of the evidence; the score of the best particle, None where nothing was seen."""
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
-        """The score without what the map cannot know, and the share of the measurement that this is."""
+    def judge(self, measurement: Any, pose: Array, score: float) -> Judgement:
+        """The score at a pose, where that of the best particle is low."""
+
+    def match(self, measurement: Any, pose: Array, above: float) -> Array | None:
+        """The pose (3,) near another one that fits best, if it scores more than a bound."""
 
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """Poses (k, 3) that fit a measurement better than a score, the best first."""
@@ -108,17 +124,18 @@ class ScanModel:
         exponent = self.scanner.independent / max(self.scanner.beams, int(keep.sum()))
         return exponent * np.asarray(self.table.find(measured[keep], walls[:, keep]).sum(axis=1))
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
-        """The score (0 … 1) at a pose without the beams that end in unknown cells behind no wall, and their
-        share.
+    def judge(self, measurement: Any, pose: Array, score: float) -> Judgement:
+        """The score at a pose without the beams that end in unknown cells behind no wall.
 
         A robot that drives off its map sees what the map does not know; one that was carried away sees
         through walls, and no walls where there are some.
         """
-        if self.known is None:
-            return score, 0.0
         ends = self.read_ends(measurement)
         used, _ = self.choose_ends(ends)
+        full = len(measurement.angles) if isinstance(measurement, Scans) else len(used)
+        missing = max(0.0, 1.0 - len(ends) / min(full, self.scanner.beams))
+        if self.known is None:
+            return Judgement(score, missing=missing)
         p = used @ rotation_2d(pose[2]).T + pose[:2]
         cells = np.floor((p - self.field.origin) / self.field.resolution).astype(int)
         inside = ((cells >= 0) & (cells < self.known.shape[::-1])).all(axis=1)
@@ -131,7 +148,13 @@ class ScanModel:
         excused = np.flatnonzero(is_new)[reach >= far - WALL_SLACK]
         counted = np.delete(scores, excused)
         unknown = len(excused) / len(scores)
-        return max(score, float(counted.mean()) if len(counted) else 0.0), unknown
+        return Judgement(max(score, float(counted.mean()) if len(counted) else 0.0), unknown, missing)
+
+    def match(self, measurement: Any, pose: Array, above: float) -> Array | None:
+        """The best pose in a window, by correlation."""
+        used, _ = self.choose_ends(self.read_ends(measurement))
+        found = match_scan(used, self.field, guess=pose, window=NEAR_WINDOW, least_score=0.0)
+        return found.pose if found.score > above else None
 
     def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
         """The best separate poses on the whole map."""
@@ -215,9 +238,13 @@ class SightingModel:
         c, s = np.cos(theta), np.sin(theta)
         return np.stack([x - c * mx + s * my, y - s * mx - c * my, theta], axis=-1)
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
+    def judge(self, measurement: Any, pose: Array, score: float) -> Judgement:
         """The score itself: a map of landmarks has no unknown parts."""
-        return score, 0.0
+        return Judgement(score)
+
+    def match(self, measurement: Any, pose: Array, above: float) -> Array | None:
+        """None: the circles of a search pass near as well."""
+        return None
 
     def read(self, measurement: Any) -> Readings:
         """The readings, checked."""

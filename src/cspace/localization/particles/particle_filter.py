@@ -13,10 +13,11 @@ from cspace.errors import InputError, InputTypeError
 from cspace.localization.filters.rows import find_twist, follow_rows
 from cspace.localization.particles.models import (
     BEAM_MODEL_PARTICLES,
+    Judgement,
     ScanModel,
     make_model,
 )
-from cspace.localization.particles.placing import FreePlaces, spread_poses
+from cspace.localization.particles.placing import FreePlaces, lift_share, spread_poses
 from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
@@ -57,6 +58,13 @@ FRESH_UPDATES: Final = 5
 SEARCH_GROWTH: Final = 5
 """How many times the least number of particles there are in these updates, at most: of each place many must
 be near the pose that fits best, or places that look alike get weights by chance."""
+
+NEAR_GAIN: Final = 0.05
+"""By how much the score of a pose near a mode must exceed that of the best particle to get particles."""
+CARRIED: Final = 5.0
+"""Logarithm of the odds against having been carried to another place since the last measurement."""
+KEPT_SHARE: Final = 0.1
+"""The least share of the weight that the particles before a search keep: later scans may agree with them."""
 
 
 class ParticleFilter:
@@ -178,19 +186,21 @@ class ParticleFilter:
         self._fresh = max(self._fresh - 1, 0)
         if share > 0:
             self._since = np.zeros(3)
-        unknown = 0.0
+        if not self.is_searching and self._monitor.is_unusual(score):
+            score = self._match(scan, score)
+        judged = Judgement(score)
         if score < self._monitor.threshold and not self.is_searching:
-            score, unknown = self.model.judge(scan, self.pose, score)
-        says_something = unknown < MOST_UNKNOWN
+            judged = self.model.judge(scan, self.pose, score)
+        says_something = judged.unknown < MOST_UNKNOWN
         if says_something:
-            self._monitor.see(score)
-        is_low = says_something and self._monitor.wants_search(score)
+            self._monitor.see(judged.score)
+        is_low = says_something and self._monitor.wants_search(judged.score)
         if self.recover and (self.is_searching or is_low):
-            self._search(scan, score, unknown)
+            self._search(scan, judged)
         elif share > 0:
             self._resample()
         if says_something:
-            self._monitor.add(score, share > 0 and self.status == "localised")
+            self._monitor.add(judged.score, share > 0 and self.status == "localised")
         self._note_status()
 
     def _resample(self) -> None:
@@ -200,30 +210,59 @@ class ParticleFilter:
             least = self._grown if needs_more else self.least
             cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
 
-    def _search(self, scan: Any, score: float, unknown: float) -> None:
+    def _match(self, scan: Any, score: float) -> float:
+        """Puts half of the particles on poses near the modes that fit better, if there are some; the score.
+
+        Wheels that slip move a robot further than the noise of its odometry says.
+        """
+        found = [
+            (self.model.match(scan, mode.pose, score + NEAR_GAIN), mode.share)
+            for mode in self.modes
+            if mode.share >= OTHER_SHARE
+        ]
+        poses = [pose for pose, share in found for _ in range(round(share / OTHER_SHARE)) if pose is not None]
+        if not poses:
+            return score
+        self._add_particles(np.array(poses), self.least)
+        self.score = self.model.weigh(self._cloud, scan, 1.0, self.threads) or score
+        self._events.append(FilterEvent(self.updates, "match", score, len(found)))
+        return self.score
+
+    def _search(self, scan: Any, judged: Judgement) -> None:
         """Puts half of the particles on the best other places, at the start all of them."""
         is_start, self.is_searching = self.is_searching, False
-        above = LEAST_SCORE if is_start else self._monitor.least_of_places(score, unknown)
+        above = LEAST_SCORE if is_start else self._monitor.least_of_places(judged)
         poses = self.model.search(scan, above, self._rng)
         self._monitor.note_search(len(poses))
-        self._events.append(
-            FilterEvent(self.updates, "search" if len(poses) else "no place", score, len(poses))
-        )
+        kind = "search" if len(poses) else "no place"
+        self._events.append(FilterEvent(self.updates, kind, judged.score, len(poses)))
         if not len(poses):
             self.is_searching = is_start
             return
         cloud = self._cloud
-        P = np.diag(np.square(PLACE_DEVIATIONS))
         if is_start:
+            P = np.diag(np.square(PLACE_DEVIATIONS))
             cloud.place(spread_poses(cloud, poses, P, self._places, self._grown))
             self.model.weigh(cloud, scan, 1.0, self.threads)
         else:
-            cloud.resample(self._grown, SIZE_ERROR, SIZE_QUANTILE)
-            kept = cloud.poses()[::2]
-            added = spread_poses(cloud, poses, P, self._places, len(cloud) - len(kept))
-            cloud.place(np.ascontiguousarray(np.concatenate([kept, added])))
+            kept = self._add_particles(poses, self._grown)
+            self.model.weigh(cloud, scan, 1.0, self.threads)
+            cloud.add_logs(np.where(np.arange(len(cloud)) < kept, 0.0, -CARRIED))
+            lift_share(cloud, kept, KEPT_SHARE)
         self._fresh = FRESH_UPDATES
         self._found = None
+
+    def _add_particles(self, poses: Array, least: int) -> int:
+        """Replaces every other particle by one around poses (k, 3) in turn; how many were kept, which are
+        the first ones."""
+        cloud = self._cloud
+        cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
+        kept = cloud.poses()[::2]
+        P = np.diag(np.square(PLACE_DEVIATIONS))
+        added = spread_poses(cloud, poses, P, self._places, len(cloud) - len(kept))
+        cloud.place(np.ascontiguousarray(np.concatenate([kept, added])))
+        self._found = None
+        return len(kept)
 
     def _note_status(self) -> None:
         status = self.status

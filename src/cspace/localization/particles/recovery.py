@@ -6,12 +6,18 @@ from typing import Final
 
 import numpy as np
 
+from cspace.localization.particles.models import Judgement
+
 FIRST_SCORES: Final = 20
 """Scores after which their median replaces the threshold of the sensor."""
 KEPT_SCORES: Final = 200
 """Scores of which the median is taken: the log's first minutes, and later its last ones."""
 SHARE_OF_MEDIAN: Final = 0.8
 """A score below this part of the median is suspicious, even where the sensor's threshold lies higher."""
+FEWEST_SCORES: Final = 5
+"""Scores after which their median tells what is usual."""
+USUAL_SHARE: Final = 0.9
+"""A score below this part of the median is looked into: there may be a better pose nearby."""
 LOST_UPDATES: Final = 3
 """Suspicious scores in a row after which the filter says that it is lost."""
 LOST_SHARE: Final = 0.8
@@ -25,8 +31,8 @@ fits a bit better."""
 LEAST_SCORE: Final = 0.4
 """The least score of a place at the start."""
 UNKNOWN_GAIN: Final = 0.5
-"""By how much more for each beam that sees what the map does not know, as a share of the scan: where the map
-ends, bad scores are to be expected."""
+"""By how much more for each beam that sees what the map does not know, or sees nothing, as a share of the
+scan: where the map ends, bad scores are to be expected, and few beams fit anywhere."""
 MOST_UNKNOWN: Final = 0.6
 """Share of such beams from which a scan says nothing."""
 PLACE_SHARE: Final = 0.9
@@ -40,7 +46,7 @@ class ScoreMonitor:
         self.first = threshold
         self.scores: list[float] = []
         self.bad, self.low = 0, 0
-        self._threshold = threshold
+        self._threshold, self._median = threshold, 0.0
         self._wait, self._pause = 0, 1
 
     @property
@@ -52,11 +58,17 @@ class ScoreMonitor:
         """Counts a score before the decision to search."""
         self.low = self.low + 1 if score < self._threshold else 0
 
-    def least_of_places(self, score: float, unknown: float) -> float:
-        """What another place must score, given the score here, and the share of beams that the map cannot
-        know."""
-        gain = max(GAINS[0] / max(self.low, 1), GAINS[1]) + UNKNOWN_GAIN * unknown
-        return max(PLACE_SHARE * self._threshold, score + gain)
+    def is_unusual(self, score: float) -> bool:
+        """Whether a score is low enough to look for a better pose nearby."""
+        usual = USUAL_SHARE * self._median if len(self.scores) >= FEWEST_SCORES else 0.0
+        return score < max(usual, self._threshold)
+
+    def least_of_places(self, judged: Judgement) -> float:
+        """What another place must score, given the score here, and the shares of beams that the map cannot
+        know or that are missing."""
+        gain = max(GAINS[0] / max(self.low, 1), GAINS[1])
+        gain += UNKNOWN_GAIN * (judged.unknown + judged.missing)
+        return max(PLACE_SHARE * self._threshold, judged.score + gain)
 
     def add(self, score: float, is_localised: bool) -> None:
         """Takes note of the score of an update."""
@@ -66,8 +78,9 @@ class ScoreMonitor:
             self._pause = 1
         if is_localised:
             self.scores = [*self.scores, score][-KEPT_SCORES:]
+            self._median = float(np.median(self.scores))
             if len(self.scores) >= FIRST_SCORES:
-                self._threshold = min(self.first, SHARE_OF_MEDIAN * float(np.median(self.scores)))
+                self._threshold = min(self.first, SHARE_OF_MEDIAN * self._median)
 
     def wants_search(self, score: float) -> bool:
         """Whether to search now."""
