@@ -4,8 +4,8 @@ Usage: python benchmarks/monte_carlo.py [--trials N] [--only time kidnapped glob
 Prints the rows of the table; --write leaves them in benchmarks/results/monte_carlo.json. For each trial a
 stretch of 20 updates is drawn, and the map is built from the corrected log without it. A trial counts if the
 pose is right (0.5 m, 15°) from some update to the 20th. The map covers the stretch where 70 % of the ends of
-its beams lie on walls of it. Where they should not, scans from nearer than 0, 2, 3 … 6 m to the stretch are
-left out of the map too, until fewer do. The data are found through $CSPACE_DATA.
+its beams lie on walls of it. If it should not, scans from near the stretch are left out of the map too, from
+half a metre on, until fewer do. The data are found through $CSPACE_DATA.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+from bisect import bisect_left
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -29,8 +30,8 @@ LOGS = {"intel": 1, "freiburg-079": 5}
 UPDATES, SETTLED = 20, 5
 RIGHT, NEAR = (0.5, np.radians(15.0)), 0.3
 COVERED, ON_WALL, REACH = 0.7, 100, 20.0
-DISTANCES = (0.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-"""From the stretch that is tested [m]: scans from nearer are left out."""
+HALF_METRES = range(1, 13)
+"""Distances from the stretch that is tested, from which scans are left out."""
 RESULTS = Path(__file__).resolve().parent / "results/monte_carlo.json"
 
 
@@ -153,13 +154,20 @@ class Drives:
         return grid, measure_cover(grid.likelihood_field(), self.log, self.poses, self.rows(b)), use
 
     def maps(self, b: int, wants_other: bool) -> Any:
-        """The map without the stretch; then, if it covers it and others are wanted, the first that does not."""
-        for distance in DISTANCES:
-            grid, cover, use = self.map_without(b, distance)
-            if distance == 0 or cover < COVERED:
-                yield grid, cover, use
-            if cover < COVERED or not wants_other:
-                return
+        """The map without the stretch; then, if it covers it and others are wanted, one that does not."""
+        whole = self.map_without(b, 0.0)
+        yield whole
+        if whole[1] < COVERED or not wants_other:
+            return
+        made: dict[int, Any] = {}
+
+        def is_other(half_metres: int) -> bool:
+            made[half_metres] = self.map_without(b, 0.5 * half_metres)
+            return bool(made[half_metres][1] < COVERED)
+
+        at = bisect_left(HALF_METRES, True, key=is_other)
+        if at < len(HALF_METRES):
+            yield made[HALF_METRES[at]]
 
 
 def run_trials(name: str, count: int, kinds: list[str], seed: int) -> list[dict[str, Any]]:

@@ -18,7 +18,7 @@ from cspace.localization.particles.models import (
     make_model,
 )
 from cspace.localization.particles.placing import FreePlaces, lift_share, spread_poses
-from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor
+from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, UNKNOWN_GAIN, ScoreMonitor
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
@@ -186,11 +186,11 @@ class ParticleFilter:
         self._fresh = max(self._fresh - 1, 0)
         if share > 0:
             self._since = np.zeros(3)
-        if not self.is_searching and self._monitor.is_unusual(score):
-            score = self._match(scan, score)
         judged = Judgement(score)
-        if score < self._monitor.threshold and not self.is_searching:
+        if not self.is_searching and self._monitor.is_unusual(score):
             judged = self.model.judge(scan, self.pose, score)
+            if self._monitor.is_unusual(judged.score):
+                judged = self._match(scan, judged)
         says_something = judged.unknown < MOST_UNKNOWN
         if says_something:
             self._monitor.see(judged.score)
@@ -210,23 +210,25 @@ class ParticleFilter:
             least = self._grown if needs_more else self.least
             cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
 
-    def _match(self, scan: Any, score: float) -> float:
-        """Puts half of the particles on poses near the modes that fit better, if there are some; the score.
+    def _match(self, scan: Any, judged: Judgement) -> Judgement:
+        """Puts half of the particles on poses near the modes that fit better, if there are some; the new
+        judgement.
 
         Wheels that slip move a robot further than the noise of its odometry says.
         """
+        above = judged.score + NEAR_GAIN + UNKNOWN_GAIN * (judged.unknown + judged.missing)
         found = [
-            (self.model.match(scan, mode.pose, score + NEAR_GAIN), mode.share)
+            (self.model.match(scan, mode.pose, above), mode.share)
             for mode in self.modes
             if mode.share >= OTHER_SHARE
         ]
         poses = [pose for pose, share in found for _ in range(round(share / OTHER_SHARE)) if pose is not None]
         if not poses:
-            return score
+            return judged
+        self._events.append(FilterEvent(self.updates, "match", judged.score, len(found)))
         self._add_particles(np.array(poses), self.least)
-        self.score = self.model.weigh(self._cloud, scan, 1.0, self.threads) or score
-        self._events.append(FilterEvent(self.updates, "match", score, len(found)))
-        return self.score
+        self.score = self.model.weigh(self._cloud, scan, 1.0, self.threads) or judged.score
+        return self.model.judge(scan, self.pose, self.score)
 
     def _search(self, scan: Any, judged: Judgement) -> None:
         """Puts half of the particles on the best other places, at the start all of them."""
