@@ -18,7 +18,7 @@ from cspace.localization.particles.models import (
     make_model,
 )
 from cspace.localization.particles.placing import FreePlaces, lift_share, spread_poses
-from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, UNKNOWN_GAIN, ScoreMonitor
+from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, MISSING_GAIN, ScoreMonitor
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
@@ -186,9 +186,11 @@ class ParticleFilter:
         self._fresh = max(self._fresh - 1, 0)
         if share > 0:
             self._since = np.zeros(3)
-        judged = Judgement(score)
-        if not self.is_searching and self._monitor.is_unusual(score):
-            judged = self.model.judge(scan, self.pose, score)
+        if share > 0 and not self.is_searching:
+            self._weigh_modes(scan, share)
+        judged = Judgement(score, score)
+        if not self.is_searching and (self._fresh or self._monitor.is_unusual(score)):
+            judged = self.model.judge(scan, self._best(), score)
             if self._monitor.is_unusual(judged.score):
                 judged = self._match(scan, judged)
         says_something = judged.unknown < MOST_UNKNOWN
@@ -216,7 +218,7 @@ class ParticleFilter:
 
         Wheels that slip move a robot further than the noise of its odometry says.
         """
-        above = judged.score + NEAR_GAIN + UNKNOWN_GAIN * (judged.unknown + judged.missing)
+        above = judged.whole + NEAR_GAIN + MISSING_GAIN * judged.missing
         found = [
             (self.model.match(scan, mode.pose, above), mode.share)
             for mode in self.modes
@@ -228,7 +230,26 @@ class ParticleFilter:
         self._events.append(FilterEvent(self.updates, "match", judged.score, len(found)))
         self._add_particles(np.array(poses), self.least)
         self.score = self.model.weigh(self._cloud, scan, 1.0, self.threads) or judged.score
-        return self.model.judge(scan, self.pose, self.score)
+        return self.model.judge(scan, self._best(), self.score)
+
+    def _weigh_modes(self, scan: Any, share: float) -> None:
+        """Weighs modes against one another by all that the model knows of them: it is too dear for every
+        particle."""
+        poses = np.array([mode.pose for mode in self.modes])
+        if len(poses) < 2:
+            return
+        logs = self.model.correct(scan, poses)
+        if logs is None:
+            return
+        away = find_twist(poses[:, None], self._cloud.poses())
+        nearest = np.argmin(np.square(away).sum(axis=-1), axis=0)
+        self._cloud.add_logs(share * logs[nearest])
+        self._found = None
+
+    def _best(self) -> Array:
+        """The heaviest particle (3,)."""
+        best: Array = self._cloud.poses()[int(np.argmax(self._cloud.weights()))]
+        return best
 
     def _search(self, scan: Any, judged: Judgement) -> None:
         """Puts half of the particles on the best other places, at the start all of them."""
@@ -246,10 +267,13 @@ class ParticleFilter:
             P = np.diag(np.square(PLACE_DEVIATIONS))
             cloud.place(spread_poses(cloud, poses, P, self._places, self._grown))
             self.model.weigh(cloud, scan, 1.0, self.threads)
+            self._found = None
+            self._weigh_modes(scan, 1.0)
         else:
             kept = self._add_particles(poses, self._grown)
             self.model.weigh(cloud, scan, 1.0, self.threads)
             cloud.add_logs(np.where(np.arange(len(cloud)) < kept, 0.0, -CARRIED))
+            self._weigh_modes(scan, 1.0)
             lift_share(cloud, kept, KEPT_SHARE)
         self._fresh = FRESH_UPDATES
         self._found = None

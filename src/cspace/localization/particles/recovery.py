@@ -30,9 +30,8 @@ scores in a row, and the least: being carried away is rare, so a first bad scan 
 fits a bit better."""
 LEAST_SCORE: Final = 0.4
 """The least score of a place at the start."""
-UNKNOWN_GAIN: Final = 0.5
-"""By how much more for each beam that sees what the map does not know, or sees nothing, as a share of the
-scan: where the map ends, bad scores are to be expected, and few beams fit anywhere."""
+MISSING_GAIN: Final = 0.5
+"""By how much more for each beam that is missing, as a share of a full scan: few beams fit anywhere."""
 MOST_UNKNOWN: Final = 0.6
 """Share of such beams from which a scan says nothing."""
 PLACE_SHARE: Final = 0.9
@@ -64,11 +63,9 @@ class ScoreMonitor:
         return score < max(usual, self._threshold)
 
     def least_of_places(self, judged: Judgement) -> float:
-        """What another place must score, given the score here, and the shares of beams that the map cannot
-        know or that are missing."""
-        gain = max(GAINS[0] / max(self.low, 1), GAINS[1])
-        gain += UNKNOWN_GAIN * (judged.unknown + judged.missing)
-        return max(PLACE_SHARE * self._threshold, judged.score + gain)
+        """What another place must score, where what is unknown counts by half."""
+        gain = max(GAINS[0] / max(self.low, 1), GAINS[1]) + MISSING_GAIN * judged.missing
+        return max(PLACE_SHARE * self._threshold, judged.whole + gain)
 
     def add(self, score: float, is_localised: bool) -> None:
         """Takes note of the score of an update."""
