@@ -133,6 +133,7 @@ class Drives:
         self.times = self.log.scans.times
         self.poses = self.log.truth.at(self.times)
         self.odometry = self.log.odometry.dead_reckoning().at(self.times)
+        self.whole = build_map(self.log, self.poses, np.ones(len(self.poses), bool))
 
     def rows(self, b: int) -> Any:
         """The scans of the updates of the stretch that begins at b."""
@@ -150,7 +151,13 @@ class Drives:
     def map_without(self, b: int, distance: float) -> tuple[Any, float, Any]:
         """The map, how much of the stretch it covers, and which scans made it."""
         use = self.leave_out(b, distance)
-        grid = build_map(self.log, self.poses, use)
+        # Evidence adds up: the whole map less that of the scans that are left out.
+        out = build_map(self.log, self.poses, ~use)
+        row, column = np.subtract(out.corner, self.whole.corner)
+        rows, columns = out.shape
+        sums = self.whole.sums.copy()
+        sums[row : row + rows, column : column + columns] -= out.sums
+        grid = cs.maps.EvidenceGrid(sums, self.whole.resolution, self.whole.anchor, self.whole.corner)
         return grid, measure_cover(grid.likelihood_field(), self.log, self.poses, self.rows(b)), use
 
     def maps(self, b: int, wants_other: bool) -> Any:

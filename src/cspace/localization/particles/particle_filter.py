@@ -111,6 +111,7 @@ class ParticleFilter:
         self._grown = min(largest, SEARCH_GROWTH * self.least)
         self._found: list[PoseMode] | None = None
         self.updates, self.score = 0, float("nan")
+        self._unknown = 0.0  # share of the last measurement that the map cannot judge
         self._events: list[FilterEvent] = []
         self._was = ""
         self.is_searching = start is None
@@ -178,7 +179,8 @@ class ParticleFilter:
         if self._fresh:
             share = 1.0
         share = share if share > STANDING / FULL_STEP else 0.0
-        score = self.model.weigh(self._cloud, scan, share, self.threads)
+        used = share if self._unknown < MOST_UNKNOWN else 0.0
+        score = self.model.weigh(self._cloud, scan, used, self.threads)
         if score is None:
             return
         self.updates += 1
@@ -186,13 +188,14 @@ class ParticleFilter:
         self._fresh = max(self._fresh - 1, 0)
         if share > 0:
             self._since = np.zeros(3)
-        if share > 0 and not self.is_searching:
-            self._weigh_modes(scan, share)
+        if used > 0 and not self.is_searching:
+            self._weigh_modes(scan, used)
         judged = Judgement(score, score)
         if not self.is_searching and (self._fresh or self._monitor.is_unusual(score)):
             judged = self.model.judge(scan, self._best(), score)
-            if self._monitor.is_unusual(judged.score):
+            if self._monitor.is_unusual(judged.score) and judged.unknown < MOST_UNKNOWN:
                 judged = self._match(scan, judged)
+        self._unknown = judged.unknown
         says_something = judged.unknown < MOST_UNKNOWN
         if says_something:
             self._monitor.see(judged.score)
