@@ -19,9 +19,10 @@ WALL_SLACK: Final = 0.3
 
 
 class Evidence(NamedTuple):
-    """What the rays of a scan say of poses (k,). score (0 … 1): the mean of the beams that the map can judge,
-    where those through walls count zero. unknown: the share of the others, which end in unknown cells and
-    cross no wall. whole: the mean of all beams, NEW_SCORE for those. ends: that of the field at the ends."""
+    """What the rays of a scan say of poses (k,). score (0 … 1): the mean of the field at the ends of the beams
+    that the map can judge. unknown: the share of the others, which end in unknown cells and cross no wall.
+    whole: the mean of all beams, NEW_SCORE for those, zero for beams through walls. ends: that of the field
+    at all ends."""
 
     score: Array
     unknown: Array
@@ -53,12 +54,11 @@ class RayJudge:
             reach = cast_rays(self.walls, origin, np.arctan2(away[..., 1], away[..., 0]))
             crossing = reach < far - WALL_SLACK
         unknown = is_new & ~crossing
-        seen = np.where(crossing, 0.0, scores)
         counted = np.maximum((~unknown).sum(axis=1), 1)
         return Evidence(
-            np.where(unknown, 0.0, seen).sum(axis=1) / counted,
+            np.where(unknown, 0.0, scores).sum(axis=1) / counted,
             unknown.mean(axis=1),
-            np.where(unknown, NEW_SCORE, seen).mean(axis=1),
+            np.where(unknown, NEW_SCORE, np.where(crossing, 0.0, scores)).mean(axis=1),
             scores.mean(axis=1),
         )
 

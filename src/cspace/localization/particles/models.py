@@ -26,8 +26,10 @@ SEARCH_BEAMS: Final = 180
 """Beams with which the whole map is searched."""
 MOST_PLACES: Final = 3
 """Places found on the map that get particles."""
-CANDIDATES: Final = 12
+CANDIDATES: Final = 8
 """Places found by the ends of beams, of which their rays choose."""
+CANDIDATE_MARGIN: Final = 0.4
+"""By how much their ends may score below those of the best one."""
 LEAST_OF_ENDS: Final = 0.35
 """The least score of the ends of beams at a place: most of them may be unknown to the map."""
 BEAM_MODEL_PARTICLES: Final = 500
@@ -67,8 +69,9 @@ class CloudModel(Protocol):
         """What is to be added to the logarithms of the likelihoods of poses (k, 3) by which particles are
         weighed: (k,); None for nothing."""
 
-    def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
-        """Poses (k, 3) that fit a measurement better than a score, the best first."""
+    def search(self, measurement: Any, least: float, above: float, rng: np.random.Generator) -> Array:
+        """Poses (k, 3) of a least score that fit a measurement better than a bound on the whole of it, the
+        best first."""
 
 
 class ScanModel:
@@ -158,19 +161,25 @@ class ScanModel:
         seen = self.look(measurement, used, poses)
         return 255.0 * self.nats * exponent * len(used) * (seen.whole - seen.ends)
 
-    def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
+    def search(self, measurement: Any, least: float, above: float, rng: np.random.Generator) -> Array:
         """The best separate poses on the whole map, by their rays."""
         ends = self.read_ends(measurement)
         if len(ends) < FEWEST_BEAMS:
             return np.empty((0, 3))
         used = np.ascontiguousarray(ends[thin_ends(ends, SEARCH_BEAMS)])
-        least = LEAST_OF_ENDS if self.known is not None else max(LEAST_OF_ENDS, min(above, 1.0))
+        bound = min(least, LEAST_OF_ENDS if self.known is not None else 1.0)
         poses = search_pose(
-            used, self.field, most=CANDIDATES, least_score=least, margin=1.0, free=self.free
+            used,
+            self.field,
+            most=CANDIDATES,
+            least_score=bound,
+            margin=CANDIDATE_MARGIN,
+            free=self.free,
         ).poses
-        whole = self.look(measurement, used, poses).whole
-        best = np.argsort(-whole, kind="stable")[:MOST_PLACES]
-        return poses[best[whole[best] > above]]
+        seen = self.look(measurement, used, poses)
+        order = np.argsort(-seen.whole, kind="stable")
+        fits = (seen.score >= least) & (seen.whole > above)
+        return poses[order[fits[order]][:MOST_PLACES]]
 
     def read_ends(self, measurement: Any) -> Array:
         """The ends (m, 2) in base of one scan, or the points (m, 2) given."""
@@ -225,7 +234,7 @@ class SightingModel:
             threads,
         )
 
-    def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
+    def search(self, measurement: Any, least: float, above: float, rng: np.random.Generator) -> Array:
         """Random poses from which a named landmark would be seen so (Lenser & Veloso 2000)."""
         readings = self.read(measurement)
         whole = np.flatnonzero(

@@ -198,8 +198,8 @@ class ParticleFilter:
         self._unknown = judged.unknown
         says_something = judged.unknown < MOST_UNKNOWN
         if says_something:
-            self._monitor.see(judged.score)
-        is_low = says_something and self._monitor.wants_search(judged.score)
+            self._monitor.see(judged)
+        is_low = says_something and self._monitor.wants_search(judged)
         if self.recover and (self.is_searching or is_low):
             self._search(scan, judged)
         elif share > 0:
@@ -257,8 +257,8 @@ class ParticleFilter:
     def _search(self, scan: Any, judged: Judgement) -> None:
         """Puts half of the particles on the best other places, at the start all of them."""
         is_start, self.is_searching = self.is_searching, False
-        above = LEAST_SCORE if is_start else self._monitor.least_of_places(judged)
-        poses = self.model.search(scan, above, self._rng)
+        bounds = (LEAST_SCORE, LEAST_SCORE) if is_start else self._monitor.bound_places(judged)
+        poses = self.model.search(scan, *bounds, self._rng)
         self._monitor.note_search(len(poses))
         kind = "search" if len(poses) else "no place"
         self._events.append(FilterEvent(self.updates, kind, judged.score, len(poses)))

@@ -34,6 +34,9 @@ MISSING_GAIN: Final = 0.5
 """By how much more for each beam that is missing, as a share of a full scan: few beams fit anywhere."""
 MOST_UNKNOWN: Final = 0.6
 """Share of such beams from which a scan says nothing."""
+SHARE_OF_RAYS: Final = 0.5
+"""Part of the threshold below which the whole of a measurement is suspicious: most of its beams go through
+walls."""
 PLACE_SHARE: Final = 0.9
 """The least score of another place later, over the threshold: places of maps that look alike fit by half."""
 
@@ -53,19 +56,22 @@ class ScoreMonitor:
         """The score below which another place is looked for."""
         return self._threshold
 
-    def see(self, score: float) -> None:
-        """Counts a score before the decision to search."""
-        self.low = self.low + 1 if score < self._threshold else 0
+    def see(self, judged: Judgement) -> None:
+        """Counts a judgement before the decision to search."""
+        self.low = self.low + 1 if self._is_low(judged) else 0
+
+    def _is_low(self, judged: Judgement) -> bool:
+        return judged.score < self._threshold or judged.whole < SHARE_OF_RAYS * self._threshold
 
     def is_unusual(self, score: float) -> bool:
         """Whether a score is low enough to look for a better pose nearby."""
         usual = USUAL_SHARE * self._median if len(self.scores) >= FEWEST_SCORES else 0.0
         return score < max(usual, self._threshold)
 
-    def least_of_places(self, judged: Judgement) -> float:
-        """What another place must score, where what is unknown counts by half."""
+    def bound_places(self, judged: Judgement) -> tuple[float, float]:
+        """What another place must score, and what it must exceed on the whole, given the judgement here."""
         gain = max(GAINS[0] / max(self.low, 1), GAINS[1]) + MISSING_GAIN * judged.missing
-        return max(PLACE_SHARE * self._threshold, judged.whole + gain)
+        return PLACE_SHARE * self._threshold, max(LEAST_SCORE, judged.whole + gain)
 
     def add(self, score: float, is_localised: bool) -> None:
         """Takes note of the score of an update."""
@@ -79,9 +85,9 @@ class ScoreMonitor:
             if len(self.scores) >= FIRST_SCORES:
                 self._threshold = min(self.first, SHARE_OF_MEDIAN * self._median)
 
-    def wants_search(self, score: float) -> bool:
+    def wants_search(self, judged: Judgement) -> bool:
         """Whether to search now."""
-        return score < self._threshold and self._wait == 0
+        return self._is_low(judged) and self._wait == 0
 
     def note_search(self, found: int) -> None:
         """After a search; one that found nothing lets the next wait twice as long."""
