@@ -62,8 +62,9 @@ class CloudModel(Protocol):
     def judge(self, measurement: Any, pose: Array, score: float) -> Judgement:
         """The score at a pose, that of the best particle."""
 
-    def match(self, measurement: Any, pose: Array, above: float) -> Array | None:
-        """The pose (3,) near another one that fits best, if it scores more than a bound."""
+    def match(self, measurement: Any, pose: Array, least: float, above: float) -> Array | None:
+        """The pose (3,) near another one that fits best; None if it scores less, or fits on the whole no
+        better than a bound."""
 
     def correct(self, measurement: Any, poses: Array) -> Array | None:
         """What is to be added to the logarithms of the likelihoods of poses (k, 3) by which particles are
@@ -148,12 +149,12 @@ class ScanModel:
         laser = measurement.T_base_laser[:2, 2] if is_scan else np.zeros(2)
         return self.rays.look(ends, laser, poses)
 
-    def match(self, measurement: Any, pose: Array, above: float) -> Array | None:
+    def match(self, measurement: Any, pose: Array, least: float, above: float) -> Array | None:
         """The best pose in a window, by correlation."""
         used, _ = self.choose_ends(self.read_ends(measurement))
         found = match_scan(used, self.field, guess=pose, window=NEAR_WINDOW, least_score=0.0)
-        is_better = self.look(measurement, used, found.pose[None]).whole[0] > above
-        return found.pose if is_better else None
+        seen = self.look(measurement, used, found.pose[None])
+        return found.pose if seen.score[0] >= least and seen.whole[0] > above else None
 
     def correct(self, measurement: Any, poses: Array) -> Array | None:
         """The difference between the rays and their ends."""
@@ -257,7 +258,7 @@ class SightingModel:
         """The score itself: a map of landmarks has no unknown parts."""
         return Judgement(score, score)
 
-    def match(self, measurement: Any, pose: Array, above: float) -> Array | None:
+    def match(self, measurement: Any, pose: Array, least: float, above: float) -> Array | None:
         """None: the circles of a search pass near as well."""
         return None
 

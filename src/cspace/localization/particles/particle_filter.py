@@ -18,7 +18,7 @@ from cspace.localization.particles.models import (
     make_model,
 )
 from cspace.localization.particles.placing import FreePlaces, lift_share, spread_poses
-from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, MISSING_GAIN, ScoreMonitor
+from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor, add_doubt
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
@@ -221,9 +221,9 @@ class ParticleFilter:
 
         Wheels that slip move a robot further than the noise of its odometry says.
         """
-        above = judged.whole + NEAR_GAIN + MISSING_GAIN * judged.missing
+        above = judged.whole + NEAR_GAIN + add_doubt(judged)
         found = [
-            (self.model.match(scan, mode.pose, above), mode.share)
+            (self.model.match(scan, mode.pose, self._monitor.least_of_places, above), mode.share)
             for mode in self.modes
             if mode.share >= OTHER_SHARE
         ]

@@ -32,6 +32,8 @@ LEAST_SCORE: Final = 0.4
 """The least score of a place at the start."""
 MISSING_GAIN: Final = 0.5
 """By how much more for each beam that is missing, as a share of a full scan: few beams fit anywhere."""
+UNKNOWN_GAIN: Final = 0.25
+"""The same for each beam that the map cannot judge: few of the others fit elsewhere by chance."""
 MOST_UNKNOWN: Final = 0.6
 """Share of such beams from which a scan says nothing."""
 SHARE_OF_RAYS: Final = 0.5
@@ -39,6 +41,11 @@ SHARE_OF_RAYS: Final = 0.5
 walls."""
 PLACE_SHARE: Final = 0.9
 """The least score of another place later, over the threshold: places of maps that look alike fit by half."""
+
+
+def add_doubt(judged: Judgement) -> float:
+    """By how much more a pose must exceed the present one where a measurement says little."""
+    return MISSING_GAIN * judged.missing + UNKNOWN_GAIN * judged.unknown
 
 
 class ScoreMonitor:
@@ -68,10 +75,15 @@ class ScoreMonitor:
         usual = USUAL_SHARE * self._median if len(self.scores) >= FEWEST_SCORES else 0.0
         return score < max(usual, self._threshold)
 
+    @property
+    def least_of_places(self) -> float:
+        """What another place must score."""
+        return PLACE_SHARE * self._threshold
+
     def bound_places(self, judged: Judgement) -> tuple[float, float]:
         """What another place must score, and what it must exceed on the whole, given the judgement here."""
-        gain = max(GAINS[0] / max(self.low, 1), GAINS[1]) + MISSING_GAIN * judged.missing
-        return PLACE_SHARE * self._threshold, max(LEAST_SCORE, judged.whole + gain)
+        gain = max(GAINS[0] / max(self.low, 1), GAINS[1]) + add_doubt(judged)
+        return self.least_of_places, max(LEAST_SCORE, judged.whole + gain)
 
     def add(self, score: float, is_localised: bool) -> None:
         """Takes note of the score of an update."""
