@@ -1,9 +1,10 @@
-"""Recovery of particle filters: slipping wheels, the end of the map, scans of few beams, rays through walls."""
+"""Recovery of particle filters: slips of wheels, the end of the map, few beams, rays through walls."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.localization.test_particles import CLEAN, WAY, building, route
 
 import cspace as cs
 from cspace import _core
@@ -13,7 +14,6 @@ from cspace.localization.particles.evidence import NEW_SCORE, WALL_SLACK, RayJud
 from cspace.localization.particles.models import make_model
 from cspace.localization.particles.placing import lift_share
 from cspace.maps import EvidenceGrid
-from tests.localization.test_particles import CLEAN, WAY, building, route
 
 SCANNER = LaserScanner(most_range=15.0)
 
@@ -158,7 +158,7 @@ def test_wheels_that_slip_do_not_lose_the_robot(seed):
     for k in range(1, len(poses)):
         step = relate_rows(poses[k - 1], poses[k])
         if k == slip:
-            step = step + [*rng.uniform(0.3, 0.5) * np.array([np.sign(rng.normal()), 0]), rng.uniform(-0.2, 0.2)]
+            step += rng.choice([-1, 1], 3) * rng.uniform([0.3, 0, 0], [0.5, 0, 0.2])
         pf.predict(step, 0.5)
         pf.update(log.scans[k])
         away = np.hypot(*(pf.pose - poses[k])[:2])

@@ -19,10 +19,10 @@ WALL_SLACK: Final = 0.3
 
 
 class Evidence(NamedTuple):
-    """What the rays of a scan say of poses (k,). score (0 … 1): the mean of the field at the ends of the beams
-    that the map can judge. unknown: the share of the others, which end in unknown cells and cross no wall.
-    whole: the mean of all beams, NEW_SCORE for those, zero for beams through walls. ends: that of the field
-    at all ends."""
+    """What the rays of a scan say of poses (k,). score (0 … 1): the mean of the field at the ends of those
+    beams that the map can judge. unknown: the share of the others, which end in unknown cells and cross no
+    wall. whole: the mean of all beams, NEW_SCORE for those, zero for beams through walls. ends: that of the
+    field at all ends."""
 
     score: Array
     unknown: Array
@@ -53,7 +53,7 @@ class RayJudge:
             far = np.hypot(away[..., 0], away[..., 1])
             reach = cast_rays(self.walls, origin, np.arctan2(away[..., 1], away[..., 0]))
             crossing = reach < far - WALL_SLACK
-        unknown = is_new & ~crossing
+        unknown = np.logical_and(is_new, ~crossing)
         counted = np.maximum((~unknown).sum(axis=1), 1)
         return Evidence(
             np.where(unknown, 0.0, scores).sum(axis=1) / counted,
@@ -66,9 +66,10 @@ class RayJudge:
         """The scores (0 … 1) at points (k, m, 2), and which lie in unknown cells at no known wall."""
         field = self.field
         cells = np.floor((points - field.origin) / field.resolution).astype(int)
-        inside = ((cells >= 0) & (cells < field.scores.shape[::-1])).all(axis=-1)
+        inside = np.asarray(((cells >= 0) & (cells < field.scores.shape[::-1])).all(axis=-1))
         columns, rows = np.moveaxis(np.where(inside[..., None], cells, 0), -1, 0)
         scores = np.where(inside, field.scores[rows, columns], field.outside) / 255.0
         if self.known is None:
             return scores, np.zeros(scores.shape, dtype=bool)
-        return scores, (~inside | ~self.known[rows, columns]) & (scores < NEW_SCORE)
+        is_new = np.logical_not(inside & self.known[rows, columns])
+        return scores, np.asarray(is_new & (scores < NEW_SCORE))

@@ -160,7 +160,7 @@ class ScanModel:
         """The difference between the rays and their ends."""
         used, exponent = self.choose_ends(self.read_ends(measurement))
         seen = self.look(measurement, used, poses)
-        return 255.0 * self.nats * exponent * len(used) * (seen.whole - seen.ends)
+        return np.asarray(255.0 * self.nats * exponent * len(used) * (seen.whole - seen.ends))
 
     def search(self, measurement: Any, least: float, above: float, rng: np.random.Generator) -> Array:
         """The best separate poses on the whole map, by their rays."""

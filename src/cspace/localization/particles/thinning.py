@@ -38,4 +38,4 @@ def thin_ends(ends: Array, most: int) -> Ids:
     along = np.concatenate([[0.0], np.cumsum(steps)])
     rows = np.searchsorted(along, np.linspace(0.0, along[-1], most))
     rows = np.minimum(rows, len(ends) - 1)
-    return rows[np.concatenate([[True], rows[1:] > rows[:-1]])]
+    return np.asarray(rows[np.concatenate([[True], rows[1:] > rows[:-1]])])
