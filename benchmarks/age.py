@@ -67,6 +67,11 @@ SOURCES = {
         *("src/kernels/math_fronts.cpp", "src/library/localization_graph.cpp"),
         "src/library/localization_incremental.cpp",
     ],
+    "monte_carlo": [
+        *("include/cspace/localization/particles", "include/cspace/localization/scans/map_search.hpp"),
+        *("src/cspace/localization/particles", "src/cspace/localization/scans/search.py"),
+        *("src/kernels/localization_particles.cpp", "src/library/localization_particles.cpp"),
+    ],
     "": [
         *("include/cspace/math", "include/cspace/kinematics", "include/cspace/ik", "src/kernels"),
         *("src/library", "src/bindings", "src/cspace/ik", "src/cspace/kinematics"),

@@ -1,9 +1,11 @@
 """Monte Carlo localisation: time of an update, and trials of kidnapping and global start on public logs.
 
-Usage: python benchmarks/monte_carlo.py [--trials N] [--only time kidnapped global] [--seed S]. Prints the
-rows of the table. For each trial the map is built from the corrected log without the stretch that is tested;
-a trial counts if the pose is right (0.5 m, 15°) from some update to the 20th. The map covers the stretch
-where 70 % of the ends of its beams lie on walls of it. The data are found through $CSPACE_DATA.
+Usage: python benchmarks/monte_carlo.py [--trials N] [--only time kidnapped global] [--seed S] [--write].
+Prints the rows of the table; --write leaves them in benchmarks/results/monte_carlo.json. For each trial a
+stretch of 20 updates is drawn, and the map is built from the corrected log without it. A trial counts if the
+pose is right (0.5 m, 15°) from some update to the 20th. The map covers the stretch where 70 % of the ends of
+its beams lie on walls of it. If it should not, scans from near the stretch are left out of the map too, from
+half a metre on, until fewer do. The data are found through $CSPACE_DATA.
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+from bisect import bisect_left
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -27,6 +30,9 @@ LOGS = {"intel": 1, "freiburg-079": 5}
 UPDATES, SETTLED = 20, 5
 RIGHT, NEAR = (0.5, np.radians(15.0)), 0.3
 COVERED, ON_WALL, REACH = 0.7, 100, 20.0
+HALF_METRES = range(1, 13)
+"""Distances from the stretch that is tested, from which scans are left out."""
+RESULTS = Path(__file__).resolve().parent / "results/monte_carlo.json"
 
 
 def measure_update(particles: int = 10_000, beams: int = 60) -> dict[str, Any]:
@@ -74,20 +80,43 @@ def measure_cover(field: Any, log: Any, poses: Any, rows: Any) -> float:
 class Trials:
     """Counts of one kind of trial."""
 
-    def __init__(self, what: str) -> None:
-        self.what, self.right, self.total = what, 0, 0
-        self.near, self.doubted = 0, 0
+    def __init__(self, log: str, kind: str) -> None:
+        self.log, self.kind, self.right, self.total = log, kind, 0, 0
+        self.updates, self.near, self.doubted, self.far, self.sure = 0, 0, 0, 0, 0
         self.first: list[int] = []
+        self.covers: list[float] = []
 
     def row(self) -> dict[str, Any]:
-        share = self.right / max(self.total, 1)
-        doubt = self.doubted / max(self.near, 1)
-        first = float(np.mean(self.first)) if self.first else float("nan")
-        return {"what": self.what, "right": self.right, "trials": self.total, "share": share,
-                "first_update": first, "doubted_while_near": doubt, "updates_near": self.near}  # fmt: skip
+        return {
+            "log": self.log,
+            "kind": self.kind,
+            "right": self.right,
+            "trials": self.total,
+            "share": self.right / max(self.total, 1),
+            "mean_first_update": float(np.mean(self.first)) if self.first else None,
+            "updates": self.updates,
+            "updates_near": self.near,
+            "doubted_while_near": self.doubted,
+            "updates_far": self.far,
+            "sure_while_far": self.sure,
+            "median_cover": float(np.median(self.covers)) if self.covers else None,
+        }
 
-    def add(self, good: list[bool]) -> None:
+    def wants(self, count: int, covered: bool) -> bool:
+        """Whether trials are missing, on maps that cover the stretch or on others."""
+        return self.total < count and covered != self.kind.endswith("not covered")
+
+    def see(self, distance: float, status: str) -> None:
+        """Notes what the filter says of itself: near the truth, and where it is not."""
+        self.updates += 1
+        self.near += distance < NEAR
+        self.doubted += distance < NEAR and status != "localised"
+        self.far += distance >= RIGHT[0]
+        self.sure += distance >= RIGHT[0] and status == "localised"
+
+    def add(self, good: list[bool], cover: float) -> None:
         self.total += 1
+        self.covers.append(cover)
         wrong = np.flatnonzero(~np.array(good))
         last = int(wrong[-1]) + 1 if len(wrong) else 0
         if last < len(good):
@@ -95,51 +124,97 @@ class Trials:
             self.first.append(last + 1)
 
 
+class Drives:
+    """A log with corrected poses, of which stretches are tested."""
+
+    def __init__(self, name: str) -> None:
+        self.name, self.step = name, LOGS[name]
+        self.log = cs.read_log(DATA / f"{name}-corrected.log.gz")
+        self.times = self.log.scans.times
+        self.poses = self.log.truth.at(self.times)
+        self.odometry = self.log.odometry.dead_reckoning().at(self.times)
+        self.whole = build_map(self.log, self.poses, np.ones(len(self.poses), bool))
+
+    def rows(self, b: int) -> Any:
+        """The scans of the updates of the stretch that begins at b."""
+        return b + self.step * np.arange(1, UPDATES + 1)
+
+    def leave_out(self, b: int, distance: float) -> Any:
+        """Which scans make the map: not those of the stretch, nor those from nearer to it than a distance."""
+        use = np.ones(len(self.poses), bool)
+        use[max(0, b - 2) : b + UPDATES * self.step + 3] = False
+        if distance > 0:
+            for x, y in self.poses[self.rows(b), :2]:
+                use &= np.hypot(self.poses[:, 0] - x, self.poses[:, 1] - y) >= distance
+        return use
+
+    def map_without(self, b: int, distance: float) -> tuple[Any, float, Any]:
+        """The map, how much of the stretch it covers, and which scans made it."""
+        use = self.leave_out(b, distance)
+        # Evidence adds up: the whole map less that of the scans that are left out.
+        out = build_map(self.log, self.poses, ~use)
+        row, column = np.subtract(out.corner, self.whole.corner)
+        rows, columns = out.shape
+        sums = self.whole.sums.copy()
+        sums[row : row + rows, column : column + columns] -= out.sums
+        grid = cs.maps.EvidenceGrid(sums, self.whole.resolution, self.whole.anchor, self.whole.corner)
+        return grid, measure_cover(grid.likelihood_field(), self.log, self.poses, self.rows(b)), use
+
+    def maps(self, b: int, wants_other: bool) -> Any:
+        """The map without the stretch; then, if it covers it and others are wanted, one that does not."""
+        whole = self.map_without(b, 0.0)
+        yield whole
+        if whole[1] < COVERED or not wants_other:
+            return
+        made: dict[int, Any] = {}
+
+        def is_other(half_metres: int) -> bool:
+            made[half_metres] = self.map_without(b, 0.5 * half_metres)
+            return bool(made[half_metres][1] < COVERED)
+
+        at = bisect_left(HALF_METRES, True, key=is_other)
+        if at < len(HALF_METRES):
+            yield made[HALF_METRES[at]]
+
+
 def run_trials(name: str, count: int, kinds: list[str], seed: int) -> list[dict[str, Any]]:
-    """Trials on one log until each kind has as many as asked for, or a hundred times as many stretches were
+    """Trials on one log until each kind has as many as asked for, or ten times as many stretches were
     drawn."""
-    log = cs.read_log(DATA / f"{name}-corrected.log.gz")
-    poses, step = log.truth.at(log.scans.times), LOGS[name]
-    odometry = log.odometry.dead_reckoning().at(log.scans.times)
-    rng, drawn = np.random.default_rng(seed), 0
-    made = {kind: Trials(f"{name}: {kind}") for kind in kinds}
-    while any(trials.total < count for trials in made.values()) and drawn < 100 * count:
-        drawn += 1
-        a, b = int(rng.integers(len(poses))), int(rng.integers(len(poses) - (UPDATES + 1) * step))
-        if np.hypot(*(poses[a] - poses[b])[:2]) < 3.0:
+    drives, rng = Drives(name), np.random.default_rng(seed)
+    made = [Trials(name, kind) for kind in kinds]
+    for _ in range(10 * count):
+        if all(trials.total >= count for trials in made):
+            break
+        a = int(rng.integers(len(drives.poses)))
+        b = int(rng.integers(len(drives.poses) - (UPDATES + 1) * drives.step))
+        if np.hypot(*(drives.poses[a] - drives.poses[b])[:2]) < 3.0:
             continue
-        use = np.ones(len(poses), bool)
-        use[max(0, b - 2) : b + UPDATES * step + 3] = False
-        grid = build_map(log, poses, use)
-        rows = b + step * np.arange(1, UPDATES + 1)
-        covered = measure_cover(grid.likelihood_field(), log, poses, rows) >= COVERED
-        for kind, trials in made.items():
-            if trials.total >= count or covered != (not kind.endswith("not covered")):
-                continue
-            start = None if kind.startswith("global") else poses[a]
-            run_trial(trials, grid, log, poses, odometry, a, b, step, start)
-    return [trials.row() for trials in made.values()]
+        wants_other = any(trials.wants(count, False) for trials in made)
+        for grid, cover, use in drives.maps(b, wants_other):
+            for trials in made:
+                if use[a] and trials.wants(count, cover >= COVERED):
+                    run_trial(trials, drives, grid, a, b, cover)
+    return [trials.row() for trials in made]
 
 
-def run_trial(
-    trials: Trials, grid: Any, log: Any, poses: Any, odometry: Any, a: int, b: int, step: int, start: Any
-) -> None:
+def run_trial(trials: Trials, drives: Drives, grid: Any, a: int, b: int, cover: float) -> None:
     """Settles at a, unless the start is unknown; continues at b."""
+    start = None if trials.kind.startswith("global") else drives.poses[a]
     pf = cs.ParticleFilter(grid, start=start, rng=trials.total)
     if start is not None:
         for _ in range(SETTLED):
-            pf.update(log.scans[a])
+            pf.update(drives.log.scans[a])
     good = []
-    for k in range(b + step, b + UPDATES * step + 1, step):
-        for j in range(k - step, k):
-            pf.predict(relate_rows(odometry[j], odometry[j + 1]), log.scans.times[j + 1] - log.scans.times[j])
-        pf.update(log.scans[k])
-        away = pf.pose - poses[k]
+    for k in drives.rows(b):
+        for j in range(k - drives.step, k):
+            step = relate_rows(drives.odometry[j], drives.odometry[j + 1])
+            pf.predict(step, drives.times[j + 1] - drives.times[j])
+        pf.update(drives.log.scans[k])
+        away = pf.pose - drives.poses[k]
         distance = float(np.hypot(*away[:2]))
         good.append(distance < RIGHT[0] and abs(float(wrap_angle(away[2]))) < RIGHT[1])
-        trials.near += distance < NEAR
-        trials.doubted += distance < NEAR and pf.status != "localised"
-    trials.add(good)
+        trials.see(distance, pf.status)
+    trials.add(good, cover)
 
 
 KINDS = {
@@ -155,6 +230,7 @@ def main() -> None:
     parser.add_argument("--logs", nargs="+", choices=list(LOGS), default=list(LOGS))
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--save", type=Path)
+    parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     rows = [measure_update()] if "time" in given.only else []
     kinds = [kind for only in given.only for kind in KINDS.get(only, [])]
@@ -167,8 +243,9 @@ def main() -> None:
                 for key, value in row.items()
             )
         )
-    if given.save:
-        given.save.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    for path in [given.save, RESULTS if given.write else None]:
+        if path:
+            path.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ namespace cspace::localization {
 namespace {
 
 constexpr std::size_t pack = float_lanes;
-constexpr BinRule size_bins = {0.5, 36};        // of the rule for the number of particles (Fox 2003)
+constexpr BinRule size_bins = {2.0, 36};        // of the rule for the number of particles (Fox 2003)
 constexpr std::size_t least_per_thread = 1024;  // particles, some tens of microseconds
 
 std::size_t round_up(std::size_t n) { return (n + pack - 1) / pack * pack; }

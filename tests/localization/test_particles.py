@@ -26,6 +26,7 @@ from cspace.localization import (
 )
 from cspace.localization.filters.rows import relate_rows
 from cspace.localization.particles.beam_model import CELL, BeamTable
+from cspace.localization.particles.models import Judgement
 from cspace.localization.particles.recovery import FIRST_SCORES, ScoreMonitor
 from cspace.localization.particles.thinning import thin_ends
 from cspace.maps import OccupancyGrid
@@ -455,8 +456,9 @@ def test_the_threshold_is_learned_from_scores_of_the_log():
     for _ in range(FIRST_SCORES):
         monitor.add(0.65, True)
     assert monitor.threshold == pytest.approx(0.8 * 0.65)
-    assert not monitor.wants_search(0.6)
-    assert monitor.wants_search(0.5)
+    assert not monitor.wants_search(Judgement(0.6, 0.6))
+    assert monitor.wants_search(Judgement(0.5, 0.5))
+    assert monitor.wants_search(Judgement(0.9, 0.1))  # its beams go through walls
 
 
 # --- bad input ------------------------------------------------------------------------------------------

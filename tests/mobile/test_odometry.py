@@ -100,6 +100,26 @@ def test_halving_a_step_changes_nothing_for_a_random_walk(scale):
     np.testing.assert_allclose(A @ two @ np.swapaxes(A, 1, 2) + third, whole, rtol=1e-10, atol=1e-12)
 
 
+@pytest.mark.parametrize("turn", [0.0, 1e-9, 0.4, 3.0, 25.0])
+def test_the_covariance_of_a_random_walk_is_the_sum_over_many_short_steps(turn):
+    rng = np.random.default_rng(9)
+    xi, dt, n = rng.normal(size=(6, 3)) * [1.0, 1.0, turn], rng.uniform(0, 1, 6), 4000
+    model, Q = RandomWalk(side=2e-3, rest=1e-3), np.zeros((6, 3, 3))
+    distance = np.hypot(xi[:, 0], xi[:, 1])
+    walk = np.stack(
+        [
+            model.distance * distance + model.rest * dt,
+            model.side * distance + model.rest * dt,
+            model.turn * np.abs(xi[:, 2]) + model.drift * distance + model.rest_turn * dt,
+        ],
+        axis=-1,
+    )
+    for k in range(n):  # the rest of the arc carries what was disturbed within a short step
+        A = cs.adjoint_2d(cs.exp_se2(-(n - k - 0.5) / n * xi))
+        Q += A @ (walk[:, :, None] * np.eye(3)) @ np.swapaxes(A, 1, 2) / n
+    np.testing.assert_allclose(model.covariance(xi, dt), Q, rtol=1e-4, atol=1e-7)
+
+
 @pytest.mark.parametrize("model", MODELS[1:], ids=["velocity", "odometry"])
 def test_the_models_of_thrun_depend_on_the_step(model):
     """n steps of d/n give 1/n of the variance along the way."""

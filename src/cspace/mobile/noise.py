@@ -15,8 +15,11 @@ from cspace.errors import InputError
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile.arcs import arc_jacobians
 from cspace.spatial import adjoint_2d, exp_se2, log_se2, pose_2d, to_xytheta
+from cspace.spatial.twists import sinc
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
+BACKWARDS, SHARES = -0.5 * (1.0 + NODES), 0.5 * WEIGHTS
+"""Gauss points −s and their weights over s in [0, 1]."""
 LONGEST_TURN = 0.5
 """The turn [rad] over which six Gauss points integrate the noise of an arc to rounding."""
 
@@ -201,13 +204,30 @@ def integrate_along(xi: Array, variances: Array) -> Array:
     turn = float(np.abs(xi[..., 2]).max(initial=0.0))
     doublings = ceil(log2(turn / LONGEST_TURN)) if turn > LONGEST_TURN else 0
     piece = xi / 2.0**doublings
-    Q = np.zeros((*xi.shape, 3))
-    for node, weight in zip(NODES, WEIGHTS, strict=True):
-        A = adjoint_2d(exp_se2(-0.5 * (1.0 + node) * piece))
-        Q += 0.5 * weight * ((A * (variances / 2.0**doublings)[..., None, :]) @ np.swapaxes(A, -1, -2))
+    Q = integrate_short(piece, variances / 2.0**doublings)
     for _ in range(doublings):
         A = adjoint_2d(exp_se2(-piece))
         Q, piece = A @ Q @ np.swapaxes(A, -1, -2) + Q, 2.0 * piece
+    return Q
+
+
+def integrate_short(xi: Array, variances: Array) -> Array:
+    """integrate_along over arcs of LONGEST_TURN at most, all Gauss points at once and entry by entry."""
+    along, aside, angle = (xi[..., k, None] * BACKWARDS for k in range(3))
+    half = 0.5 * angle
+    c, s, sine = np.cos(angle), np.sin(angle), np.sin(half)
+    a, b = sinc(angle), sine * sinc(half)
+    x, y = a * along - b * aside, b * along + a * aside
+    # Rows of Ad: (c, −s, y), (s, c, −x), (0, 0, 1).
+    first, second, last = variances[..., 0], variances[..., 1], variances[..., 2]
+    Q = np.empty((*xi.shape, 3))
+    turned = (s * s) @ SHARES * (first - second)
+    Q[..., 0, 0] = first - turned + (y * y) @ SHARES * last
+    Q[..., 1, 1] = second + turned + (x * x) @ SHARES * last
+    Q[..., 0, 1] = Q[..., 1, 0] = (c * s) @ SHARES * (first - second) - (x * y) @ SHARES * last
+    Q[..., 0, 2] = Q[..., 2, 0] = y @ SHARES * last
+    Q[..., 1, 2] = Q[..., 2, 1] = -(x @ SHARES) * last
+    Q[..., 2, 2] = last
     return Q
 
 

@@ -25,7 +25,7 @@ struct WeightedParticles {
     std::size_t size() const { return x.size(); }
 };
 
-inline constexpr BinRule mode_bins = {0.5, 24};
+inline constexpr BinRule mode_bins = {2.0, 24};
 inline constexpr int least_share_of_bin = 64;  // bins with less of the heaviest one are no bridges
 
 // The sets of bins that touch, of those that are heavy enough: the set of each bin, −1 without.

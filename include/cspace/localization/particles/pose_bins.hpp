@@ -1,7 +1,7 @@
 // Bins of poses: squares of the plane times sectors of the heading, numbered in the order of their discovery.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -18,13 +18,15 @@ struct PoseBin {
 
 // How bins are cut.
 struct BinRule {
-    double side;  // of a square [m]
-    int sectors;  // of the full circle
+    double per_metre;  // squares
+    int sectors;       // of the full circle
     PoseBin bin_of(double x, double y, Heading heading) const {
         constexpr double farthest = 1e9;
+        // The whole number below, without a call of std::floor.
         const auto index = [&](double at) {
-            const double k = std::floor(at / side);
-            return std::int32_t(k < -farthest ? -farthest : k > farthest ? farthest : k);
+            const double k = std::clamp(at * per_metre, -farthest, farthest);
+            const std::int32_t whole = std::int32_t(k);
+            return whole - std::int32_t(double(whole) > k);
         };
         return {index(x), index(y), std::int32_t((std::uint64_t(heading) * std::uint64_t(sectors)) >> 32)};
     }
@@ -34,10 +36,11 @@ class BinTable {
   public:
     // The number of a bin, a new one if it was not seen before.
     int number_of(const PoseBin& bin) {
+        if (last_ >= 0 && bins_[std::size_t(last_)] == bin) return last_;  // as that of the particle before
         if (2 * (bins_.size() + 1) > slots_.size()) grow();
         int& slot = find_slot(bin);
         if (slot < 0) slot = int(bins_.size()), bins_.push_back(bin);
-        return slot;
+        return last_ = slot;
     }
     // −1 for a bin not seen.
     int find(const PoseBin& bin) { return bins_.empty() ? -1 : find_slot(bin); }
@@ -47,6 +50,7 @@ class BinTable {
   private:
     std::vector<int> slots_ = std::vector<int>(64, -1);  // a power of two
     std::vector<PoseBin> bins_;
+    int last_ = -1;  // number that was asked for last
 
     static std::size_t hash(const PoseBin& bin) {
         std::uint64_t h = std::uint64_t(std::uint32_t(bin.column)) << 32 | std::uint32_t(bin.row);

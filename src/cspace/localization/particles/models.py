@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, Protocol
+from typing import Any, Final, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,11 +12,12 @@ from cspace.arrays import Array, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.localization.log import UNKNOWN, Landmarks, Readings, Scans
 from cspace.localization.particles.beam_model import BeamTable
+from cspace.localization.particles.evidence import Evidence, RayJudge
 from cspace.localization.particles.thinning import read_ends, thin_ends
+from cspace.localization.scans.match import match_scan
 from cspace.localization.scans.search import search_pose
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.maps import ByteField, OccupancyGrid, cast_rays
-from cspace.spatial import rotation_2d
 from cspace.tolerances import FALSE_READINGS
 
 FEWEST_BEAMS: Final = 5
@@ -25,12 +26,28 @@ SEARCH_BEAMS: Final = 180
 """Beams with which the whole map is searched."""
 MOST_PLACES: Final = 3
 """Places found on the map that get particles."""
+CANDIDATES: Final = 8
+"""Places found by the ends of beams, of which their rays choose."""
+CANDIDATE_MARGIN: Final = 0.4
+"""By how much their ends may score below those of the best one."""
+LEAST_OF_ENDS: Final = 0.35
+"""The least score of the ends of beams at a place: most of them may be unknown to the map."""
 BEAM_MODEL_PARTICLES: Final = 500
 """The most particles of the beam model: each ray takes a third of a microsecond."""
-NEW_SCORE: Final = 0.5
-"""The score (0 … 1) below which an end in an unknown cell belongs to no known wall."""
-WALL_SLACK: Final = 0.3
-"""How far before an end [m] a wall may stand that it does not lie behind of: errors of pose and map."""
+NEAR_WINDOW: Final = (0.8, 0.26)
+"""How far from a mode [m, rad] a scan is matched where it fits worse than usual: wheels slip by half a metre
+between two scans."""
+
+
+class Judgement(NamedTuple):
+    """What a bad score says: score (0 … 1) of what the map can judge; unknown, the share of the measurement
+    that it cannot; missing, the share that a full measurement has more; whole, the score with what is unknown
+    counted by half, which compares places."""
+
+    score: float
+    whole: float
+    unknown: float = 0.0
+    missing: float = 0.0
 
 
 class CloudModel(Protocol):
@@ -42,11 +59,20 @@ class CloudModel(Protocol):
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
         """Weighs by a share of the evidence; the score of the best particle, None where nothing was seen."""
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
-        """The score without what the map cannot know, and the share of the measurement that this is."""
+    def judge(self, measurement: Any, pose: Array, score: float) -> Judgement:
+        """The score at a pose, that of the best particle."""
 
-    def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
-        """Poses (k, 3) that fit a measurement better than a score, the best first."""
+    def match(self, measurement: Any, pose: Array, least: float, above: float) -> Array | None:
+        """The pose (3,) near another one that fits best; None if it scores less, or fits on the whole no
+        better than a bound."""
+
+    def correct(self, measurement: Any, poses: Array) -> Array | None:
+        """What is to be added to the logarithms of the likelihoods of poses (k, 3) by which particles are
+        weighed: (k,); None for nothing."""
+
+    def search(self, measurement: Any, least: float, above: float, rng: np.random.Generator) -> Array:
+        """Poses (k, 3) of a least score that fit a measurement better than a bound on the whole of it, the
+        best first."""
 
 
 class ScanModel:
@@ -67,6 +93,7 @@ class ScanModel:
         field = self.field
         self.map = _core.ScoreMap(field.scores, field.resolution, tuple(field.origin), field.outside)
         self.free = find_free_cells(grid, field)
+        self.rays = RayJudge(field, self.walls, self.known)
         self.nats = -np.log(scanner.floor) / 255.0  # of a unit of a score
         self.table: BeamTable | None = None
         if scanner.model == "beam":
@@ -108,40 +135,52 @@ class ScanModel:
         exponent = self.scanner.independent / max(self.scanner.beams, int(keep.sum()))
         return exponent * np.asarray(self.table.find(measured[keep], walls[:, keep]).sum(axis=1))
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
-        """The score (0 … 1) at a pose without the beams that end in unknown cells behind no wall, and their
-        share.
-
-        A robot that drives off its map sees what the map does not know; one that was carried away sees
-        through walls, and no walls where there are some.
-        """
-        if self.known is None:
-            return score, 0.0
+    def judge(self, measurement: Any, pose: Array, score: float) -> Judgement:
+        """The score along the rays."""
         ends = self.read_ends(measurement)
-        used, _ = self.choose_ends(ends)
-        p = used @ rotation_2d(pose[2]).T + pose[:2]
-        cells = np.floor((p - self.field.origin) / self.field.resolution).astype(int)
-        inside = ((cells >= 0) & (cells < self.known.shape[::-1])).all(axis=1)
-        columns, rows = np.where(inside[:, None], cells, 0).T
-        scores = np.where(inside, self.field.scores[rows, columns], 0) / 255.0
-        is_new = (~inside | ~self.known[rows, columns]) & (scores < NEW_SCORE)
-        away = p[is_new] - pose[:2]
-        far = np.hypot(away[:, 0], away[:, 1])
-        reach = cast_rays(self.walls, pose[:2], np.arctan2(away[:, 1], away[:, 0]))
-        excused = np.flatnonzero(is_new)[reach >= far - WALL_SLACK]
-        counted = np.delete(scores, excused)
-        unknown = len(excused) / len(scores)
-        return max(score, float(counted.mean()) if len(counted) else 0.0), unknown
+        full = len(measurement.angles) if isinstance(measurement, Scans) else len(ends)
+        missing = max(0.0, 1.0 - len(ends) / min(full, self.scanner.beams))
+        seen = self.look(measurement, self.choose_ends(ends)[0], pose[None])
+        return Judgement(float(seen.score[0]), float(seen.whole[0]), float(seen.unknown[0]), missing)
 
-    def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
-        """The best separate poses on the whole map."""
+    def look(self, measurement: Any, ends: Array, poses: Array) -> Evidence:
+        """The evidence of ends (m, 2) of a measurement from poses (k, 3)."""
+        is_scan = isinstance(measurement, Scans)
+        laser = measurement.T_base_laser[:2, 2] if is_scan else np.zeros(2)
+        return self.rays.look(ends, laser, poses)
+
+    def match(self, measurement: Any, pose: Array, least: float, above: float) -> Array | None:
+        """The best pose in a window, by correlation."""
+        used, _ = self.choose_ends(self.read_ends(measurement))
+        found = match_scan(used, self.field, guess=pose, window=NEAR_WINDOW, least_score=0.0)
+        seen = self.look(measurement, used, found.pose[None])
+        return found.pose if seen.score[0] >= least and seen.whole[0] > above else None
+
+    def correct(self, measurement: Any, poses: Array) -> Array | None:
+        """The difference between the rays and their ends."""
+        used, exponent = self.choose_ends(self.read_ends(measurement))
+        seen = self.look(measurement, used, poses)
+        return np.asarray(255.0 * self.nats * exponent * len(used) * (seen.whole - seen.ends))
+
+    def search(self, measurement: Any, least: float, above: float, rng: np.random.Generator) -> Array:
+        """The best separate poses on the whole map, by their rays."""
         ends = self.read_ends(measurement)
         if len(ends) < FEWEST_BEAMS:
             return np.empty((0, 3))
         used = np.ascontiguousarray(ends[thin_ends(ends, SEARCH_BEAMS)])
-        return search_pose(
-            used, self.field, most=MOST_PLACES, least_score=min(above, 1.0), free=self.free
+        bound = min(least, LEAST_OF_ENDS if self.known is not None else 1.0)
+        poses = search_pose(
+            used,
+            self.field,
+            most=CANDIDATES,
+            least_score=bound,
+            margin=CANDIDATE_MARGIN,
+            free=self.free,
         ).poses
+        seen = self.look(measurement, used, poses)
+        order = np.argsort(-seen.whole, kind="stable")
+        fits = (seen.score >= least) & (seen.whole > above)
+        return poses[order[fits[order]][:MOST_PLACES]]
 
     def read_ends(self, measurement: Any) -> Array:
         """The ends (m, 2) in base of one scan, or the points (m, 2) given."""
@@ -196,7 +235,7 @@ class SightingModel:
             threads,
         )
 
-    def search(self, measurement: Any, above: float, rng: np.random.Generator) -> Array:
+    def search(self, measurement: Any, least: float, above: float, rng: np.random.Generator) -> Array:
         """Random poses from which a named landmark would be seen so (Lenser & Veloso 2000)."""
         readings = self.read(measurement)
         whole = np.flatnonzero(
@@ -215,9 +254,17 @@ class SightingModel:
         c, s = np.cos(theta), np.sin(theta)
         return np.stack([x - c * mx + s * my, y - s * mx - c * my, theta], axis=-1)
 
-    def judge(self, measurement: Any, pose: Array, score: float) -> tuple[float, float]:
+    def judge(self, measurement: Any, pose: Array, score: float) -> Judgement:
         """The score itself: a map of landmarks has no unknown parts."""
-        return score, 0.0
+        return Judgement(score, score)
+
+    def match(self, measurement: Any, pose: Array, least: float, above: float) -> Array | None:
+        """None: the circles of a search pass near as well."""
+        return None
+
+    def correct(self, measurement: Any, poses: Array) -> Array | None:
+        """None: particles are weighed by all that is seen."""
+        return None
 
     def read(self, measurement: Any) -> Readings:
         """The readings, checked."""

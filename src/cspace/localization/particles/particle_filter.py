@@ -13,11 +13,12 @@ from cspace.errors import InputError, InputTypeError
 from cspace.localization.filters.rows import find_twist, follow_rows
 from cspace.localization.particles.models import (
     BEAM_MODEL_PARTICLES,
+    Judgement,
     ScanModel,
     make_model,
 )
-from cspace.localization.particles.placing import FreePlaces, spread_poses
-from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor
+from cspace.localization.particles.placing import FreePlaces, lift_share, spread_poses
+from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor, add_doubt
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise, RandomWalk
@@ -57,6 +58,13 @@ FRESH_UPDATES: Final = 5
 SEARCH_GROWTH: Final = 5
 """How many times the least number of particles there are in these updates, at most: of each place many must
 be near the pose that fits best, or places that look alike get weights by chance."""
+
+NEAR_GAIN: Final = 0.05
+"""By how much the score of a pose near a mode must exceed that of the best particle to get particles."""
+CARRIED: Final = 5.0
+"""Logarithm of the odds against having been carried to another place since the last measurement."""
+KEPT_SHARE: Final = 0.1
+"""The least share of the weight that the particles before a search keep: later scans may agree with them."""
 
 
 class ParticleFilter:
@@ -103,6 +111,7 @@ class ParticleFilter:
         self._grown = min(largest, SEARCH_GROWTH * self.least)
         self._found: list[PoseMode] | None = None
         self.updates, self.score = 0, float("nan")
+        self._unknown = 0.0  # share of the last measurement that the map cannot judge
         self._events: list[FilterEvent] = []
         self._was = ""
         self.is_searching = start is None
@@ -170,7 +179,8 @@ class ParticleFilter:
         if self._fresh:
             share = 1.0
         share = share if share > STANDING / FULL_STEP else 0.0
-        score = self.model.weigh(self._cloud, scan, share, self.threads)
+        used = share if self._unknown < MOST_UNKNOWN else 0.0
+        score = self.model.weigh(self._cloud, scan, used, self.threads)
         if score is None:
             return
         self.updates += 1
@@ -178,19 +188,24 @@ class ParticleFilter:
         self._fresh = max(self._fresh - 1, 0)
         if share > 0:
             self._since = np.zeros(3)
-        unknown = 0.0
-        if score < self._monitor.threshold and not self.is_searching:
-            score, unknown = self.model.judge(scan, self.pose, score)
-        says_something = unknown < MOST_UNKNOWN
+        if used > 0 and not self.is_searching:
+            self._weigh_modes(scan, used)
+        judged = Judgement(score, score)
+        if not self.is_searching and (self._fresh or self._monitor.is_unusual(score)):
+            judged = self.model.judge(scan, self._best(), score)
+            if self._monitor.is_unusual(judged.score) and judged.unknown < MOST_UNKNOWN:
+                judged = self._match(scan, judged)
+        self._unknown = judged.unknown
+        says_something = judged.unknown < MOST_UNKNOWN
         if says_something:
-            self._monitor.see(score)
-        is_low = says_something and self._monitor.wants_search(score)
+            self._monitor.see(judged)
+        is_low = says_something and self._monitor.wants_search(judged)
         if self.recover and (self.is_searching or is_low):
-            self._search(scan, score, unknown)
+            self._search(scan, judged)
         elif share > 0:
             self._resample()
         if says_something:
-            self._monitor.add(score, share > 0 and self.status == "localised")
+            self._monitor.add(judged.score, share > 0 and self.status == "localised")
         self._note_status()
 
     def _resample(self) -> None:
@@ -200,30 +215,83 @@ class ParticleFilter:
             least = self._grown if needs_more else self.least
             cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
 
-    def _search(self, scan: Any, score: float, unknown: float) -> None:
+    def _match(self, scan: Any, judged: Judgement) -> Judgement:
+        """Puts half of the particles on poses near the modes that fit better, if there are some; the new
+        judgement.
+
+        Wheels that slip move a robot further than the noise of its odometry says.
+        """
+        above = judged.whole + NEAR_GAIN + add_doubt(judged)
+        found = [
+            (self.model.match(scan, mode.pose, self._monitor.least_of_places, above), mode.share)
+            for mode in self.modes
+            if mode.share >= OTHER_SHARE
+        ]
+        poses = [pose for pose, share in found for _ in range(round(share / OTHER_SHARE)) if pose is not None]
+        if not poses:
+            return judged
+        self._events.append(FilterEvent(self.updates, "match", judged.score, len(found)))
+        self._add_particles(np.array(poses), self.least)
+        self.score = self.model.weigh(self._cloud, scan, 1.0, self.threads) or judged.score
+        return self.model.judge(scan, self._best(), self.score)
+
+    def _weigh_modes(self, scan: Any, share: float) -> None:
+        """Weighs modes against one another by all that the model knows of them: it is too dear for every
+        particle."""
+        poses = np.array([mode.pose for mode in self.modes])
+        if len(poses) < 2:
+            return
+        logs = self.model.correct(scan, poses)
+        if logs is None:
+            return
+        away = find_twist(poses[:, None], self._cloud.poses())
+        nearest = np.argmin(np.square(away).sum(axis=-1), axis=0)
+        self._cloud.add_logs(share * logs[nearest])
+        self._found = None
+
+    def _best(self) -> Array:
+        """The heaviest particle (3,)."""
+        best: Array = self._cloud.poses()[int(np.argmax(self._cloud.weights()))]
+        return best
+
+    def _search(self, scan: Any, judged: Judgement) -> None:
         """Puts half of the particles on the best other places, at the start all of them."""
         is_start, self.is_searching = self.is_searching, False
-        above = LEAST_SCORE if is_start else self._monitor.least_of_places(score, unknown)
-        poses = self.model.search(scan, above, self._rng)
+        bounds = (LEAST_SCORE, LEAST_SCORE) if is_start else self._monitor.bound_places(judged)
+        poses = self.model.search(scan, *bounds, self._rng)
         self._monitor.note_search(len(poses))
-        self._events.append(
-            FilterEvent(self.updates, "search" if len(poses) else "no place", score, len(poses))
-        )
+        kind = "search" if len(poses) else "no place"
+        self._events.append(FilterEvent(self.updates, kind, judged.score, len(poses)))
         if not len(poses):
             self.is_searching = is_start
             return
         cloud = self._cloud
-        P = np.diag(np.square(PLACE_DEVIATIONS))
         if is_start:
+            P = np.diag(np.square(PLACE_DEVIATIONS))
             cloud.place(spread_poses(cloud, poses, P, self._places, self._grown))
             self.model.weigh(cloud, scan, 1.0, self.threads)
+            self._found = None
+            self._weigh_modes(scan, 1.0)
         else:
-            cloud.resample(self._grown, SIZE_ERROR, SIZE_QUANTILE)
-            kept = cloud.poses()[::2]
-            added = spread_poses(cloud, poses, P, self._places, len(cloud) - len(kept))
-            cloud.place(np.ascontiguousarray(np.concatenate([kept, added])))
+            kept = self._add_particles(poses, self._grown)
+            self.model.weigh(cloud, scan, 1.0, self.threads)
+            cloud.add_logs(np.where(np.arange(len(cloud)) < kept, 0.0, -CARRIED))
+            self._weigh_modes(scan, 1.0)
+            lift_share(cloud, kept, KEPT_SHARE)
         self._fresh = FRESH_UPDATES
         self._found = None
+
+    def _add_particles(self, poses: Array, least: int) -> int:
+        """Replaces every other particle by one around poses (k, 3) in turn; how many were kept, which are
+        the first ones."""
+        cloud = self._cloud
+        cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
+        kept = cloud.poses()[::2]
+        P = np.diag(np.square(PLACE_DEVIATIONS))
+        added = spread_poses(cloud, poses, P, self._places, len(cloud) - len(kept))
+        cloud.place(np.ascontiguousarray(np.concatenate([kept, added])))
+        self._found = None
+        return len(kept)
 
     def _note_status(self) -> None:
         status = self.status

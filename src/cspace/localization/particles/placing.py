@@ -19,6 +19,9 @@ START_SLACK: Final = 0.3
 LANDMARK_REACH: Final = 10.0
 """How far around landmarks particles are put [m] where the range of the sensor is not limited."""
 
+LEAST_WEIGHT: Final = 2.0**-32
+"""The unit of weights, over the greatest."""
+
 
 class FreePlaces:
     """The places where a robot may be."""
@@ -101,3 +104,15 @@ def spread_poses(
     w = cloud.draw_normals(count) * np.sqrt(np.maximum(values, 0.0)) @ vectors.T
     moved = move_pose(around, w)
     return np.where(places.are_free(moved[:, :2])[:, None], moved, around)
+
+
+def lift_share(cloud: _core.ParticleCloud, count: int, least: float) -> None:
+    """Gives the first particles so much more weight that their share of it is at least so large."""
+    first = np.arange(len(cloud)) < count
+    for _ in range(2):  # weights below 2⁻³² are zero until the first
+        share = float(cloud.weights()[:count].sum())
+        if share >= least:
+            return
+        share = max(share, LEAST_WEIGHT)
+        lift = np.log(least / (1 - least)) - np.log(share / (1 - share))
+        cloud.add_logs(np.where(first, lift, 0.0))

@@ -28,9 +28,10 @@ class PoseMode:
 
 @dataclass(frozen=True)
 class FilterEvent:
-    """What a particle filter did beyond weighing: update, the number of the measurement; kind, "search" where
-    it put particles on other places, "no place" where it found none better, "lost" or "localised" where its
-    status became that; score, that of the best particle (0 … 1); places, how many were found."""
+    """What a particle filter did beyond weighing: update, the number of the measurement; kind, "match" where
+    it put particles on poses nearby that fit better, "search" where on other places, "no place" where it
+    found none better, "lost" or "localised" where its status became that; score, that of the best particle
+    (0 … 1); places, how many were found."""
 
     update: int
     kind: str

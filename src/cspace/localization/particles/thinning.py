@@ -33,7 +33,9 @@ def thin_ends(ends: Array, most: int) -> Ids:
         return np.arange(len(ends))
     steps = np.hypot(*np.diff(ends, axis=0).T)
     on_wall = steps <= LONGEST_GAP
-    steps[~on_wall] = np.median(steps[on_wall]) if on_wall.any() else LONGEST_GAP
+    if not on_wall.all():
+        steps[~on_wall] = np.median(steps[on_wall]) if on_wall.any() else LONGEST_GAP
     along = np.concatenate([[0.0], np.cumsum(steps)])
     rows = np.searchsorted(along, np.linspace(0.0, along[-1], most))
-    return np.unique(np.minimum(rows, len(ends) - 1))
+    rows = np.minimum(rows, len(ends) - 1)
+    return np.asarray(rows[np.concatenate([[True], rows[1:] > rows[:-1]])])
