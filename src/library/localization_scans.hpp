@@ -76,10 +76,19 @@ class LaserSlamRun {
     virtual std::vector<ScanRelation> loops() const = 0;
 };
 
+// How far each scan saw (scans × directions) [m], in directions from `first` on in the frame of the laser [rad].
+struct ViewArray {
+    std::span<const float> ranges;
+    int directions;
+    double first, step;
+    PoseRow T_base_laser;
+};
+
 // points of all scans in base, first (n + 1): where each scan begins; steps: twists between the scans.
 // Throws std::invalid_argument for arrays that do not fit together.
 std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points,
                                               std::span<const std::int32_t> first,
-                                              std::span<const PoseRow> steps, const SlamRule& rule);
+                                              std::span<const PoseRow> steps, const ViewArray& views,
+                                              const SlamRule& rule);
 
 }  // namespace cspace::localization

@@ -10,12 +10,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cspace/localization/graph/optimizer.hpp"
 #include "cspace/localization/scans/correlative_search.hpp"
 #include "cspace/localization/scans/loop_consistency.hpp"
 #include "cspace/localization/scans/refine_pose.hpp"
+#include "cspace/localization/scans/scan_views.hpp"
 #include "cspace/localization/scans/thin_points.hpp"
 
 namespace cspace::localization {
@@ -42,6 +44,7 @@ namespace slam {
 inline constexpr int submap_scans = 30;                        // that a new scan is matched against
 inline constexpr double least_move = 0.05, least_turn = 0.05;  // [m, rad] between the scans of a submap
 inline constexpr double least_score = 0.3;                     // of a match against the last scans
+inline constexpr double least_seen = 0.3;  // share of the points that other scans saw, or all are used
 // The window of a match, and the deviation of its prior: what odometry may be off at rest and per metre or
 // radian.
 inline constexpr double window_rest = 0.15, window_share = 0.3;
@@ -76,12 +79,13 @@ class LaserSlam {
     using Pose = PlanarSpace::Pose;
 
     // points: in base, of all scans; first (n + 1): where those of each scan begin. steps (n − 1): the
-    // odometry between scans as twists.
+    // odometry between scans as twists. views: what each scan saw; of no scans, if that is unknown.
     LaserSlam(std::vector<Point> points, std::vector<std::int32_t> first,
-              std::vector<PlanarSpace::Twist> steps, const SlamOptions& options)
+              std::vector<PlanarSpace::Twist> steps, ScanViews scan_views, const SlamOptions& options)
         : points_(std::move(points)),
           first_(std::move(first)),
           steps_(std::move(steps)),
+          views_(std::move(scan_views)),
           options_(options),
           stamp_(options.resolution, options.sigma) {
         if (scans() == 0) return;
@@ -149,6 +153,23 @@ class LaserSlam {
         poll_interrupts();
     }
 
+    // The points of a scan at a pose that one of the kept scans from `begin` to `end` saw, the newest scan
+    // first; all of them where these are few.
+    std::span<const Point> choose_seen(std::span<const Point> points, const Pose& pose, std::size_t begin,
+                                       std::size_t end) {
+        if (!views_.scans()) return points;
+        seen_.clear();
+        for (const Point p : points) {
+            const Point place = place_point(pose, p);
+            bool is_seen = false;
+            for (std::size_t k = end; k > begin && !is_seen; --k)
+                is_seen = views_.sees(kept_[k - 1], poses_[std::size_t(kept_[k - 1])], place);
+            if (is_seen) seen_.push_back(p);
+        }
+        return double(seen_.size()) < slam::least_seen * double(points.size()) ? points
+                                                                               : std::span(std::as_const(seen_));
+    }
+
     void match_next() {
         const int k = done();
         const PlanarSpace::Twist& step = steps_[std::size_t(k) - 1];
@@ -158,11 +179,14 @@ class LaserSlam {
                                   slam::turn_rest + slam::turn_share * turn};
         const double place = slam::prior_rest + slam::prior_share * length;
         const double heading = slam::prior_rest + slam::prior_share * turn;
-        const double weight = 1 / (2 * search::independent_beams);
         const std::size_t begin = kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans));
+        const std::span<const Point> seen = choose_seen(scan(k), guess, begin, kept_.size());
+        // Fewer points are fewer independent beams beside the prior.
+        const double weight =
+            double(scan(k).size()) / (2 * search::independent_beams * double(std::max(seen.size(), std::size_t(1))));
         lay_field(scan(k), guess, window, begin, kept_.size());
         SearchPeak peak =
-            search_.find_peak(field_, scan(k), guess, window,
+            search_.find_peak(field_, seen, guess, window,
                               {weight / (place * place), weight / (heading * heading)}, slam::least_score);
         if (!peak.is_found) {  // did the wheels slip?
             const SearchWindow wide{window.reach + slam::wide_reach, window.turn + slam::wide_turn};
@@ -174,7 +198,7 @@ class LaserSlam {
         ScanEdge edge{k - 1, k, {}, {}, 0, 0};
         Pose pose = guess;
         if (peak.is_found) {
-            pose = refine_pose(field_, scan(k), peak.pose);
+            pose = refine_pose(field_, choose_seen(scan(k), peak.pose, begin, kept_.size()), peak.pose);
             edge.covariance = peak.covariance, edge.score = peak.score, edge.second = peak.second;
         } else {
             const double x = slam::prior_rest + slam::blind_share * length;
@@ -291,6 +315,7 @@ class LaserSlam {
     std::vector<Point> points_;
     std::vector<std::int32_t> first_;
     std::vector<PlanarSpace::Twist> steps_;
+    ScanViews views_;
     SlamOptions options_;
     PointStamp stamp_;
     maps::ByteField field_;
@@ -299,7 +324,7 @@ class LaserSlam {
     std::vector<int> kept_;
     std::vector<ScanEdge> edges_, loops_;
     std::vector<char> is_ambiguous_, is_used_;
-    std::vector<Point> thin_, placed_;
+    std::vector<Point> thin_, placed_, seen_;
     LoopConsistency chain_;
     AgreementGraph agreement_;
     double moved_ = 0, turned_ = 0, since_search_ = 0;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ from cspace.arrays import Array, one_array
 from cspace.errors import InputError
 from cspace.localization.log import Scans
 from cspace.mobile import Odometry
-from cspace.spatial import exp_se2
+from cspace.spatial import exp_se2, to_xytheta
 
 MOST_BEAMS: Final = 180
 """Points of a scan that are matched: more of them cost time and tell hardly anything new."""
@@ -62,3 +62,38 @@ def find_twists(odometry: Odometry, times: Array) -> Array:
     """The body twists (k, 3) of the steps of odometry in which times (k,) lie."""
     step = np.searchsorted(odometry.times, times, side="right") - 1
     return np.asarray(odometry.twists[np.clip(step, 0, len(odometry) - 1)])
+
+
+class ScanViews(NamedTuple):
+    """How far each scan saw.
+
+    ranges (n · b,) float32 [m], scan by scan; b directions [rad] from `first` on, `step` apart, in the frame
+    of the laser; T_base_laser (3,): x, y [m], θ [rad].
+    """
+
+    ranges: npt.NDArray[np.float32]
+    directions: int
+    first: float
+    step: float
+    T_base_laser: Array
+
+
+def read_views(scans: Scans, max_range: float) -> ScanViews:
+    """How far the scans saw, in evenly spaced directions: to the return of the nearest beam, or to max_range
+    [m] where nothing returned from within it."""
+    order = np.argsort(scans.angles, kind="stable")
+    angles = scans.angles[order]
+    count = min(len(angles), MOST_DIRECTIONS)
+    directions = np.linspace(angles[0], angles[-1], count)
+    beams = order[np.abs(angles[:, None] - directions).argmin(axis=0)]
+    near = scans.returns[:, beams] & (scans.ranges[:, beams] > NEAREST)
+    ranges = np.where(near, np.minimum(scans.ranges[:, beams], max_range), max_range).astype(np.float32)
+    step = float(directions[-1] - directions[0]) / max(count - 1, 1)
+    mount = to_xytheta(scans.T_base_laser)
+    return ScanViews(ranges.ravel(), count, float(directions[0]), max(step, NARROWEST), np.asarray(mount))
+
+
+MOST_DIRECTIONS: Final = 360
+"""In which the view of a scan is stored: half a degree of a SICK laser, a degree all around."""
+NARROWEST: Final = 1e-4
+"""Between directions [rad]: scans of one beam, or of several in one direction, see that far to either side."""
