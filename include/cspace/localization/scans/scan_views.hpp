@@ -19,8 +19,8 @@ namespace cspace::localization {
 
 namespace views {
 
-inline constexpr double side_margin = 0.1;   // [m] from the edge of the field of view: poses are uncertain
-inline constexpr double depth_margin = 0.3;  // [m] behind a range: the same, and walls at an angle
+inline constexpr double side_margin = 0.25;  // [m] from the edge of the field of view: the reach of a bell
+inline constexpr double depth_margin = 0.2;  // [m] behind a range: poses are uncertain, and walls oblique
 
 }  // namespace views
 
@@ -55,9 +55,7 @@ class ScanViews {
         const double inside = views::side_margin / distance - step_ / 2;
         if (!is_closed_ && (angle < inside || angle > span - inside)) return false;
         const int direction = std::clamp(int(std::lround(angle / step_)), 0, directions_ - 1);
-        const float* ranges = ranges_.data() + std::size_t(scan) * std::size_t(directions_);
-        const int low = std::max(direction - 1, 0), high = std::min(direction + 1, directions_ - 1);
-        const float far = *std::max_element(ranges + low, ranges + high + 1);
+        const float far = ranges_[std::size_t(scan) * std::size_t(directions_) + std::size_t(direction)];
         return distance <= double(far) + views::depth_margin;
     }
 

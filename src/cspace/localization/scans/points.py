@@ -79,15 +79,16 @@ class ScanViews(NamedTuple):
 
 
 def read_views(scans: Scans, max_range: float) -> ScanViews:
-    """How far the scans saw, in evenly spaced directions: to the return of the nearest beam, or to max_range
-    [m] where nothing returned from within it."""
+    """How far the scans saw, in evenly spaced directions: to the return of the nearest beam, at most to
+    max_range [m]; where nothing returned, as far as the laser can."""
     order = np.argsort(scans.angles, kind="stable")
     angles = scans.angles[order]
     count = min(len(angles), MOST_DIRECTIONS)
     directions = np.linspace(angles[0], angles[-1], count)
     beams = order[np.abs(angles[:, None] - directions).argmin(axis=0)]
     near = scans.returns[:, beams] & (scans.ranges[:, beams] > NEAREST)
-    ranges = np.where(near, np.minimum(scans.ranges[:, beams], max_range), max_range).astype(np.float32)
+    most = min(max_range, scans.most)
+    ranges = np.where(near, np.minimum(scans.ranges[:, beams], most), most).astype(np.float32)
     step = float(directions[-1] - directions[0]) / max(count - 1, 1)
     mount = to_xytheta(scans.T_base_laser)
     return ScanViews(ranges.ravel(), count, float(directions[0]), max(step, NARROWEST), np.asarray(mount))
