@@ -41,8 +41,8 @@ maps::ByteField read_field(const ScoreArray& given) {
 class RunOfKernels : public LaserSlamRun {
   public:
     RunOfKernels(std::vector<Point> points, std::vector<std::int32_t> first, std::vector<PoseRow> steps,
-                 ScanViews views, const SlamOptions& options)
-        : slam_(std::move(points), std::move(first), std::move(steps), std::move(views), options) {}
+                 const SlamOptions& options)
+        : slam_(std::move(points), std::move(first), std::move(steps), options) {}
     bool advance(int scans) override { return slam_.advance(scans); }
     int done() const override { return slam_.done(); }
     int tried() const override { return slam_.tried(); }
@@ -118,18 +118,19 @@ std::vector<Point> thin_scans(std::span<const Point> points, std::vector<std::in
 
 std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points,
                                               std::span<const std::int32_t> first,
-                                              std::span<const PoseRow> steps, const ViewArray& views,
-                                              const SlamRule& rule) {
-    ScanViews seen(std::vector<float>(views.ranges.begin(), views.ranges.end()), views.directions,
-                   views.first, views.step, PlanarSpace::read_pose(views.T_base_laser.data()));
+                                              std::span<const PoseRow> steps, const SlamRule& rule) {
     bool fits = !first.empty() && first.front() == 0 && std::size_t(first.back()) == points.size();
     for (std::size_t k = 1; k < first.size(); ++k) fits = fits && first[k] >= first[k - 1];
-    if (!fits || steps.size() + 1 < first.size() - 1 || std::size_t(seen.scans()) + 1 != first.size())
+    if (!fits || steps.size() + 1 < first.size() - 1)
         throw std::invalid_argument("the arrays of the scans do not fit together");
     return std::make_unique<RunOfKernels>(std::vector<Point>(points.begin(), points.end()),
                                           std::vector<std::int32_t>(first.begin(), first.end()),
-                                          std::vector<PoseRow>(steps.begin(), steps.end()), std::move(seen),
-                                          SlamOptions{rule.resolution, rule.sigma, rule.finds_loops});
+                                          std::vector<PoseRow>(steps.begin(), steps.end()),
+                                          SlamOptions{rule.resolution,
+                                                      rule.sigma,
+                                                      {rule.first_angle, rule.span,
+                                                       PlanarSpace::read_pose(rule.T_base_laser.data())},
+                                                      rule.finds_loops});
 }
 
 }  // namespace cspace::localization

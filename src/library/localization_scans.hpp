@@ -58,6 +58,8 @@ struct ScanRelation {
     int verdict;  // of loops: accepted, ambiguous, inconsistent, alone
 };
 struct SlamRule {
+    double first_angle, span;  // of the field of view in the frame of the laser [rad]
+    PoseRow T_base_laser;
     double resolution, sigma;
     bool finds_loops;
 };
@@ -76,19 +78,10 @@ class LaserSlamRun {
     virtual std::vector<ScanRelation> loops() const = 0;
 };
 
-// How far each scan saw (scans × directions) [m], in directions from `first` on in the frame of the laser [rad].
-struct ViewArray {
-    std::span<const float> ranges;
-    int directions;
-    double first, step;
-    PoseRow T_base_laser;
-};
-
 // points of all scans in base, first (n + 1): where each scan begins; steps: twists between the scans.
 // Throws std::invalid_argument for arrays that do not fit together.
 std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points,
                                               std::span<const std::int32_t> first,
-                                              std::span<const PoseRow> steps, const ViewArray& views,
-                                              const SlamRule& rule);
+                                              std::span<const PoseRow> steps, const SlamRule& rule);
 
 }  // namespace cspace::localization

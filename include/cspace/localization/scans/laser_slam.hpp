@@ -15,9 +15,9 @@
 
 #include "cspace/localization/graph/optimizer.hpp"
 #include "cspace/localization/scans/correlative_search.hpp"
+#include "cspace/localization/scans/field_of_view.hpp"
 #include "cspace/localization/scans/loop_consistency.hpp"
 #include "cspace/localization/scans/refine_pose.hpp"
-#include "cspace/localization/scans/scan_views.hpp"
 #include "cspace/localization/scans/thin_points.hpp"
 
 namespace cspace::localization {
@@ -25,6 +25,7 @@ namespace cspace::localization {
 struct SlamOptions {
     double resolution = 0.05;  // of the fields [m]
     double sigma = 0.08;       // of a point in them [m]
+    FieldOfView view;
     bool finds_loops = true;
 };
 
@@ -44,7 +45,7 @@ namespace slam {
 inline constexpr int submap_scans = 30;                        // that a new scan is matched against
 inline constexpr double least_move = 0.05, least_turn = 0.05;  // [m, rad] between the scans of a submap
 inline constexpr double least_score = 0.3;                     // of a match against the last scans
-inline constexpr double least_seen = 0.3;  // share of the points that other scans saw, or all are used
+inline constexpr double least_seen = 0.3;  // share of the points in view of other scans, or all are used
 // The window of a match, and the deviation of its prior: what odometry may be off at rest and per metre or
 // radian.
 inline constexpr double window_rest = 0.15, window_share = 0.3;
@@ -79,13 +80,12 @@ class LaserSlam {
     using Pose = PlanarSpace::Pose;
 
     // points: in base, of all scans; first (n + 1): where those of each scan begin. steps (n − 1): the
-    // odometry between scans as twists. views: what each scan saw; of no scans, if that is unknown.
+    // odometry between scans as twists.
     LaserSlam(std::vector<Point> points, std::vector<std::int32_t> first,
-              std::vector<PlanarSpace::Twist> steps, ScanViews scan_views, const SlamOptions& options)
+              std::vector<PlanarSpace::Twist> steps, const SlamOptions& options)
         : points_(std::move(points)),
           first_(std::move(first)),
           steps_(std::move(steps)),
-          views_(std::move(scan_views)),
           options_(options),
           stamp_(options.resolution, options.sigma) {
         if (scans() == 0) return;
@@ -153,21 +153,20 @@ class LaserSlam {
         poll_interrupts();
     }
 
-    // The points of a scan at a pose that one of the kept scans from `begin` to `end` saw, the newest scan
-    // first; all of them where these are few.
-    std::span<const Point> choose_seen(std::span<const Point> points, const Pose& pose, std::size_t begin,
-                                       std::size_t end) {
-        if (!views_.scans()) return points;
+    // The points of a scan at a pose that lie in the field of view of one of the kept scans from `begin` on,
+    // the newest one first; all of them where these are few.
+    std::span<const Point> choose_seen(std::span<const Point> points, const Pose& pose, std::size_t begin) {
+        if (options_.view.is_whole()) return points;
         seen_.clear();
         for (const Point p : points) {
             const Point place = place_point(pose, p);
             bool is_seen = false;
-            for (std::size_t k = end; k > begin && !is_seen; --k)
-                is_seen = views_.sees(kept_[k - 1], poses_[std::size_t(kept_[k - 1])], place);
+            for (std::size_t k = kept_.size(); k > begin && !is_seen; --k)
+                is_seen = options_.view.contains(poses_[std::size_t(kept_[k - 1])], place);
             if (is_seen) seen_.push_back(p);
         }
-        return double(seen_.size()) < slam::least_seen * double(points.size()) ? points
-                                                                               : std::span(std::as_const(seen_));
+        const bool are_few = double(seen_.size()) < slam::least_seen * double(points.size());
+        return are_few ? points : std::span<const Point>(seen_);
     }
 
     void match_next() {
@@ -180,10 +179,10 @@ class LaserSlam {
         const double place = slam::prior_rest + slam::prior_share * length;
         const double heading = slam::prior_rest + slam::prior_share * turn;
         const std::size_t begin = kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans));
-        const std::span<const Point> seen = choose_seen(scan(k), guess, begin, kept_.size());
+        const std::span<const Point> seen = choose_seen(scan(k), guess, begin);
         // Fewer points are fewer independent beams beside the prior.
-        const double weight =
-            double(scan(k).size()) / (2 * search::independent_beams * double(std::max(seen.size(), std::size_t(1))));
+        const double share = double(std::max(seen.size(), std::size_t(1))) / double(std::max(scan(k).size(), std::size_t(1)));
+        const double weight = 1 / (2 * search::independent_beams * share);
         lay_field(scan(k), guess, window, begin, kept_.size());
         SearchPeak peak =
             search_.find_peak(field_, seen, guess, window,
@@ -198,7 +197,7 @@ class LaserSlam {
         ScanEdge edge{k - 1, k, {}, {}, 0, 0};
         Pose pose = guess;
         if (peak.is_found) {
-            pose = refine_pose(field_, choose_seen(scan(k), peak.pose, begin, kept_.size()), peak.pose);
+            pose = refine_pose(field_, choose_seen(scan(k), peak.pose, begin), peak.pose);
             edge.covariance = peak.covariance, edge.score = peak.score, edge.second = peak.second;
         } else {
             const double x = slam::prior_rest + slam::blind_share * length;
@@ -315,7 +314,6 @@ class LaserSlam {
     std::vector<Point> points_;
     std::vector<std::int32_t> first_;
     std::vector<PlanarSpace::Twist> steps_;
-    ScanViews views_;
     SlamOptions options_;
     PointStamp stamp_;
     maps::ByteField field_;

@@ -17,7 +17,7 @@ from cspace.localization.graph import GraphAnswer, PoseGraph
 from cspace.localization.landmark_slam import LandmarkSlam, run_ekf_slam, run_fast_slam
 from cspace.localization.laser_slam.answer import LaserSlam, LaserSlamStats, LoopClosure
 from cspace.localization.log import Log, Scans
-from cspace.localization.scans.points import place_beams, read_views
+from cspace.localization.scans.points import find_view, place_beams
 from cspace.mobile import Odometry, TimedPoses, calibrate
 from cspace.spatial import inverse_pose_2d, log_se2, pose_2d
 
@@ -157,8 +157,8 @@ class Mapper:
         """Matches all scans once; progress goes from begin to end."""
         points, first = place_beams(self.drive.scans, odometry, self.drive.max_range)
         steps = between_scans(sample_odometry(odometry, self.drive.scans.times))
-        views = read_views(self.drive.scans, self.drive.max_range)
-        self.core = LaserSlamRun(points, first, steps, *views, self.resolution, SIGMA, loops)
+        view = find_view(self.drive.scans)
+        self.core = LaserSlamRun(points, first, steps, *view, self.resolution, SIGMA, loops)
         while self.core.advance(SLICE):
             self.tell(begin + (end - begin) * self.core.done / max(len(first) - 1, 1))
 
@@ -204,8 +204,8 @@ class Mapper:
         if self.core is None:  # not one scan within the time limit
             one = self.drive.scans.subset(slice(0, 1))
             points, first = place_beams(one, self.drive.odometry, self.drive.max_range)
-            views = read_views(one, self.drive.max_range)
-            self.core = LaserSlamRun(points, first, np.zeros((0, 3)), *views, self.resolution, SIGMA, False)
+            no_steps = np.zeros((0, 3))
+            self.core = LaserSlamRun(points, first, no_steps, *find_view(one), self.resolution, SIGMA, False)
         scans = self.drive.scans.subset(slice(0, self.core.done))
         graph, used = self.make_graph()
         self.stages["matched"] = TimedPoses(scans.times, self.core.matched)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -64,37 +64,15 @@ def find_twists(odometry: Odometry, times: Array) -> Array:
     return np.asarray(odometry.twists[np.clip(step, 0, len(odometry) - 1)])
 
 
-class ScanViews(NamedTuple):
-    """How far each scan saw.
-
-    ranges (n · b,) float32 [m], scan by scan; b directions [rad] from `first` on, `step` apart, in the frame
-    of the laser; T_base_laser (3,): x, y [m], θ [rad].
-    """
-
-    ranges: npt.NDArray[np.float32]
-    directions: int
-    first: float
-    step: float
-    T_base_laser: Array
+def find_view(scans: Scans) -> tuple[float, float, Array]:
+    """The first direction of the laser and the span of all of them [rad], and its pose on the robot (3,):
+    x, y [m], θ [rad]. Beams on both sides of a gap as wide as others see all around."""
+    low, high = float(scans.angles.min()), float(scans.angles.max())
+    gaps = np.diff(np.sort(scans.angles))
+    widest = float(gaps.max()) if len(gaps) else 0.0
+    is_whole = high - low + GAP * widest >= 2 * np.pi
+    return low, 2 * np.pi if is_whole else high - low, np.asarray(to_xytheta(scans.T_base_laser))
 
 
-def read_views(scans: Scans, max_range: float) -> ScanViews:
-    """How far the scans saw, in evenly spaced directions: to the return of the nearest beam, at most to
-    max_range [m]; where nothing returned, as far as the laser can."""
-    order = np.argsort(scans.angles, kind="stable")
-    angles = scans.angles[order]
-    count = min(len(angles), MOST_DIRECTIONS)
-    directions = np.linspace(angles[0], angles[-1], count)
-    beams = order[np.abs(angles[:, None] - directions).argmin(axis=0)]
-    near = scans.returns[:, beams] & (scans.ranges[:, beams] > NEAREST)
-    most = min(max_range, scans.most)
-    ranges = np.where(near, np.minimum(scans.ranges[:, beams], most), most).astype(np.float32)
-    step = float(directions[-1] - directions[0]) / max(count - 1, 1)
-    mount = to_xytheta(scans.T_base_laser)
-    return ScanViews(ranges.ravel(), count, float(directions[0]), max(step, NARROWEST), np.asarray(mount))
-
-
-MOST_DIRECTIONS: Final = 360
-"""In which the view of a scan is stored: half a degree of a SICK laser, a degree all around."""
-NARROWEST: Final = 1e-4
-"""Between directions [rad]: scans of one beam, or of several in one direction, see that far to either side."""
+GAP: Final = 1.5
+"""The gap between the last beam and the first in widest gaps between beams: more is an edge of the view."""
