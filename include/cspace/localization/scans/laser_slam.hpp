@@ -29,7 +29,7 @@ struct SlamOptions {
     bool finds_loops = true;
 };
 
-enum class LoopVerdict : std::uint8_t { accepted, ambiguous, inconsistent, alone };
+enum class LoopVerdict : std::uint8_t { accepted, ambiguous, inconsistent, alone, clipped };
 
 // A relative pose between two scans.
 struct ScanEdge {
@@ -115,10 +115,10 @@ class LaserSlam {
     std::vector<LoopVerdict> verdicts() const {
         std::vector<LoopVerdict> found;
         for (std::size_t k = 0; k < loops_.size(); ++k)
-            found.push_back(is_ambiguous_[k] ? LoopVerdict::ambiguous
-                            : is_used_[k]    ? LoopVerdict::accepted
-                            : supporters(k)  ? LoopVerdict::inconsistent
-                                             : LoopVerdict::alone);
+            found.push_back(faults_[k] != LoopVerdict::accepted ? faults_[k]
+                            : is_used_[k]                       ? LoopVerdict::accepted
+                            : supporters(k)                     ? LoopVerdict::inconsistent
+                                                                : LoopVerdict::alone);
         return found;
     }
     int tried() const { return tried_; }
@@ -153,20 +153,31 @@ class LaserSlam {
         poll_interrupts();
     }
 
-    // The points of a scan at a pose that lie in the field of view of one of the kept scans from `begin` on,
-    // the newest one first; all of them where these are few.
-    std::span<const Point> choose_seen(std::span<const Point> points, const Pose& pose, std::size_t begin) {
+    // The points of a scan at a pose that lie in the field of view of one of the kept scans from `begin` to
+    // `end`, the newest one first; all of them where these are few.
+    std::span<const Point> choose_seen(std::span<const Point> points, const Pose& pose, std::size_t begin,
+                                       std::size_t end) {
         if (options_.view.is_whole()) return points;
         seen_.clear();
         for (const Point p : points) {
             const Point place = place_point(pose, p);
             bool is_seen = false;
-            for (std::size_t k = kept_.size(); k > begin && !is_seen; --k)
+            for (std::size_t k = end; k > begin && !is_seen; --k)
                 is_seen = options_.view.contains(poses_[std::size_t(kept_[k - 1])], place);
             if (is_seen) seen_.push_back(p);
         }
         const bool are_few = double(seen_.size()) < slam::least_seen * double(points.size());
         return are_few ? points : std::span<const Point>(seen_);
+    }
+    // Whether a scan fits near the guess nearly as well as at a peak apart from it, by the points that lie in
+    // view at each. By all points a peak may be that place alone where most of them meet the map.
+    bool is_rivalled(std::span<const Point> points, const Pose& guess, const Pose& peak, std::size_t begin,
+                     std::size_t end) {
+        if (std::hypot(peak.x - guess.x, peak.y - guess.y) <= search::apart) return false;
+        const double best = measure_score(field_, choose_seen(points, peak, begin, end), peak);
+        const SearchPeak near = search_.find_peak(field_, choose_seen(points, guess, begin, end), guess,
+                                                  {search::apart, search::apart_turn});
+        return near.is_found && near.score >= search::ambiguous_share * best;
     }
 
     void match_next() {
@@ -179,7 +190,7 @@ class LaserSlam {
         const double place = slam::prior_rest + slam::prior_share * length;
         const double heading = slam::prior_rest + slam::prior_share * turn;
         const std::size_t begin = kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans));
-        const std::span<const Point> seen = choose_seen(scan(k), guess, begin);
+        const std::span<const Point> seen = choose_seen(scan(k), guess, begin, kept_.size());
         // Fewer points are fewer independent beams beside the prior.
         const double share = double(std::max(seen.size(), std::size_t(1))) / double(std::max(scan(k).size(), std::size_t(1)));
         const double weight = 1 / (2 * search::independent_beams * share);
@@ -197,7 +208,7 @@ class LaserSlam {
         ScanEdge edge{k - 1, k, {}, {}, 0, 0};
         Pose pose = guess;
         if (peak.is_found) {
-            pose = refine_pose(field_, choose_seen(scan(k), peak.pose, begin), peak.pose);
+            pose = refine_pose(field_, choose_seen(scan(k), peak.pose, begin, kept_.size()), peak.pose);
             edge.covariance = peak.covariance, edge.score = peak.score, edge.second = peak.second;
         } else {
             const double x = slam::prior_rest + slam::blind_share * length;
@@ -259,21 +270,26 @@ class LaserSlam {
             if (!peak.is_found) continue;
             const Pose pose = refine_pose(field_, scan(k), peak.pose);
             const int from = kept_[c];
+            const bool is_ambiguous =
+                peak.is_ambiguous || is_rivalled(thin_, guess, peak.pose, begin, end);
             add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance,
                       peak.score, peak.second},
-                     peak.is_ambiguous);
+                     peak.is_clipped     ? LoopVerdict::clipped
+                     : is_ambiguous ? LoopVerdict::ambiguous
+                                         : LoopVerdict::accepted);
         }
         if (has_news_ && k - last_optimized_ >= slam::optimize_gap) optimize();
     }
-    void add_loop(const ScanEdge& loop, bool is_ambiguous) {
+    // fault: of its match alone.
+    void add_loop(const ScanEdge& loop, LoopVerdict fault) {
         const int node = agreement_.size();
-        loops_.push_back(loop), is_ambiguous_.push_back(is_ambiguous), is_used_.push_back(0);
+        loops_.push_back(loop), faults_.push_back(fault), is_used_.push_back(0);
         agreement_.add_node();
-        if (is_ambiguous) return;
+        if (fault != LoopVerdict::accepted) return;
         const ClosedLoop made{loop.from, loop.to, loop.z, loop.covariance};
         for (int other = 0; other < node; ++other) {
             const ScanEdge& there = loops_[std::size_t(other)];
-            if (is_ambiguous_[std::size_t(other)]) continue;
+            if (faults_[std::size_t(other)] != LoopVerdict::accepted) continue;
             const double error = chain_.cycle_error(made, {there.from, there.to, there.z, there.covariance});
             if (error <= slam::consistent_square) agreement_.join(node, other);
         }
@@ -321,7 +337,8 @@ class LaserSlam {
     std::vector<Pose> poses_, matched_;
     std::vector<int> kept_;
     std::vector<ScanEdge> edges_, loops_;
-    std::vector<char> is_ambiguous_, is_used_;
+    std::vector<LoopVerdict> faults_;
+    std::vector<char> is_used_;
     std::vector<Point> thin_, placed_, seen_;
     LoopConsistency chain_;
     AgreementGraph agreement_;

@@ -36,6 +36,7 @@ VERDICTS: Final = (
     "ambiguous: another pose scores nearly as much",
     "inconsistent with the loops that agree with each other",
     "alone: no other loop agrees with it",
+    "clipped: the best pose lies at the edge of the search",
 )
 """What the core says of loops, by number."""
 UNKNOWN_FACTORS: Final = (1.0, 1.0, 0.0)
