@@ -65,9 +65,14 @@ inline constexpr double loop_reach = 2.5, loop_turn = 0.45;     // the window [m
 inline constexpr double least_radius = 1.0, most_radius = 3.0;  // of the search for candidates [m]
 inline constexpr double radius_deviations = 3;
 inline constexpr double least_loop_score = 0.65;
+// After a drive without loops the search is as wide as its drift, less often, and asks for more.
+inline constexpr double widest_reach = 12, widest_turn = 1;  // [m, rad]
+inline constexpr double wide_step = 1.5;                     // [m or rad]
+inline constexpr double least_far_score = 0.75;
 inline constexpr double consistent_square =
     21.1;                                  // the quantile of 99.99 % of χ² with three degrees of freedom
 inline constexpr int fewest_agreeing = 2;  // loops before any of them counts
+inline constexpr int fewest_far = 3;       // the same, of loops of wide searches alone
 inline constexpr int optimize_gap = 10;    // scans between two optimizations
 inline constexpr int optimize_steps = 3;
 inline constexpr double loop_scaling = 9;  // φ of dynamic covariance scaling while driving
@@ -226,8 +231,32 @@ class LaserSlam {
         if (moved_ >= slam::least_move || turned_ >= slam::least_turn) keep_scan(k);
     }
 
+    // How loops are searched at a scan.
+    struct LoopSearch {
+        double radius;  // the largest about the scan in which others are tried [m]
+        SearchWindow window;
+        double least_score;
+        bool is_far;
+    };
+    LoopSearch plan_search(int k) const {
+        const PlanarSquare M = chain_.stretch(last_loop_, k, chain_.pose(k));
+        const double drift = slam::radius_deviations * longest_deviation(M);
+        if (drift <= slam::loop_reach || since_far_ < slam::wide_step)
+            return {slam::most_radius, {slam::loop_reach, slam::loop_turn}, slam::least_loop_score, false};
+        const double reach = std::min(drift, slam::widest_reach);
+        const double turn = slam::radius_deviations * std::sqrt(M[8]);
+        return {reach,
+                {reach, std::clamp(turn, slam::loop_turn, slam::widest_turn)},
+                slam::least_far_score,
+                true};
+    }
+    static double longest_deviation(const PlanarSquare& M) {
+        const double mean = (M[0] + M[4]) / 2, half = std::hypot((M[0] - M[4]) / 2, M[1]);
+        return std::sqrt(mean + half);
+    }
+
     // The nearest kept scan of each earlier pass, as places among the kept ones.
-    std::vector<std::size_t> find_candidates(int k) const {
+    std::vector<std::size_t> find_candidates(int k, double most_radius) const {
         std::vector<std::size_t> nearest;
         if (kept_.size() <= slam::loop_gap) return nearest;
         const Pose& here = poses_[std::size_t(k)];
@@ -236,7 +265,7 @@ class LaserSlam {
         for (std::size_t c = 0; c < kept_.size() - slam::loop_gap; ++c) {
             const Pose& there = poses_[std::size_t(kept_[c])];
             const double d = std::hypot(there.x - here.x, there.y - here.y);
-            if (d > slam::most_radius || d > radius_of(kept_[c], k)) continue;
+            if (d > most_radius || d > radius_of(kept_[c], k)) continue;
             if (nearest.empty() || c - last > slam::pass_gap) {
                 nearest.push_back(c), least = d;
             } else if (d < least) {
@@ -248,17 +277,17 @@ class LaserSlam {
     }
     double radius_of(int from, int to) const {
         const PlanarSquare M = chain_.stretch(from, to, chain_.pose(to));
-        const double mean = (M[0] + M[4]) / 2, half = std::hypot((M[0] - M[4]) / 2, M[1]);
-        return std::clamp(slam::radius_deviations * std::sqrt(mean + half), slam::least_radius,
-                          slam::most_radius);
+        return std::max(slam::radius_deviations * longest_deviation(M), slam::least_radius);
     }
 
     void search_loops(int k) {
         if (kept_.back() != k || since_search_ < slam::loop_step) return;
-        since_search_ = 0;
+        since_far_ += since_search_, since_search_ = 0;
         thin_points(scan(k), slam::loop_beams, thin_);
-        const SearchWindow window{slam::loop_reach, slam::loop_turn};
-        for (std::size_t c : find_candidates(k)) {
+        const LoopSearch plan = plan_search(k);
+        const SearchWindow& window = plan.window;
+        if (plan.is_far) since_far_ = 0;
+        for (std::size_t c : find_candidates(k, plan.radius)) {
             ++tried_;
             const std::size_t begin = c - std::min(c, std::size_t(slam::loop_scans));
             const std::size_t end =
@@ -266,7 +295,7 @@ class LaserSlam {
             const Pose& guess = poses_[std::size_t(k)];
             lay_field(thin_, guess, window, begin, end);
             const SearchPeak peak =
-                search_.find_peak(field_, thin_, guess, window, {}, slam::least_loop_score);
+                search_.find_peak(field_, thin_, guess, window, {}, plan.least_score);
             if (!peak.is_found) continue;
             const Pose pose = refine_pose(field_, scan(k), peak.pose);
             const int from = kept_[c];
@@ -276,14 +305,15 @@ class LaserSlam {
                       peak.score, peak.second},
                      peak.is_clipped     ? LoopVerdict::clipped
                      : is_ambiguous ? LoopVerdict::ambiguous
-                                         : LoopVerdict::accepted);
+                                         : LoopVerdict::accepted,
+                     plan.is_far);
         }
         if (has_news_ && k - last_optimized_ >= slam::optimize_gap) optimize();
     }
     // fault: of its match alone.
-    void add_loop(const ScanEdge& loop, LoopVerdict fault) {
+    void add_loop(const ScanEdge& loop, LoopVerdict fault, bool is_far) {
         const int node = agreement_.size();
-        loops_.push_back(loop), faults_.push_back(fault), is_used_.push_back(0);
+        loops_.push_back(loop), faults_.push_back(fault), is_far_.push_back(is_far), is_used_.push_back(0);
         agreement_.add_node();
         if (fault != LoopVerdict::accepted) return;
         const ClosedLoop made{loop.from, loop.to, loop.z, loop.covariance};
@@ -304,8 +334,12 @@ class LaserSlam {
     void optimize() {
         has_news_ = false, last_optimized_ = done() - 1;
         std::vector<char> clique = agreement_.find_clique();
-        if (std::count(clique.begin(), clique.end(), 1) < slam::fewest_agreeing) return;
+        int all = 0, far = 0;
+        for (std::size_t k = 0; k < clique.size(); ++k) all += clique[k], far += clique[k] && is_far_[k];
+        if (all < (far == all ? slam::fewest_far : slam::fewest_agreeing)) return;
         is_used_.assign(clique.begin(), clique.end());
+        for (std::size_t k = 0; k < clique.size(); ++k)
+            if (clique[k]) last_loop_ = std::max(last_loop_, loops_[k].to);
         PoseGraph<PlanarSpace> graph;
         graph.start.poses = poses_;
         const auto add = [&](const ScanEdge& edge, bool is_trusted) {
@@ -338,12 +372,12 @@ class LaserSlam {
     std::vector<int> kept_;
     std::vector<ScanEdge> edges_, loops_;
     std::vector<LoopVerdict> faults_;
-    std::vector<char> is_used_;
+    std::vector<char> is_used_, is_far_;
     std::vector<Point> thin_, placed_, seen_;
     LoopConsistency chain_;
     AgreementGraph agreement_;
-    double moved_ = 0, turned_ = 0, since_search_ = 0;
-    int tried_ = 0, optimizations_ = 0, last_optimized_ = 0;
+    double moved_ = 0, turned_ = 0, since_search_ = 0, since_far_ = 0;
+    int tried_ = 0, optimizations_ = 0, last_optimized_ = 0, last_loop_ = 0;
     bool has_news_ = false;
 };
 
