@@ -171,18 +171,18 @@ class LaserSlam {
                 is_seen = options_.view.contains(poses_[std::size_t(kept_[k - 1])], place);
             if (is_seen) seen_.push_back(p);
         }
-        const bool are_few = double(seen_.size()) < slam::least_seen * double(points.size());
-        return are_few ? points : std::span<const Point>(seen_);
+        are_few_ = double(seen_.size()) < slam::least_seen * double(points.size());
+        return are_few_ ? points : std::span<const Point>(seen_);
     }
     // Whether a scan fits near the guess nearly as well as at a peak apart from it, by the points that lie in
     // view at each. By all points a peak may be that place alone where most of them meet the map.
     bool is_rivalled(std::span<const Point> points, const Pose& guess, const Pose& peak, std::size_t begin,
                      std::size_t end) {
-        if (std::hypot(peak.x - guess.x, peak.y - guess.y) <= search::apart) return false;
+        if (std::hypot(peak.x - guess.x, peak.y - guess.y) <= 2 * search::apart) return false;
         const double best = measure_score(field_, choose_seen(points, peak, begin, end), peak);
         const SearchPeak near = search_.find_peak(field_, choose_seen(points, guess, begin, end), guess,
                                                   {search::apart, search::apart_turn});
-        return near.is_found && near.score >= search::ambiguous_share * best;
+        return near.is_found && !near.is_clipped && near.score >= search::ambiguous_share * best;
     }
 
     void match_next() {
@@ -203,7 +203,8 @@ class LaserSlam {
         SearchPeak peak =
             search_.find_peak(field_, seen, guess, window,
                               {weight / (place * place), weight / (heading * heading)}, slam::least_score);
-        if (!peak.is_found) {  // did the wheels slip?
+        // Did the wheels slip? Not if the view is new for the most part: then there is little to match.
+        if (!peak.is_found && !are_few_) {
             const SearchWindow wide{window.reach + slam::wide_reach, window.turn + slam::wide_turn};
             lay_field(scan(k), guess, wide, begin, kept_.size());
             const SearchPeak other =
@@ -378,7 +379,7 @@ class LaserSlam {
     AgreementGraph agreement_;
     double moved_ = 0, turned_ = 0, since_search_ = 0, since_far_ = 0;
     int tried_ = 0, optimizations_ = 0, last_optimized_ = 0, last_loop_ = 0;
-    bool has_news_ = false;
+    bool has_news_ = false, are_few_ = false;
 };
 
 }  // namespace cspace::localization
