@@ -13,12 +13,14 @@ from cspace.errors import InputError, InputTypeError, TimeLimitError, UnknownNam
 from cspace.localization import (
     EkfSlam,
     FastSlam,
+    Landmarks,
     Log,
     Odometry,
     RangeBearing,
     Readings,
     run_ekf_slam,
     run_fast_slam,
+    simulate,
 )
 from cspace.mobile import RandomWalk, VelocityNoise
 from data import shared_data
@@ -658,8 +660,10 @@ def test_a_map_that_readings_contradict_is_ambiguous(seed):
     log = simulate(run, Landmarks(range(20), points), sensor=sensor, rng=seed)
     right = run_ekf_slam(log, sensor=sensor)
     assert right.status == "localised" and not right.doubt
-    for wrong in (far_off_readings(log, rng), nameless(far_off_readings(log, rng))):
-        found = run_ekf_slam(wrong, sensor=sensor)
+    wrong = far_off_readings(log, rng)
+    unnamed = replace(wrong, readings=replace(wrong.readings, landmark=np.full(len(wrong.readings), -1)))
+    for contradicting in (wrong, unnamed):
+        found = run_ekf_slam(contradicting, sensor=sensor)
         assert not found
         assert found.status in ("ambiguous", "lost")
         assert found.reason
