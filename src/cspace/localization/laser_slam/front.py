@@ -126,6 +126,7 @@ class Mapper:
         self.factors = UNKNOWN_FACTORS
         self.core: LaserSlamRun | None = None
         self.answer: GraphAnswer | None = None
+        self.covariances: Array | None = None
         self.is_over = False
 
     def run(self, limit: float) -> None:
@@ -183,6 +184,7 @@ class Mapper:
         graph, _ = self.make_graph()
         robust = "dcs" if len(graph.edges) >= len(graph.poses) else None
         self.answer = graph.optimize(start="given", robust=robust)
+        self.covariances = self.answer.marginals
 
     def make_graph(self) -> tuple[PoseGraph, npt.NDArray[np.intp]]:
         """The graph of what is done, and the rows of the loops in it."""
@@ -212,7 +214,8 @@ class Mapper:
         self.stages["matched"] = TimedPoses(scans.times, self.core.matched)
         poses, covariances = graph.poses, np.full((len(graph.poses), 3, 3), np.nan)
         if self.answer is not None:
-            poses, covariances = self.answer.poses, self.answer.marginals
+            poses = self.answer.poses
+            covariances = covariances if self.covariances is None else self.covariances
             graph = graph.with_poses(poses)
             self.stages["closed"] = TimedPoses(scans.times, poses, covariances)
         closures = self.list_loops(used, len(graph.poses) - 1)

@@ -45,17 +45,37 @@ def place_beams(scans: Scans, odometry: Odometry, max_range: float) -> tuple[Arr
     Where the beams of a scan follow one another by scans.time_increment, each is moved by the twist of the
     odometry from its own time to that of the scan. Points beyond max_range [m] are left out.
     """
-    near = scans.returns & (scans.ranges <= max_range) & (scans.ranges > NEAREST)
-    first = np.concatenate([[0], np.cumsum(near.sum(axis=1))]).astype(np.int32)
-    row, beam = np.nonzero(near)
-    ranges, angles = scans.ranges[row, beam].astype(np.float64), scans.angles[beam]
-    in_laser = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=-1)
-    points = in_laser @ scans.T_base_laser[:2, :2].T + scans.T_base_laser[:2, 2]
+    heading = find_heading(scans.T_base_laser)
+    directions = np.stack([np.cos(scans.angles + heading), np.sin(scans.angles + heading)], axis=-1)
+    twists = None
     if scans.time_increment and len(odometry):
-        T = exp_se2(find_twists(odometry, scans.times)[row] * (scans.time_increment * beam)[:, None])
-        points = np.einsum("kij,kj->ki", T[:, :2, :2], points) + T[:, :2, 2]
-    kept, begins = thin_scans(np.ascontiguousarray(points), first, MOST_BEAMS)
-    return np.asarray(kept).reshape(-1, 2), np.asarray(begins, dtype=np.int32)
+        twists = scans.time_increment * find_twists(odometry, scans.times)
+    returns = scans.returns
+    parts: list[Array] = []
+    counts = [np.zeros(1, np.int32)]
+    for begin in range(0, len(scans), SCANS_AT_ONCE):
+        some = slice(begin, begin + SCANS_AT_ONCE)
+        near = returns[some] & (scans.ranges[some] <= max_range) & (scans.ranges[some] > NEAREST)
+        row, beam = np.nonzero(near)
+        ranges = scans.ranges[some][row, beam].astype(np.float64)
+        points = ranges[:, None] * directions[beam] + scans.T_base_laser[:2, 2]
+        if twists is not None:
+            T = exp_se2(twists[some][row] * beam[:, None])
+            points = np.einsum("kij,kj->ki", T[:, :2, :2], points) + T[:, :2, 2]
+        first = np.concatenate([[0], np.cumsum(near.sum(axis=1))]).astype(np.int32)
+        kept, begins = thin_scans(np.ascontiguousarray(points), first, MOST_BEAMS)
+        parts.append(np.asarray(kept).reshape(-1, 2))
+        counts.append(np.diff(begins))
+    return np.concatenate(parts), np.cumsum(np.concatenate(counts), dtype=np.int32)
+
+
+SCANS_AT_ONCE: Final = 128
+"""Scans whose points are placed together: a few milliseconds between two looks at Ctrl-C and time limits."""
+
+
+def find_heading(T: Array) -> float:
+    """The heading of a pose (3, 3) [rad]."""
+    return float(np.arctan2(T[1, 0], T[0, 0]))
 
 
 def find_twists(odometry: Odometry, times: Array) -> Array:
