@@ -106,7 +106,8 @@ void bind_localization_scans(nb::module_& m) {
                  return make_laser_slam(points, first, steps,
                                         {first_angle, span, T_base_laser, resolution, sigma, finds_loops});
              }),
-             "points"_a, "first"_a, "steps"_a, "first_angle"_a, "span"_a, "T_base_laser"_a, "resolution"_a, "sigma"_a, "finds_loops"_a)
+             "points"_a, "first"_a, "steps"_a, "first_angle"_a, "span"_a, "T_base_laser"_a, "resolution"_a,
+             "sigma"_a, "finds_loops"_a)
         .def("advance", &LaserSlamRun::advance, "scans"_a, WithoutLock(),
              "Works on so many scans more; False when all are done.")
         .def_prop_ro("done", &LaserSlamRun::done)

@@ -659,7 +659,8 @@ def test_a_map_that_readings_contradict_is_ambiguous(seed):
     sensor = RangeBearing(range_sigma=0.05, bearing_sigma=0.01, most_range=6.0)
     log = simulate(run, Landmarks(range(20), points), sensor=sensor, rng=seed)
     right = run_ekf_slam(log, sensor=sensor)
-    assert right.status == "localised" and not right.doubt
+    assert right.status == "localised"
+    assert not right.doubt
     wrong = far_off_readings(log, rng)
     unnamed = replace(wrong, readings=replace(wrong.readings, landmark=np.full(len(wrong.readings), -1)))
     for contradicting in (wrong, unnamed):

@@ -197,7 +197,8 @@ class LaserSlam {
         const std::size_t begin = kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans));
         const std::span<const Point> seen = choose_seen(scan(k), guess, begin, kept_.size());
         // Fewer points are fewer independent beams beside the prior.
-        const double share = double(std::max(seen.size(), std::size_t(1))) / double(std::max(scan(k).size(), std::size_t(1)));
+        const double share =
+            double(std::max(seen.size(), std::size_t(1))) / double(std::max(scan(k).size(), std::size_t(1)));
         const double weight = 1 / (2 * search::independent_beams * share);
         lay_field(scan(k), guess, window, begin, kept_.size());
         SearchPeak peak =
@@ -295,18 +296,16 @@ class LaserSlam {
                 std::min(kept_.size() - slam::loop_gap, c + std::size_t(slam::loop_scans) + 1);
             const Pose& guess = poses_[std::size_t(k)];
             lay_field(thin_, guess, window, begin, end);
-            const SearchPeak peak =
-                search_.find_peak(field_, thin_, guess, window, {}, plan.least_score);
+            const SearchPeak peak = search_.find_peak(field_, thin_, guess, window, {}, plan.least_score);
             if (!peak.is_found) continue;
             const Pose pose = refine_pose(field_, scan(k), peak.pose);
             const int from = kept_[c];
-            const bool is_ambiguous =
-                peak.is_ambiguous || is_rivalled(thin_, guess, peak.pose, begin, end);
+            const bool is_ambiguous = peak.is_ambiguous || is_rivalled(thin_, guess, peak.pose, begin, end);
             add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance,
                       peak.score, peak.second},
-                     peak.is_clipped     ? LoopVerdict::clipped
-                     : is_ambiguous ? LoopVerdict::ambiguous
-                                         : LoopVerdict::accepted,
+                     peak.is_clipped ? LoopVerdict::clipped
+                     : is_ambiguous  ? LoopVerdict::ambiguous
+                                     : LoopVerdict::accepted,
                      plan.is_far);
         }
         if (has_news_ && k - last_optimized_ >= slam::optimize_gap) optimize();

@@ -167,7 +167,9 @@ def assemble_log(messages: Messages) -> Log:
     if is_corrected:
         rows, added = fill_odometry(rows, scans)
         if added:
-            notes.append(f"{count_things(added, 'corrected pose')} without odometry before them are taken for it")
+            notes.append(
+                f"{count_things(added, 'corrected pose')} without odometry before them are taken for it"
+            )
     jumps = (rows[:, 4] == 1) & is_corrected  # in a raw log a robot at rest repeats its pose
     times, scan_times, clock = mend_times(rows[~jumps], scans)
     notes += clock
