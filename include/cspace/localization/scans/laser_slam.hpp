@@ -171,8 +171,8 @@ class LaserSlam {
                 is_seen = options_.view.contains(poses_[std::size_t(kept_[k - 1])], place);
             if (is_seen) seen_.push_back(p);
         }
-        are_few_ = double(seen_.size()) < slam::least_seen * double(points.size());
-        return are_few_ ? points : std::span<const Point>(seen_);
+        const bool are_few = double(seen_.size()) < slam::least_seen * double(points.size());
+        return are_few ? points : std::span<const Point>(seen_);
     }
     // Whether a scan fits near the guess nearly as well as at a peak apart from it, by the points that lie in
     // view at each. By all points a peak may be that place alone where most of them meet the map.
@@ -204,8 +204,7 @@ class LaserSlam {
         SearchPeak peak =
             search_.find_peak(field_, seen, guess, window,
                               {weight / (place * place), weight / (heading * heading)}, slam::least_score);
-        // Did the wheels slip? Not if the view is new for the most part: then there is little to match.
-        if (!peak.is_found && !are_few_) {
+        if (!peak.is_found) {  // did the wheels slip?
             const SearchWindow wide{window.reach + slam::wide_reach, window.turn + slam::wide_turn};
             lay_field(scan(k), guess, wide, begin, kept_.size());
             const SearchPeak other =
@@ -378,7 +377,7 @@ class LaserSlam {
     AgreementGraph agreement_;
     double moved_ = 0, turned_ = 0, since_search_ = 0, since_far_ = 0;
     int tried_ = 0, optimizations_ = 0, last_optimized_ = 0, last_loop_ = 0;
-    bool has_news_ = false, are_few_ = false;
+    bool has_news_ = false;
 };
 
 }  // namespace cspace::localization

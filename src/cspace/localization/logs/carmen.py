@@ -75,7 +75,10 @@ def read_carmen(lines: Lines) -> Log:
 def add_odometry(messages: Messages, lines: Lines, number: int, words: list[str]) -> None:
     """ODOM x y θ tv rv acceleration time host logger-time."""
     if len(words) < max(8, messages.lengths.setdefault("ODOM", len(words))):
-        raise lines.error(number, f"ODOM has {len(words) - 1} values; 9 expected, the line is cut")
+        rest = "the line is cut"
+        if len(words) == GFS_WORDS:
+            rest = "this seems to be a .gfs file of gmapping; give the log that it was made of"
+        raise lines.error(number, f"ODOM has {len(words) - 1} values; 9 expected, {rest}")
     x, y, theta = lines.numbers(number, words[1:4], "x, y and θ of ODOM")
     time = lines.numbers(number, words[7:8], "the time of ODOM")[0]
     repeats = messages.after_scan and [x, y, theta] == messages.scans[-1][3:6]
@@ -83,6 +86,10 @@ def add_odometry(messages: Messages, lines: Lines, number: int, words: list[str]
         messages.resets += 1
     messages.after_scan = False
     messages.odometry.append([x, y, theta, time, float(repeats), number])
+
+
+GFS_WORDS = 5
+"""Words of ODOM in .gfs files: x, y, θ and the time alone."""
 
 
 def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) -> None:
