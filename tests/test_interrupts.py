@@ -131,6 +131,18 @@ def cast_rays() -> Call:
 
 
 @call
+def slam() -> Call:
+    rng = np.random.default_rng(4)
+    angles = np.linspace(-np.pi / 2, np.pi / 2, 180)
+    times = 0.1 * np.arange(3000)
+    ranges = rng.uniform(2, 9, 180) + 0.3 * rng.random((3000, 180))
+    scans = cs.localization.Scans(times, ranges, angles)
+    odometry = cs.localization.Odometry.from_increments(times, np.tile([0.1, 0.0, 0.02], (2999, 1)))
+    log = cs.localization.Log(odometry, scans=scans)
+    return lambda: cs.slam(log)
+
+
+@call
 def search_pose() -> Call:
     rng = np.random.default_rng(2)
     field = cs.OccupancyGrid(rng.random((3000, 3000)) < 0.003, 0.05).likelihood_field(0.2)

@@ -101,10 +101,13 @@ void bind_localization_scans(nb::module_& m) {
         "points"_a, "first"_a, "most"_a, "At most so many points of each scan, and where each scan begins.");
     nb::class_<LaserSlamRun>(m, "LaserSlamRun", "Laser SLAM on a pose graph, as far as it is done.")
         .def(nb::new_([](std::span<const Point> points, std::span<const std::int32_t> first,
-                         std::span<const PoseRow> steps, double resolution, double sigma, bool finds_loops) {
-                 return make_laser_slam(points, first, steps, {resolution, sigma, finds_loops});
+                         std::span<const PoseRow> steps, double first_angle, double span,
+                         const PoseRow& T_base_laser, double resolution, double sigma, bool finds_loops) {
+                 return make_laser_slam(points, first, steps,
+                                        {first_angle, span, T_base_laser, resolution, sigma, finds_loops});
              }),
-             "points"_a, "first"_a, "steps"_a, "resolution"_a, "sigma"_a, "finds_loops"_a)
+             "points"_a, "first"_a, "steps"_a, "first_angle"_a, "span"_a, "T_base_laser"_a, "resolution"_a,
+             "sigma"_a, "finds_loops"_a)
         .def("advance", &LaserSlamRun::advance, "scans"_a, WithoutLock(),
              "Works on so many scans more; False when all are done.")
         .def_prop_ro("done", &LaserSlamRun::done)

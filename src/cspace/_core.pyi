@@ -1146,7 +1146,7 @@ def thin_scans(points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.
 class LaserSlamRun:
     """Laser SLAM on a pose graph, as far as it is done."""
 
-    def __init__(self, points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], steps: numpy.typing.NDArray[numpy.float64], resolution: float, sigma: float, finds_loops: bool) -> None: ...
+    def __init__(self, points: numpy.typing.NDArray[numpy.float64], first: numpy.typing.NDArray[numpy.int32], steps: numpy.typing.NDArray[numpy.float64], first_angle: float, span: float, T_base_laser: numpy.typing.ArrayLike, resolution: float, sigma: float, finds_loops: bool) -> None: ...
 
     def advance(self, scans: int) -> bool:
         """Works on so many scans more; False when all are done."""

@@ -123,10 +123,14 @@ std::unique_ptr<LaserSlamRun> make_laser_slam(std::span<const Point> points,
     for (std::size_t k = 1; k < first.size(); ++k) fits = fits && first[k] >= first[k - 1];
     if (!fits || steps.size() + 1 < first.size() - 1)
         throw std::invalid_argument("the arrays of the scans do not fit together");
-    return std::make_unique<RunOfKernels>(std::vector<Point>(points.begin(), points.end()),
-                                          std::vector<std::int32_t>(first.begin(), first.end()),
-                                          std::vector<PoseRow>(steps.begin(), steps.end()),
-                                          SlamOptions{rule.resolution, rule.sigma, rule.finds_loops});
+    return std::make_unique<RunOfKernels>(
+        std::vector<Point>(points.begin(), points.end()),
+        std::vector<std::int32_t>(first.begin(), first.end()),
+        std::vector<PoseRow>(steps.begin(), steps.end()),
+        SlamOptions{rule.resolution,
+                    rule.sigma,
+                    {rule.first_angle, rule.span, PlanarSpace::read_pose(rule.T_base_laser.data())},
+                    rule.finds_loops});
 }
 
 }  // namespace cspace::localization

@@ -55,9 +55,11 @@ struct ScanRelation {
     PoseRow pose;
     SquareRow covariance;
     double score, second;
-    int verdict;  // of loops: accepted, ambiguous, inconsistent, alone
+    int verdict;  // of loops: accepted, ambiguous, inconsistent, alone, clipped
 };
 struct SlamRule {
+    double first_angle, span;  // of the field of view in the frame of the laser [rad]
+    PoseRow T_base_laser;
     double resolution, sigma;
     bool finds_loops;
 };

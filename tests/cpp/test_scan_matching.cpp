@@ -94,11 +94,38 @@ TEST(matches_find_the_motion) {
         const auto points = see_room(pose, 120);
         CorrelativeSearch<HeaderSums> search;
         const SearchPeak peak = search.find_peak(field, points, {}, {0.6, 0.3});
-        CHECK(peak.is_found);
+        CHECK(peak.is_found && !peak.is_clipped);
+        const double reach = 0.5 * std::max(std::fabs(pose.x), std::fabs(pose.y));
+        if (reach > 0.1) CHECK(search.find_peak(field, points, {}, {reach, 0.3}).is_clipped);
         const auto fine = refine_pose(field, points, peak.pose);
         CHECK(std::hypot(fine.x - pose.x, fine.y - pose.y) < 0.02);
         const IcpResult lines = match_lines(see_room({}, 360), points, peak.pose, 0.5);
         CHECK(lines.is_found && std::hypot(lines.pose.x - pose.x, lines.pose.y - pose.y) < 0.02);
+    }
+}
+
+TEST(views_contain_what_lies_between_their_edges) {
+    check::Random random(6);
+    for (int trial = 0; trial < 5000; ++trial) {
+        const double mount[3] = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-4, 4)};
+        const double base[3] = {random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-4, 4)};
+        const FieldOfView view{random.uniform(-6, 6), random.uniform(0.2, 6.2),
+                               PlanarSpace::read_pose(mount)};
+        const auto pose = PlanarSpace::read_pose(base);
+        const double share = random.uniform(-0.5, 1.5), range = random.uniform(0.3, 20);
+        const double angle = view.first + share * view.span;
+        const auto laser = PlanarSpace::compose(pose, view.T_base_laser);
+        const Point place{laser.x + range * (laser.c * std::cos(angle) - laser.s * std::sin(angle)),
+                          laser.y + range * (laser.s * std::cos(angle) + laser.c * std::sin(angle))};
+        // How far inside of the nearer edge, of the directions of the place a turn apart.
+        double inside = -1e9;
+        for (int turn = -2; turn <= 2; ++turn) {
+            const double at = share * view.span + 2 * half_turn * turn;
+            inside = std::max(inside, std::min(at, view.span - at));
+        }
+        if (std::fabs(inside * range - FieldOfView::margin) < 1e-6) continue;
+        CHECK(view.contains(pose, place) == (inside * range > FieldOfView::margin));
+        CHECK(FieldOfView{}.contains(pose, place));
     }
 }
 

@@ -13,12 +13,14 @@ from cspace.errors import InputError, InputTypeError, TimeLimitError, UnknownNam
 from cspace.localization import (
     EkfSlam,
     FastSlam,
+    Landmarks,
     Log,
     Odometry,
     RangeBearing,
     Readings,
     run_ekf_slam,
     run_fast_slam,
+    simulate,
 )
 from cspace.mobile import RandomWalk, VelocityNoise
 from data import shared_data
@@ -641,3 +643,47 @@ def test_mrclam_without_its_map():
             results.append([np.sqrt((each**2).sum(1).mean()) for each in (path, marks)])
     assert (np.mean(errors, axis=0) < [0.27, 0.25]).all()
     assert (np.mean(errors, axis=0) < np.mean(plain, axis=0)).all()
+
+
+def far_off_readings(log, rng):
+    """The readings with ranges that contradict each other."""
+    wrong = log.readings.range * rng.uniform(0.5, 1.5, len(log.readings))
+    return replace(log, readings=replace(log.readings, range=wrong))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_map_that_readings_contradict_is_ambiguous(seed):
+    rng = np.random.default_rng(seed)
+    run = cs.navigation.follow([(0, 0), (9, 0), (9, 6), (0, 6), (0, 1), (9, 1)], vehicle=cs.Unicycle())
+    points = rng.uniform([-3, -3], [12, 9], (20, 2))
+    sensor = RangeBearing(range_sigma=0.05, bearing_sigma=0.01, most_range=6.0)
+    log = simulate(run, Landmarks(range(20), points), sensor=sensor, rng=seed)
+    right = run_ekf_slam(log, sensor=sensor)
+    assert right.status == "localised"
+    assert not right.doubt
+    wrong = far_off_readings(log, rng)
+    unnamed = replace(wrong, readings=replace(wrong.readings, landmark=np.full(len(wrong.readings), -1)))
+    for contradicting in (wrong, unnamed):
+        found = run_ekf_slam(contradicting, sensor=sensor)
+        assert not found
+        assert found.status in ("ambiguous", "lost")
+        assert found.reason
+
+
+def test_shares_of_doubt_by_brute_force():
+    from cspace.localization.landmark_slam.doubts import DOUBT_SPAN, find_rejected_share, find_twin_share
+    from cspace.localization.landmark_slam.outcomes import ReadingOutcomes
+
+    rng = np.random.default_rng(5)
+    for count in (0, DOUBT_SPAN - 1, DOUBT_SPAN, 300):
+        verdict = rng.choice(["used", "rejected"], count)
+        none = np.zeros(count, int)
+        outcomes = ReadingOutcomes(none, verdict, none, np.zeros(count), np.zeros((count, 2)))
+        shares = [
+            np.mean(verdict[k : k + DOUBT_SPAN] == "rejected") for k in range(max(0, count - DOUBT_SPAN + 1))
+        ]
+        assert find_rejected_share(outcomes) == pytest.approx(max(shares, default=0.0))
+    points = rng.uniform(0, 10, (60, 2))
+    near = [any(0 < np.hypot(*(p - q)) < 0.6 for q in points) for p in points]
+    assert find_twin_share(Landmarks(range(60), points), 0.2) == pytest.approx(np.mean(near))
+    assert find_twin_share(Landmarks([], np.zeros((0, 2))), 0.2) == 0.0

@@ -84,28 +84,63 @@ def test_the_answer_is_the_same_again(log, found):
     assert np.array_equal(again.poses, found.poses)
 
 
-def test_half_a_log_and_its_reverse(log):
+def test_half_a_log(log):
     middle = log.scans.times[len(log.scans) // 2]
     half = Log(
         log.odometry.between(0, middle), scans=log.scans.subset(log.scans.times <= middle), truth=log.truth
     )
     s = cs.slam(half)
     assert error(s.poses, log, s.times) < 0.15
+
+
+def reverse(log):
+    """The log backwards in time: the robot backs along its way."""
     end = log.odometry.times[-1]
-    back = Log(
+    scans = log.scans
+    return Log(
         Odometry(end - log.odometry.times[::-1], -log.odometry.steps[::-1]),
         scans=Scans(
-            (end - log.scans.times)[::-1],
-            log.scans.ranges[::-1],
-            log.scans.angles,
-            log.scans.most,
-            log.scans.T_base_laser,
+            (end - scans.times)[::-1], scans.ranges[::-1], scans.angles, scans.most, scans.T_base_laser
         ),
         truth=cs.localization.TimedPoses((end - log.truth.times)[::-1], log.truth.poses[::-1]),
     )
+
+
+@pytest.mark.parametrize("seed", [3, 5, 6])
+def test_a_robot_that_backs_is_mapped_as_well(seed):
+    # Strips of wall that come into view beside a robot that backs must not draw it forwards.
+    back = reverse(make_log(seed))
     s = cs.slam(back)
-    # Strips of wall that come into view beside a robot that backs draw it forwards.
-    assert error(s.poses, back, s.times) < 0.15
+    assert s
+    assert error(s.poses, back, s.times) < 0.06
+    assert error(s.stages["matched"].poses, back, s.times) < 0.25
+
+
+def test_a_drift_beyond_the_first_window_is_closed():
+    """One lap in the dark: the loop at its end is as far off as the odometry."""
+    log = make_log(7, laps=2, period=0.4)
+    scans = log.scans
+    middle = scans.times[-1] / 2
+    dark = (scans.times > 0.25 * middle) & (scans.times < 0.9 * middle)
+    ranges = np.where(dark[:, None], np.inf, scans.ranges).astype(np.float32)
+    blind = Log(log.odometry, scans=Scans(scans.times, ranges, scans.angles, scans.most), truth=log.truth)
+    s = cs.slam(blind, calibrated=False)
+    seen = ~dark
+    gap = np.hypot(*(s.stages["matched"].poses - cs_align(s, log)).T[:2])[seen].max()
+    assert gap > 2.5  # farther than the window of loops while all is well
+    assert s.stats.accepted > 3
+    rest = seen & (scans.times > middle)
+    assert error(s.poses[rest], log, s.times[rest]) < 0.1
+    both = np.concatenate([s.poses[: np.argmax(dark)], s.poses[rest]])
+    times = np.concatenate([s.times[: np.argmax(dark)], s.times[rest]])
+    assert error(both, log, times) < 0.25
+
+
+def cs_align(s, log):
+    """The true poses in the frame of the first one."""
+    T = cs.pose_2d(xytheta=log.truth.at(s.times))
+    moved = cs.spatial.inverse_pose_2d(T[:1]) @ T
+    return np.asarray(cs.spatial.to_xytheta(moved))
 
 
 def test_without_loops_the_drift_stays(log, found):

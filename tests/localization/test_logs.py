@@ -49,6 +49,41 @@ def test_raw_increments_of_a_corrected_log_are_chained(tmp_path):
     assert any("corrected" in note for note in log.notes)
 
 
+@pytest.mark.parametrize("stamp", ["0", "1.13486e+09"])
+def test_logs_without_times_keep_their_order(tmp_path, stamp):
+    """The same log with times and with times that were lost or printed with six digits: all but the clock is
+    the same, and each scan belongs to the odometry before it."""
+    texts = []
+    for timed in (True, False):
+        lines, x, t = [], 0.0, 0.0
+        for k in range(7):
+            for _ in range(1 + k % 3):
+                x, t = x + 1.0, t + 0.1
+                lines.append(ODOM.format(x=x, t=round(t, 6) if timed else stamp))
+            x += 0.3
+            time = round(t, 6) if timed else stamp
+            lines += [FLASER.format(x=x, t=time), ODOM.format(x=x, t="0 "), "NEFF 50.0\n"]
+        texts.append("".join(lines))
+    timed, counted = (read_log(write(tmp_path, text)) for text in texts)
+    np.testing.assert_allclose(counted.odometry.increments, timed.odometry.increments, atol=1e-12)
+    np.testing.assert_allclose(counted.truth.poses, timed.truth.poses)
+    np.testing.assert_allclose(counted.odometry.times, timed.odometry.times, atol=1e-9)
+    np.testing.assert_allclose(counted.scans.times, timed.scans.times, atol=1e-9)
+    assert any("counted" in note for note in counted.notes)
+    assert not any("counted" in note for note in timed.notes)
+
+
+def test_scans_without_odometry_move_as_corrected(tmp_path):
+    """Two scans in a row: what lies between them is known from the corrected poses alone."""
+    lines = []
+    for x in (1.0, 2.5, 4.5):
+        lines += [FLASER.format(x=x, t=0), ODOM.format(x=x, t=x * 7), "NEFF 50.0\n"]
+    log = read_log(write(tmp_path, ODOM.format(x=0.8, t=0) + "".join(lines)))
+    np.testing.assert_allclose(log.odometry.increments[:, 0], [1.5, 2.0])
+    assert (np.diff(log.scans.times) > 0).all()
+    assert any("2 corrected poses" in note for note in log.notes)
+
+
 def test_robotlaser_has_its_angles(tmp_path):
     head = "ROBOTLASER1 0 -1.5 3.0 0.5 40.0 0.01 0 3 1.0 2.0 3.0 1 7.0"
     log = read_log(write(tmp_path, head + " 1.1 0 0 1.0 0 0 0 0 0 0 0 5.0 host 5.0\n"))

@@ -1,10 +1,12 @@
 """The search of whole maps against trying every pose."""
 
+import time
+
 import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, TimeLimitError
 from cspace.localization import search_pose
 
 
@@ -132,3 +134,20 @@ def test_what_cannot_be_searched_is_refused():
     with pytest.raises(InputError, match="apart"):
         search_pose(some, field, apart=(-1, 0))
     assert not search_pose(some * 1e6, field)
+
+
+def test_a_time_limit_ends_the_search_or_changes_nothing():
+    rng = np.random.default_rng(3)
+    field = cs.OccupancyGrid(rng.random((1500, 1500)) < 0.01, 0.05).likelihood_field(0.1)
+    points = rng.uniform(-8, 8, (150, 2))
+    for limit in (0.01, 0.1):
+        begin = time.perf_counter()
+        with pytest.raises(TimeLimitError, match="time_limit"):
+            search_pose(points, field, heading_step=0.002, least_score=0.0, margin=1.0, time_limit=limit)
+        assert time.perf_counter() - begin < limit + 1.0
+    small = cs.OccupancyGrid(rng.random((40, 40)) < 0.05, 0.1).likelihood_field(0.2)
+    free = search_pose(points[:20] / 4, small, least_score=0.0)
+    timed = search_pose(points[:20] / 4, small, least_score=0.0, time_limit=60)
+    assert np.array_equal(free.poses, timed.poses)
+    with pytest.raises(InputError, match="time_limit"):
+        search_pose(points, field, time_limit=-1.0)

@@ -36,6 +36,7 @@ struct SearchPrior {
 struct SearchPeak {
     bool is_found = false;      // false: no pose scores as much as asked
     bool is_ambiguous = false;  // another peak scores nearly as much
+    bool is_clipped = false;    // the pose lies at the edge of the window: it need not be a peak
     PlanarSpace::Pose pose;
     double score = 0;                  // 0 to 1
     double second = 0;                 // the best score outside of the peak, as far as it was asked for
@@ -83,6 +84,8 @@ class CorrelativeSearch {
         find_component();
         find_second(is_whole, finds_second);
         peak.is_found = true;
+        peak.is_clipped = std::max(std::abs(best_.row), std::abs(best_.column)) == most_shift_ ||
+                          std::abs(best_.angle) == most_angle_;
         peak.pose = pose_of(best_);
         peak.score = best_.sum / full_;
         peak.second = std::max(0, second_) / full_;

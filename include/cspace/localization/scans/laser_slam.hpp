@@ -10,10 +10,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cspace/localization/graph/optimizer.hpp"
 #include "cspace/localization/scans/correlative_search.hpp"
+#include "cspace/localization/scans/field_of_view.hpp"
 #include "cspace/localization/scans/loop_consistency.hpp"
 #include "cspace/localization/scans/refine_pose.hpp"
 #include "cspace/localization/scans/thin_points.hpp"
@@ -23,10 +25,11 @@ namespace cspace::localization {
 struct SlamOptions {
     double resolution = 0.05;  // of the fields [m]
     double sigma = 0.08;       // of a point in them [m]
+    FieldOfView view;
     bool finds_loops = true;
 };
 
-enum class LoopVerdict : std::uint8_t { accepted, ambiguous, inconsistent, alone };
+enum class LoopVerdict : std::uint8_t { accepted, ambiguous, inconsistent, alone, clipped };
 
 // A relative pose between two scans.
 struct ScanEdge {
@@ -42,6 +45,7 @@ namespace slam {
 inline constexpr int submap_scans = 30;                        // that a new scan is matched against
 inline constexpr double least_move = 0.05, least_turn = 0.05;  // [m, rad] between the scans of a submap
 inline constexpr double least_score = 0.3;                     // of a match against the last scans
+inline constexpr double least_seen = 0.3;  // share of the points in view of other scans, or all are used
 // The window of a match, and the deviation of its prior: what odometry may be off at rest and per metre or
 // radian.
 inline constexpr double window_rest = 0.15, window_share = 0.3;
@@ -61,9 +65,14 @@ inline constexpr double loop_reach = 2.5, loop_turn = 0.45;     // the window [m
 inline constexpr double least_radius = 1.0, most_radius = 3.0;  // of the search for candidates [m]
 inline constexpr double radius_deviations = 3;
 inline constexpr double least_loop_score = 0.65;
+// After a drive without loops the search is as wide as its drift, less often, and asks for more.
+inline constexpr double widest_reach = 12, widest_turn = 1;  // [m, rad]
+inline constexpr double wide_step = 1.5;                     // [m or rad]
+inline constexpr double least_far_score = 0.75;
 inline constexpr double consistent_square =
     21.1;                                  // the quantile of 99.99 % of χ² with three degrees of freedom
 inline constexpr int fewest_agreeing = 2;  // loops before any of them counts
+inline constexpr int fewest_far = 3;       // the same, of loops of wide searches alone
 inline constexpr int optimize_gap = 10;    // scans between two optimizations
 inline constexpr int optimize_steps = 3;
 inline constexpr double loop_scaling = 9;  // φ of dynamic covariance scaling while driving
@@ -111,10 +120,10 @@ class LaserSlam {
     std::vector<LoopVerdict> verdicts() const {
         std::vector<LoopVerdict> found;
         for (std::size_t k = 0; k < loops_.size(); ++k)
-            found.push_back(is_ambiguous_[k] ? LoopVerdict::ambiguous
-                            : is_used_[k]    ? LoopVerdict::accepted
-                            : supporters(k)  ? LoopVerdict::inconsistent
-                                             : LoopVerdict::alone);
+            found.push_back(faults_[k] != LoopVerdict::accepted ? faults_[k]
+                            : is_used_[k]                       ? LoopVerdict::accepted
+                            : supporters(k)                     ? LoopVerdict::inconsistent
+                                                                : LoopVerdict::alone);
         return found;
     }
     int tried() const { return tried_; }
@@ -149,6 +158,33 @@ class LaserSlam {
         poll_interrupts();
     }
 
+    // The points of a scan at a pose that lie in the field of view of one of the kept scans from `begin` to
+    // `end`, the newest one first; all of them where these are few.
+    std::span<const Point> choose_seen(std::span<const Point> points, const Pose& pose, std::size_t begin,
+                                       std::size_t end) {
+        if (options_.view.is_whole()) return points;
+        seen_.clear();
+        for (const Point p : points) {
+            const Point place = place_point(pose, p);
+            bool is_seen = false;
+            for (std::size_t k = end; k > begin && !is_seen; --k)
+                is_seen = options_.view.contains(poses_[std::size_t(kept_[k - 1])], place);
+            if (is_seen) seen_.push_back(p);
+        }
+        const bool are_few = double(seen_.size()) < slam::least_seen * double(points.size());
+        return are_few ? points : std::span<const Point>(seen_);
+    }
+    // Whether a scan fits near the guess nearly as well as at a peak apart from it, by the points that lie in
+    // view at each. By all points a peak may be that place alone where most of them meet the map.
+    bool is_rivalled(std::span<const Point> points, const Pose& guess, const Pose& peak, std::size_t begin,
+                     std::size_t end) {
+        if (std::hypot(peak.x - guess.x, peak.y - guess.y) <= 2 * search::apart) return false;
+        const double best = measure_score(field_, choose_seen(points, peak, begin, end), peak);
+        const SearchPeak near = search_.find_peak(field_, choose_seen(points, guess, begin, end), guess,
+                                                  {search::apart, search::apart_turn});
+        return near.is_found && !near.is_clipped && near.score >= search::ambiguous_share * best;
+    }
+
     void match_next() {
         const int k = done();
         const PlanarSpace::Twist& step = steps_[std::size_t(k) - 1];
@@ -158,11 +194,15 @@ class LaserSlam {
                                   slam::turn_rest + slam::turn_share * turn};
         const double place = slam::prior_rest + slam::prior_share * length;
         const double heading = slam::prior_rest + slam::prior_share * turn;
-        const double weight = 1 / (2 * search::independent_beams);
         const std::size_t begin = kept_.size() - std::min(kept_.size(), std::size_t(slam::submap_scans));
+        const std::span<const Point> seen = choose_seen(scan(k), guess, begin, kept_.size());
+        // Fewer points are fewer independent beams beside the prior.
+        const double share =
+            double(std::max(seen.size(), std::size_t(1))) / double(std::max(scan(k).size(), std::size_t(1)));
+        const double weight = 1 / (2 * search::independent_beams * share);
         lay_field(scan(k), guess, window, begin, kept_.size());
         SearchPeak peak =
-            search_.find_peak(field_, scan(k), guess, window,
+            search_.find_peak(field_, seen, guess, window,
                               {weight / (place * place), weight / (heading * heading)}, slam::least_score);
         if (!peak.is_found) {  // did the wheels slip?
             const SearchWindow wide{window.reach + slam::wide_reach, window.turn + slam::wide_turn};
@@ -174,7 +214,7 @@ class LaserSlam {
         ScanEdge edge{k - 1, k, {}, {}, 0, 0};
         Pose pose = guess;
         if (peak.is_found) {
-            pose = refine_pose(field_, scan(k), peak.pose);
+            pose = refine_pose(field_, choose_seen(scan(k), peak.pose, begin, kept_.size()), peak.pose);
             edge.covariance = peak.covariance, edge.score = peak.score, edge.second = peak.second;
         } else {
             const double x = slam::prior_rest + slam::blind_share * length;
@@ -192,8 +232,32 @@ class LaserSlam {
         if (moved_ >= slam::least_move || turned_ >= slam::least_turn) keep_scan(k);
     }
 
+    // How loops are searched at a scan.
+    struct LoopSearch {
+        double radius;  // the largest about the scan in which others are tried [m]
+        SearchWindow window;
+        double least_score;
+        bool is_far;
+    };
+    LoopSearch plan_search(int k) const {
+        const PlanarSquare M = chain_.stretch(last_loop_, k, chain_.pose(k));
+        const double drift = slam::radius_deviations * longest_deviation(M);
+        if (drift <= slam::loop_reach || since_far_ < slam::wide_step)
+            return {slam::most_radius, {slam::loop_reach, slam::loop_turn}, slam::least_loop_score, false};
+        const double reach = std::min(drift, slam::widest_reach);
+        const double turn = slam::radius_deviations * std::sqrt(M[8]);
+        return {reach,
+                {reach, std::clamp(turn, slam::loop_turn, slam::widest_turn)},
+                slam::least_far_score,
+                true};
+    }
+    static double longest_deviation(const PlanarSquare& M) {
+        const double mean = (M[0] + M[4]) / 2, half = std::hypot((M[0] - M[4]) / 2, M[1]);
+        return std::sqrt(mean + half);
+    }
+
     // The nearest kept scan of each earlier pass, as places among the kept ones.
-    std::vector<std::size_t> find_candidates(int k) const {
+    std::vector<std::size_t> find_candidates(int k, double most_radius) const {
         std::vector<std::size_t> nearest;
         if (kept_.size() <= slam::loop_gap) return nearest;
         const Pose& here = poses_[std::size_t(k)];
@@ -202,7 +266,7 @@ class LaserSlam {
         for (std::size_t c = 0; c < kept_.size() - slam::loop_gap; ++c) {
             const Pose& there = poses_[std::size_t(kept_[c])];
             const double d = std::hypot(there.x - here.x, there.y - here.y);
-            if (d > slam::most_radius || d > radius_of(kept_[c], k)) continue;
+            if (d > most_radius || d > radius_of(kept_[c], k)) continue;
             if (nearest.empty() || c - last > slam::pass_gap) {
                 nearest.push_back(c), least = d;
             } else if (d < least) {
@@ -214,43 +278,47 @@ class LaserSlam {
     }
     double radius_of(int from, int to) const {
         const PlanarSquare M = chain_.stretch(from, to, chain_.pose(to));
-        const double mean = (M[0] + M[4]) / 2, half = std::hypot((M[0] - M[4]) / 2, M[1]);
-        return std::clamp(slam::radius_deviations * std::sqrt(mean + half), slam::least_radius,
-                          slam::most_radius);
+        return std::max(slam::radius_deviations * longest_deviation(M), slam::least_radius);
     }
 
     void search_loops(int k) {
         if (kept_.back() != k || since_search_ < slam::loop_step) return;
-        since_search_ = 0;
+        since_far_ += since_search_, since_search_ = 0;
         thin_points(scan(k), slam::loop_beams, thin_);
-        const SearchWindow window{slam::loop_reach, slam::loop_turn};
-        for (std::size_t c : find_candidates(k)) {
+        const LoopSearch plan = plan_search(k);
+        const SearchWindow& window = plan.window;
+        if (plan.is_far) since_far_ = 0;
+        for (std::size_t c : find_candidates(k, plan.radius)) {
             ++tried_;
             const std::size_t begin = c - std::min(c, std::size_t(slam::loop_scans));
             const std::size_t end =
                 std::min(kept_.size() - slam::loop_gap, c + std::size_t(slam::loop_scans) + 1);
             const Pose& guess = poses_[std::size_t(k)];
             lay_field(thin_, guess, window, begin, end);
-            const SearchPeak peak =
-                search_.find_peak(field_, thin_, guess, window, {}, slam::least_loop_score);
+            const SearchPeak peak = search_.find_peak(field_, thin_, guess, window, {}, plan.least_score);
             if (!peak.is_found) continue;
             const Pose pose = refine_pose(field_, scan(k), peak.pose);
             const int from = kept_[c];
+            const bool is_ambiguous = peak.is_ambiguous || is_rivalled(thin_, guess, peak.pose, begin, end);
             add_loop({from, k, PlanarSpace::between(poses_[std::size_t(from)], pose), peak.covariance,
                       peak.score, peak.second},
-                     peak.is_ambiguous);
+                     peak.is_clipped ? LoopVerdict::clipped
+                     : is_ambiguous  ? LoopVerdict::ambiguous
+                                     : LoopVerdict::accepted,
+                     plan.is_far);
         }
         if (has_news_ && k - last_optimized_ >= slam::optimize_gap) optimize();
     }
-    void add_loop(const ScanEdge& loop, bool is_ambiguous) {
+    // fault: of its match alone.
+    void add_loop(const ScanEdge& loop, LoopVerdict fault, bool is_far) {
         const int node = agreement_.size();
-        loops_.push_back(loop), is_ambiguous_.push_back(is_ambiguous), is_used_.push_back(0);
+        loops_.push_back(loop), faults_.push_back(fault), is_far_.push_back(is_far), is_used_.push_back(0);
         agreement_.add_node();
-        if (is_ambiguous) return;
+        if (fault != LoopVerdict::accepted) return;
         const ClosedLoop made{loop.from, loop.to, loop.z, loop.covariance};
         for (int other = 0; other < node; ++other) {
             const ScanEdge& there = loops_[std::size_t(other)];
-            if (is_ambiguous_[std::size_t(other)]) continue;
+            if (faults_[std::size_t(other)] != LoopVerdict::accepted) continue;
             const double error = chain_.cycle_error(made, {there.from, there.to, there.z, there.covariance});
             if (error <= slam::consistent_square) agreement_.join(node, other);
         }
@@ -265,8 +333,12 @@ class LaserSlam {
     void optimize() {
         has_news_ = false, last_optimized_ = done() - 1;
         std::vector<char> clique = agreement_.find_clique();
-        if (std::count(clique.begin(), clique.end(), 1) < slam::fewest_agreeing) return;
+        int all = 0, far = 0;
+        for (std::size_t k = 0; k < clique.size(); ++k) all += clique[k], far += clique[k] && is_far_[k];
+        if (all < (far == all ? slam::fewest_far : slam::fewest_agreeing)) return;
         is_used_.assign(clique.begin(), clique.end());
+        for (std::size_t k = 0; k < clique.size(); ++k)
+            if (clique[k]) last_loop_ = std::max(last_loop_, loops_[k].to);
         PoseGraph<PlanarSpace> graph;
         graph.start.poses = poses_;
         const auto add = [&](const ScanEdge& edge, bool is_trusted) {
@@ -298,12 +370,13 @@ class LaserSlam {
     std::vector<Pose> poses_, matched_;
     std::vector<int> kept_;
     std::vector<ScanEdge> edges_, loops_;
-    std::vector<char> is_ambiguous_, is_used_;
-    std::vector<Point> thin_, placed_;
+    std::vector<LoopVerdict> faults_;
+    std::vector<char> is_used_, is_far_;
+    std::vector<Point> thin_, placed_, seen_;
     LoopConsistency chain_;
     AgreementGraph agreement_;
-    double moved_ = 0, turned_ = 0, since_search_ = 0;
-    int tried_ = 0, optimizations_ = 0, last_optimized_ = 0;
+    double moved_ = 0, turned_ = 0, since_search_ = 0, since_far_ = 0;
+    int tried_ = 0, optimizations_ = 0, last_optimized_ = 0, last_loop_ = 0;
     bool has_news_ = false;
 };
 

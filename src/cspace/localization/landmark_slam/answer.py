@@ -24,7 +24,8 @@ class LandmarkSlamStats:
     """What a filter did: updates; readings used, rejected, that created a landmark, and skipped (a landmark
     cannot be made of them, or they lie outside of the odometry); landmarks removed again; how often the
     covariance was inflated, the search for pairings reached its most nodes, and particles were drawn anew;
-    the mean NIS per degree of freedom of what was used; seconds of wall time."""
+    the mean NIS per degree of freedom of what was used; the largest share of rejected ones among fifty
+    readings in a row; seconds of wall time."""
 
     updates: int
     used: int
@@ -36,6 +37,7 @@ class LandmarkSlamStats:
     capped: int
     resamplings: int
     mean_nis: float
+    rejected_share: float
     seconds: float
 
 
@@ -45,8 +47,9 @@ class LandmarkSlam:
 
     times (n,) [s], those of the odometry and of the readings. poses (n, 3): x, y [m], θ [rad], in the frame
     of the start; each from the readings up to its time. covariances (n, 3, 3) of ξ in T exp ξ, in base.
-    landmarks: a map with covariances. method: the name of what made it. status: "localised", or "lost"
-    after ten rejections in a row or without any reading. lost (n,): where that was so. readings: what
+    landmarks: a map with covariances. method: the name of what made it. status: "localised",
+    "lost" after ten rejections in a row or without any reading, or "ambiguous" where the readings contradict
+    the map; doubt: how, in words. lost (n,): where the robot was lost. readings: what
     became of each one, with NIS; measured (k,): the row of each in `times`.
     """
 
@@ -60,6 +63,7 @@ class LandmarkSlam:
     readings: ReadingOutcomes
     measured: Ids
     stats: LandmarkSlamStats
+    doubt: str = ""
 
     def __bool__(self) -> bool:
         return self.status == "localised"
@@ -80,6 +84,8 @@ class LandmarkSlam:
             if not s.used + s.created:
                 return "no reading was used; the poses are dead reckoning"
             return f"the last {LOST_AFTER} readings or more contradict the landmarks"
+        if self.status == "ambiguous":
+            return self.doubt
         return f"{s.used} readings used, {s.rejected} rejected, mean NIS per dof {s.mean_nis:.2f}"
 
     @property

@@ -14,6 +14,7 @@ from cspace.errors import InputError, InputTypeError, TimeLimitError
 from cspace.localization.filters.rows import adjoin_rows, carry_covariance, follow_rows, relate_rows
 from cspace.localization.filters.timeline import Timeline, lay_timeline
 from cspace.localization.landmark_slam.answer import LandmarkSlam, LandmarkSlamStats
+from cspace.localization.landmark_slam.doubts import explain_doubt, find_rejected_share
 from cspace.localization.landmark_slam.filters import EkfSlam, FastSlam, LandmarkFilter
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes, join_outcomes
 from cspace.localization.log import UNKNOWN, Log
@@ -118,7 +119,16 @@ def run_filter(
         poses[anchor], covariances[anchor], lost[anchor] = core.pose, core.covariance, core.is_lost
     fill_between(line, moves, poses, covariances)
     return report_slam(
-        slam, method, line, poses, covariances, lost, join_outcomes(parts), perf_counter() - begun
+        slam,
+        method,
+        line,
+        poses,
+        covariances,
+        lost,
+        join_outcomes(parts),
+        is_named=bool((rows[:, 0] >= 0).any()),
+        range_sigma=sensor.range_sigma,
+        seconds=perf_counter() - begun,
     )
 
 
@@ -157,6 +167,8 @@ def report_slam(
     covariances: Array,
     lost: npt.NDArray[np.bool_],
     readings: ReadingOutcomes,
+    is_named: bool,
+    range_sigma: float,
     seconds: float,
 ) -> LandmarkSlam:
     """The answer of a filter."""
@@ -174,18 +186,21 @@ def report_slam(
         capped=capped,
         resamplings=resamplings,
         mean_nis=float(readings.nis[readings.used].sum() / dof) if dof else float("nan"),
+        rejected_share=find_rejected_share(readings),
         seconds=seconds,
     )
     is_lost = bool(lost[-1]) or not used + created
+    doubt = explain_doubt(stats.rejected_share, is_named, slam.landmarks, range_sigma)
     return LandmarkSlam(
         times=line.times,
         poses=poses,
         covariances=covariances,
         landmarks=slam.landmarks,
         method=method,
-        status="lost" if is_lost else "localised",
+        status="lost" if is_lost else "ambiguous" if doubt else "localised",
         lost=lost,
         readings=readings,
         measured=line.node,
         stats=stats,
+        doubt=doubt,
     )

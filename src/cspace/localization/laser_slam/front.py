@@ -17,7 +17,7 @@ from cspace.localization.graph import GraphAnswer, PoseGraph
 from cspace.localization.landmark_slam import LandmarkSlam, run_ekf_slam, run_fast_slam
 from cspace.localization.laser_slam.answer import LaserSlam, LaserSlamStats, LoopClosure
 from cspace.localization.log import Log, Scans
-from cspace.localization.scans.points import place_beams
+from cspace.localization.scans.points import find_view, place_beams
 from cspace.mobile import Odometry, TimedPoses, calibrate
 from cspace.spatial import inverse_pose_2d, log_se2, pose_2d
 
@@ -36,6 +36,7 @@ VERDICTS: Final = (
     "ambiguous: another pose scores nearly as much",
     "inconsistent with the loops that agree with each other",
     "alone: no other loop agrees with it",
+    "clipped: the best pose lies at the edge of the search",
 )
 """What the core says of loops, by number."""
 UNKNOWN_FACTORS: Final = (1.0, 1.0, 0.0)
@@ -125,6 +126,7 @@ class Mapper:
         self.factors = UNKNOWN_FACTORS
         self.core: LaserSlamRun | None = None
         self.answer: GraphAnswer | None = None
+        self.covariances: Array | None = None
         self.is_over = False
 
     def run(self, limit: float) -> None:
@@ -157,7 +159,8 @@ class Mapper:
         """Matches all scans once; progress goes from begin to end."""
         points, first = place_beams(self.drive.scans, odometry, self.drive.max_range)
         steps = between_scans(sample_odometry(odometry, self.drive.scans.times))
-        self.core = LaserSlamRun(points, first, steps, self.resolution, SIGMA, loops)
+        view = find_view(self.drive.scans)
+        self.core = LaserSlamRun(points, first, steps, *view, self.resolution, SIGMA, loops)
         while self.core.advance(SLICE):
             self.tell(begin + (end - begin) * self.core.done / max(len(first) - 1, 1))
 
@@ -181,6 +184,7 @@ class Mapper:
         graph, _ = self.make_graph()
         robust = "dcs" if len(graph.edges) >= len(graph.poses) else None
         self.answer = graph.optimize(start="given", robust=robust)
+        self.covariances = self.answer.marginals
 
     def make_graph(self) -> tuple[PoseGraph, npt.NDArray[np.intp]]:
         """The graph of what is done, and the rows of the loops in it."""
@@ -201,16 +205,17 @@ class Mapper:
     def report(self) -> LaserSlam:
         """The answer, as far as the stages were done."""
         if self.core is None:  # not one scan within the time limit
-            points, first = place_beams(
-                self.drive.scans.subset(slice(0, 1)), self.drive.odometry, self.drive.max_range
-            )
-            self.core = LaserSlamRun(points, first, np.zeros((0, 3)), self.resolution, SIGMA, False)
+            one = self.drive.scans.subset(slice(0, 1))
+            points, first = place_beams(one, self.drive.odometry, self.drive.max_range)
+            no_steps = np.zeros((0, 3))
+            self.core = LaserSlamRun(points, first, no_steps, *find_view(one), self.resolution, SIGMA, False)
         scans = self.drive.scans.subset(slice(0, self.core.done))
         graph, used = self.make_graph()
         self.stages["matched"] = TimedPoses(scans.times, self.core.matched)
         poses, covariances = graph.poses, np.full((len(graph.poses), 3, 3), np.nan)
         if self.answer is not None:
-            poses, covariances = self.answer.poses, self.answer.marginals
+            poses = self.answer.poses
+            covariances = covariances if self.covariances is None else self.covariances
             graph = graph.with_poses(poses)
             self.stages["closed"] = TimedPoses(scans.times, poses, covariances)
         closures = self.list_loops(used, len(graph.poses) - 1)

@@ -16,6 +16,7 @@ from cspace.localization.logs.lines import Lines, mend_clock
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile import Odometry, TimedPoses
 from cspace.spatial import inverse_pose_2d, pose_2d, to_xytheta
+from cspace.tables import count_things
 
 SKIPPED = {"NEFF", "SYNC", "RLASER", "LASER3", "LASER4", "LASER5", "RAWLASER1", "RAWLASER2", "RAWLASER3"}
 SKIPPED |= {"RAWLASER4", "ROBOTLASER2", "TRUEPOS", "SIMULATOR_TRUEPOS", "GPS", "NMEAGGA", "NMEARMC", "IMU"}
@@ -48,9 +49,10 @@ def read_carmen(lines: Lines) -> Log:
     """A log of CARMEN; LogError for an unknown message, a line that is cut, or scans of changing size.
 
     FLASER has no angles: beam k of n lies at −90° + k 180°/n, of 181 and 361 beams over n − 1. In a corrected
-    log an ODOM without a time repeats the corrected pose of the scan before it, and the ODOM messages after
-    it go on from there with the raw increments: these are chained into the raw odometry, and the poses of the
-    scans are the truth.
+    log, of gmapping for example, an ODOM without a time repeats the corrected pose of the scan before it, and
+    the ODOM messages after it go on from there with the raw increments: these are chained into the raw
+    odometry, and the poses of the scans are the truth. Times that tell nothing are replaced by the order of
+    the messages.
     """
     messages = Messages()
     for number, words in lines.rows():
@@ -73,7 +75,10 @@ def read_carmen(lines: Lines) -> Log:
 def add_odometry(messages: Messages, lines: Lines, number: int, words: list[str]) -> None:
     """ODOM x y θ tv rv acceleration time host logger-time."""
     if len(words) < max(8, messages.lengths.setdefault("ODOM", len(words))):
-        raise lines.error(number, f"ODOM has {len(words) - 1} values; 9 expected, the line is cut")
+        rest = "the line is cut"
+        if len(words) == GFS_WORDS:
+            rest = "this seems to be a .gfs file of gmapping; give the log that it was made of"
+        raise lines.error(number, f"ODOM has {len(words) - 1} values; 9 expected, {rest}")
     x, y, theta = lines.numbers(number, words[1:4], "x, y and θ of ODOM")
     time = lines.numbers(number, words[7:8], "the time of ODOM")[0]
     repeats = messages.after_scan and [x, y, theta] == messages.scans[-1][3:6]
@@ -81,6 +86,10 @@ def add_odometry(messages: Messages, lines: Lines, number: int, words: list[str]
         messages.resets += 1
     messages.after_scan = False
     messages.odometry.append([x, y, theta, time, float(repeats), number])
+
+
+GFS_WORDS = 5
+"""Words of ODOM in .gfs files: x, y, θ and the time alone."""
 
 
 def add_scan(messages: Messages, lines: Lines, number: int, words: list[str]) -> None:
@@ -158,17 +167,19 @@ def assemble_log(messages: Messages) -> Log:
     """Odometry, scans and truth on one clock that starts at the first message."""
     rows = np.array(messages.odometry).reshape(-1, 6)
     scans = np.array(messages.scans).reshape(-1, 8)
-    is_corrected = 2 * messages.resets > len(scans)
-    jumps = (rows[:, 4] == 1) & is_corrected  # in a raw log a robot at rest repeats its pose
+    is_corrected = 2 * max(messages.resets, messages.skipped[GMAPPING]) > len(scans)
     notes = [f"{count} {name} messages are not read" for name, count in sorted(messages.skipped.items())]
     if messages.negative:
         notes.append(f"{messages.negative} ranges are not above zero; they count as no return")
-    order = np.argsort(np.concatenate([rows[~jumps, 5], scans[:, 7]]), kind="stable")
-    stamps = np.concatenate([rows[~jumps, 3], scans[:, 6]])
-    mended, clock = mend_clock(stamps[order])
-    stamps[order] = mended - mended[0]
+    if is_corrected:
+        rows, added = fill_odometry(rows, scans)
+        if added:
+            notes.append(
+                f"{count_things(added, 'corrected pose')} without odometry before them are taken for it"
+            )
+    jumps = (rows[:, 4] == 1) & is_corrected  # in a raw log a robot at rest repeats its pose
+    times, scan_times, clock = mend_times(rows[~jumps], scans)
     notes += clock
-    times, scan_times = stamps[: len(rows) - jumps.sum()], stamps[len(rows) - jumps.sum() :]
     if len(rows):
         odometry = chain_odometry(rows[:, :3], jumps, times)
     else:
@@ -180,6 +191,53 @@ def assemble_log(messages: Messages) -> Log:
         notes.append(f"{len(truth)} corrected poses are the truth; the raw odometry was chained between")
     packed = pack_scans(messages, scans, scan_times, notes) if len(scans) else None
     return Log(odometry, packed, truth=truth, notes=tuple(notes))
+
+
+GMAPPING = "NEFF"
+"""A message that gmapping writes after each scan, in logs with its corrected poses."""
+
+
+def fill_odometry(rows: Array, scans: Array) -> tuple[Array, int]:
+    """The messages of odometry (n, 6) of a corrected log, with one more before each scan that has none since
+    the scan before: its own pose. And how many were added."""
+    before = np.searchsorted(rows[:, 5], scans[:, 7]) - 1
+    bare = scans[(before >= 0) & (rows[before, 4] == 1)] if len(rows) else scans[:0]
+    added = np.column_stack([bare[:, 3:7], np.zeros(len(bare)), bare[:, 7] - HALF_LINE])
+    filled = np.concatenate([rows, added])
+    return filled[np.argsort(filled[:, 5], kind="stable")], len(bare)
+
+
+HALF_LINE = 0.5
+"""A message that is added before a scan stands half a line before it."""
+
+
+def mend_times(rows: Array, scans: Array) -> tuple[Array, Array, list[str]]:
+    """The times of odometry and scans from the first message on, and notes of what was mended.
+
+    Where most scans have no time of their own, because times were lost or printed with few digits, the
+    messages of odometry are counted instead, and a scan belongs to the one before it.
+    """
+    lines = np.concatenate([rows[:, 5], scans[:, 7]])
+    order = np.argsort(lines, kind="stable")
+    stamps = np.concatenate([rows[:, 3], scans[:, 6]])
+    mended, notes = mend_clock(stamps[order])
+    stamps[order] = mended - mended[0]
+    distinct = len(np.unique(stamps[len(rows) :]))
+    if 2 * distinct < len(scans):
+        is_scan = np.arange(len(lines))[order] >= len(rows)
+        ticks = ~is_scan
+        ticks[1:] |= is_scan[:-1]  # two scans in a row are not at one time
+        stamps[order] = COUNTED * (np.cumsum(ticks) - 1.0)
+        stamps -= stamps[order[0]]
+        notes = [
+            f"the clock has {distinct} times for {len(scans)} scans; messages are counted instead, as if"
+            f" {COUNTED} s apart"
+        ]
+    return stamps[: len(rows)], stamps[len(rows) :], notes
+
+
+COUNTED = 0.1
+"""Seconds between messages that have no times: the period of the odometry of most robots."""
 
 
 def chain_odometry(poses: Array, jumps: npt.NDArray[np.bool_], times: Array) -> Odometry:

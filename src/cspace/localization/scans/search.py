@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from time import perf_counter
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -19,7 +22,7 @@ from cspace.arrays import (
     positive_number,
     whole_number,
 )
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, TimeLimitError
 from cspace.maps import ByteField
 from cspace.tables import count_things, one_line
 
@@ -66,6 +69,7 @@ def search_pose(
     heading_step: float | None = None,
     apart: tuple[float, float] = (1.0, 0.5),
     free: ArrayLike | None = None,
+    time_limit: float | None = None,
 ) -> PoseModes:
     """The best separate poses of a scan on a whole map: global localisation, and recovery when lost.
 
@@ -78,7 +82,8 @@ def search_pose(
     much the score of a pose may be below that of the best; 1 for all. heading_step [rad]: between
     headings, by default at most 0.02, and so small that points at nine tenths of the scan move by two
     cells at most. apart: poses that differ by no more than this distance [m] and this angle [rad] are one.
-    free: truth values (rows, columns), the cells in which base may be; by default all.
+    free: truth values (rows, columns), the cells in which base may be; by default all. time_limit
+    [s]: TimeLimitError beyond it.
 
     Raises InputTypeError and InputError for other values, and for a scan without points. Ctrl-C ends the
     search. Olson 2009; Hess, Kohler, Rapp and Andor 2016.
@@ -99,11 +104,32 @@ def search_pose(
     below = bounded_number(margin, "margin", 0.0, "a difference of scores is zero or more")
     rule = (float(count), least, min(below, 1.0), float(headings), *lengths.tolist())
     allowed = _read_cells(free, field)
-    with guard_memory("field", field, 1.5 * field.scores.size, "give a part of the map"):
+    limit = math.inf if time_limit is None else positive_number(time_limit, "time_limit", largest=math.inf)
+    with (
+        guard_memory("field", field, 1.5 * field.scores.size, "give a part of the map"),
+        _keep_limit(limit),
+    ):
         rows = _core._search_map(
             field.scores, field.resolution, field.origin, field.outside, allowed, points, rule
         )
     return PoseModes(np.ascontiguousarray(rows[:, :3]), np.ascontiguousarray(rows[:, 3]))
+
+
+@contextmanager
+def _keep_limit(limit: float) -> Iterator[None]:
+    """TimeLimitError in the block once so many seconds are over; a time limit of the caller stays."""
+    outer, begin = _core.set_deadline(limit), perf_counter()
+    try:
+        yield
+    except _core.TimeOver:
+        if perf_counter() - begin < limit:
+            raise  # that of a caller
+        raise TimeLimitError(
+            f"the search did not end within its time_limit of {limit:g} s; give the cells in which the robot"
+            " may be (free=), fewer headings (heading_step=) or more time"
+        ) from None
+    finally:
+        _core.set_deadline(outer - (perf_counter() - begin))
 
 
 def _read_points(scan_points: ArrayLike, resolution: float) -> Array:
