@@ -60,7 +60,8 @@ class LaserSlam:
     covariances (n, 3, 3) of ξ in T exp ξ, in base. graph: the PoseGraph with the poses as its start, the
     accepted loops after the edges between neighbouring scans. loops: every loop that was found. stages:
     trajectories by name, "odometry", "calibrated", "matched" and "closed", as far as each was done. scans:
-    those that were used. status: "mapped", "lost" (the last scans match nothing) or "time_limit"; reason.
+    those that were used. scores (n,): of their matches, 0 to 1; 0 where none confirms the odometry, NaN for
+    the first one. status: "mapped", "lost" (the last scans match nothing) or "time_limit"; reason.
     """
 
     times: Array
@@ -70,6 +71,7 @@ class LaserSlam:
     loops: tuple[LoopClosure, ...]
     stages: Mapping[str, TimedPoses]
     scans: Scans
+    scores: Array
     status: str
     reason: str
     stats: LaserSlamStats

@@ -94,7 +94,10 @@ class Drive(NamedTuple):
 def read_drive(log: Log, max_range: float) -> Drive:
     """The scans that the odometry covers; InputError where there are none, or no beam returned."""
     if log.scans is None or not len(log.scans):
-        raise InputError('the log has no scans; method="graph" needs those of a laser')
+        others = (
+            "" if log.readings is None else '; its readings of landmarks are for method="ekf" or "fastslam"'
+        )
+        raise InputError(f'the log has no scans, and method="graph" needs those of a laser{others}')
     times = log.odometry.times
     if not len(times):
         raise InputError("the log has no odometry; SLAM needs it between the scans")
@@ -236,6 +239,7 @@ class Mapper:
             loops=closures,
             stages=self.stages,
             scans=scans,
+            scores=np.concatenate([[np.nan], scores]),
             status=status,
             reason=reason,
             stats=stats,
@@ -250,7 +254,8 @@ class Mapper:
             return "time_limit", f"the time limit was over after {done}; the poses are the best until then"
         if len(scores) >= LOST_AFTER and not scores[-LOST_AFTER:].any():
             return "lost", f"the last {LOST_AFTER} scans or more match nothing; their poses are odometry"
-        return "mapped", f"{stats.scans - stats.unmatched} scans matched, {stats.rejected} loops rejected"
+        loops = f"{stats.accepted} loops accepted, {stats.rejected} rejected"
+        return "mapped", f"{stats.scans - stats.unmatched} scans matched, {loops}"
 
     def list_loops(self, used: npt.NDArray[np.intp], edges: int) -> tuple[LoopClosure, ...]:
         """All loops that were found; edges: of the graph that come before the accepted ones."""

@@ -63,7 +63,7 @@ class ScanModel:
             self.field = grid
         else:
             assert self.walls is not None
-            self.field = self.walls.likelihood_field(scanner.sigma, scanner.floor)
+            self.field = find_surfaces(self.walls).likelihood_field(scanner.sigma, scanner.floor)
         field = self.field
         self.map = _core.ScoreMap(field.scores, field.resolution, tuple(field.origin), field.outside)
         self.free = find_free_cells(grid, field)
@@ -157,6 +157,16 @@ def find_walls(grid: Any) -> OccupancyGrid:
     walls = grid.to_grid(unknown="free") if hasattr(grid, "known") else grid.to_grid()
     assert isinstance(walls, OccupancyGrid)
     return walls
+
+
+def find_surfaces(walls: OccupancyGrid) -> OccupancyGrid:
+    """The blocked cells that touch a free one. Beams end on them, not inside of what is solid, and unknown
+    cells that count as blocked are solid: there every scan would fit."""
+    blocked = walls.blocked
+    padded = np.pad(blocked, 1, constant_values=True)
+    rows = padded[:-2] & padded[1:-1] & padded[2:]
+    inner = rows[:, :-2] & rows[:, 1:-1] & rows[:, 2:]
+    return OccupancyGrid(blocked & ~inner, walls.resolution, walls.origin) if inner.any() else walls
 
 
 def find_free_cells(grid: Any, field: ByteField) -> npt.NDArray[np.bool_] | None:
