@@ -96,9 +96,18 @@ RENAMED: Final = MappingProxyType(
 FOREIGN_WORDS: Final = MappingProxyType(
     {
         "a*": "a_star",
+        "amcl": "mcl",
         "astar": "a_star",
         "d*": "d_star_lite",
+        "fast_slam": "fastslam",
+        "gmapping": "graph",
+        "kalman": "ekf",
         "local": "tip",
+        "particle": "mcl",
+        "particle_filter": "mcl",
+        "particles": "mcl",
+        "pf": "mcl",
+        "slam_toolbox": "graph",
         "theta*": "theta_star",
         "world": "base",
     }

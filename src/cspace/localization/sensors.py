@@ -45,8 +45,7 @@ class RangeBearing:
 @dataclass(frozen=True)
 class Compass:
     """A sensor of the heading. sigma [rad]: its standard deviation. bias [rad]: what it reads too much, such
-    as
-    the declination. Raises InputError for a deviation that is not above zero."""
+    as the declination. Raises InputError for a deviation that is not above zero."""
 
     sigma: float = 0.05
     bias: float = 0.0
@@ -59,8 +58,7 @@ class Compass:
 @dataclass(frozen=True)
 class Gps:
     """A sensor of its own position. sigma [m]: standard deviation of x and of y. lever (2,): where on base
-    its
-    antenna is [m]. Raises InputError for a deviation that is not above zero."""
+    its antenna is [m]. Raises InputError for a deviation that is not above zero."""
 
     sigma: float = 2.0
     lever: tuple[float, float] = (0.0, 0.0)

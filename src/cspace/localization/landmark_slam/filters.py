@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_generator, bounded_number, one_array, whole_number
 from cspace.errors import InputError, suggest
-from cspace.localization.filters.localize import read_covariance, read_pose
+from cspace.localization.checks import read_covariance, read_pose
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes, read_outcomes
 from cspace.localization.log import Landmarks, Readings
 from cspace.localization.sensors import RangeBearing, read_share

@@ -17,6 +17,7 @@ from cspace.localization.graph import GraphAnswer, PoseGraph
 from cspace.localization.landmark_slam import LandmarkSlam, run_ekf_slam, run_fast_slam
 from cspace.localization.laser_slam.answer import LaserSlam, LaserSlamStats, LoopClosure
 from cspace.localization.log import Log, Scans
+from cspace.localization.scans.match import check_bell
 from cspace.localization.scans.points import place_beams
 from cspace.mobile import Odometry, TimedPoses, calibrate
 from cspace.spatial import inverse_pose_2d, log_se2, pose_2d
@@ -77,7 +78,9 @@ def slam(
     if method == "fastslam":
         return run_fast_slam(log, rng=rng, time_limit=limit)
     drive = read_drive(log, positive_number(max_range, "max_range"))
-    mapper = Mapper(drive, positive_number(resolution, "resolution"), bool(loops), bool(calibrated), progress)
+    cell = positive_number(resolution, "resolution")
+    check_bell(cell, SIGMA, f"resolution is {cell:g} m, and the bells of points {SIGMA:g} m; these may have")
+    mapper = Mapper(drive, cell, bool(loops), bool(calibrated), progress)
     mapper.run(inf if limit is None else limit)
     return mapper.report()
 

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, bounded_number, one_array, positive_number, whole_number
+from cspace.arrays import Array, bounded_number, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
+from cspace.localization.checks import read_covariance, read_pose
 from cspace.localization.filters.rows import (
     adjoin_rows,
     carry_covariance,
@@ -18,10 +19,11 @@ from cspace.localization.filters.rows import (
     move_pose,
     relate_rows,
 )
-from cspace.localization.particles.models import FEWEST_BEAMS, ScanModel
+from cspace.localization.particles.models import FEWEST_BEAMS, ScanModel, find_walls, make_field
 from cspace.localization.particles.particle_filter import (
     FULL_STEP,
     OTHER_SHARE,
+    START_DEVIATIONS,
     measure_step,
     read_motion,
 )
@@ -29,7 +31,7 @@ from cspace.localization.particles.placing import FreePlaces
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner
 from cspace.maps import ByteField
-from cspace.spatial import as_pose_2d, log_se2, pose_2d, rotation_2d, to_xytheta
+from cspace.spatial import log_se2, pose_2d, rotation_2d
 from cspace.tables import count_things, one_line
 from cspace.tolerances import LEAST_OF_BEST, STANDING, UNIFORM_SHARE
 
@@ -71,7 +73,10 @@ class HistogramFilter:
         threads: int = 1,
     ) -> None:
         if isinstance(grid, ByteField) or not hasattr(grid, "likelihood_field"):
-            raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid or an EvidenceGrid")
+            raise InputTypeError(
+                f"grid is a {type(grid).__name__}; give an OccupancyGrid or an EvidenceGrid, for ROS maps"
+                " cspace.maps.EvidenceGrid.from_ros(path)"
+            )
         self.grid, self.noise = grid, read_motion(motion)
         self.side = positive_number(resolution, "resolution")
         self.sectors = whole_number(headings, "headings", 8, 720)
@@ -103,21 +108,16 @@ class HistogramFilter:
         free = self._places.find_coarse_cells(self.side, (int(rows), int(columns)))
         self._free = np.repeat(free[None].astype(np.float64), self.sectors, axis=0)
         sigma = float(np.hypot(sensor.sigma, 0.5 * self.side))
-        self.model = ScanModel(self.grid.likelihood_field(sigma, sensor.floor), sensor)
+        self.model = ScanModel(make_field(find_walls(self.grid), sigma, sensor.floor), sensor)
         t, v, u = np.meshgrid(theta, y, x, indexing="ij")
         self._centers = np.stack([u.ravel(), v.ravel(), t.ravel()], axis=-1)
         self._cloud = _core.ParticleCloud(len(self._centers), 0)
         self._cloud.place(self._centers)
 
     def _put_start(self, start: npt.ArrayLike, covariance: npt.ArrayLike | None) -> None:
-        shape = np.shape(start)
-        pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
+        pose = read_pose(start)
         self._places.check_start(pose)
-        P = (
-            np.diag([0.01, 0.01, 0.0025])
-            if covariance is None
-            else one_array(covariance, "start_covariance", (3, 3))
-        )
+        P = np.diag(np.square(START_DEVIATIONS)) if covariance is None else read_covariance(covariance)
         cell = 2 * np.pi / self.sectors
         P = P + np.diag([self.side**2, self.side**2, cell**2]) / 12
         xi = find_twist(pose, self._centers)
@@ -130,12 +130,11 @@ class HistogramFilter:
     ) -> None:
         """Moves the probability by odometry, as ParticleFilter.predict; steps below a cell are kept until
         the next update."""
-        step = to_xytheta(as_pose_2d(increment, "increment")) if np.shape(increment) == (3, 3) else increment
-        row = one_array(step, "increment", (3,))
+        row = read_pose(increment, "increment")
         if covariance is not None:
             A = adjoin_rows(relate_rows(row, np.zeros(3)))
             Q = np.zeros((3, 3)) if self._given is None else self._given
-            self._given = carry_covariance(A, Q) + one_array(covariance, "covariance", (3, 3))
+            self._given = carry_covariance(A, Q) + read_covariance(covariance, "covariance")
         self._pending, self._since = follow_rows(self._pending, row), follow_rows(self._since, row)
         self._seconds += bounded_number(dt, "dt", 0.0, "give seconds, not below zero")
         self._found = None
@@ -224,7 +223,8 @@ class HistogramFilter:
     def reason(self) -> str:
         """The status as one sentence."""
         listed = count_things(len(self.modes), "mode")
-        return f"{listed}, the heaviest with {self.modes[0].share:.0%} of the probability"
+        text = f"{listed}, the heaviest with {self.modes[0].share:.0%} of the probability"
+        return text if self.updates else f"{text}; nothing measured yet"
 
     def __bool__(self) -> bool:
         return self.status == "localised"
