@@ -212,6 +212,12 @@ def check_known(subject: str, name: object, known: Iterable[str]) -> None:
         raise suggest(subject, name, known)
 
 
+def check_kind(subject: str, value: object, kind: type | tuple[type, ...], remedy: str) -> None:
+    """InputTypeError for a value that is of none of some classes, with what to give instead."""
+    if not isinstance(value, kind):
+        raise InputTypeError(f"{subject} is a {type(value).__name__}; {remedy}")
+
+
 def keyword_error(text: str) -> TypeError:
     """The error for "f() got an unexpected keyword argument 'name'", with the new name of an old keyword."""
     name = text.rpartition(" keyword argument ")[2].partition("'")[2].partition("'")[0]

@@ -85,7 +85,7 @@ WAY = [(2.0, 2.0), (7.5, 2.0), (7.5, 5.5), (3.6, 6.2), (3.6, 9.5), (6.5, 13.0)]
 
 
 def test_no_scan_fits_inside_of_what_is_solid():
-    """Beams end on surfaces. Solid cells are what a ROS map does not know, or the ground around a building."""
+    """Beams end on surfaces. Solid are cells that a ROS map does not know, and the ground about a house."""
     rng = np.random.default_rng(2)
     for _ in range(8):
         blocked = np.ones((90, 120), dtype=bool)

@@ -11,13 +11,14 @@ from cspace import tolerances
 from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError
 from cspace.spatial import as_pose_2d, to_xytheta
+from cspace.tolerances import FARTHEST_POINT
 
 
 def read_pose(pose: npt.ArrayLike, subject: str = "start") -> Array:
     """A pose (3,), given as x, y, θ (3,) or (3, 3)."""
     if isinstance(pose, np.ndarray) and pose.shape == (3, 3):
         return np.ascontiguousarray(to_xytheta(as_pose_2d(pose, subject)))
-    row = as_floats(pose, subject)
+    row = as_floats(pose, subject, largest=FARTHEST_POINT)
     if row.shape == (3, 3):
         return np.ascontiguousarray(to_xytheta(as_pose_2d(row, subject)))
     return one_array(row, subject, (3,), "x, y [m], θ [rad]")

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, check_known
 from cspace.localization.checks import read_covariance, read_pose, suggest_map
 from cspace.localization.filters.forward import Pass, Passed
 from cspace.localization.filters.gates import associate_reading
@@ -23,8 +23,9 @@ from cspace.localization.filters.run import Localization, LocalizationStats
 from cspace.localization.filters.timeline import KINDS, Timeline, lay_timeline
 from cspace.localization.filters.updates import UPDATES
 from cspace.localization.log import UNKNOWN, Landmarks, Log
-from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing, read_share
-from cspace.mobile import MotionNoise, RandomWalk
+from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing, read_sensor, read_share
+from cspace.mobile import MotionNoise
+from cspace.mobile.noise import read_noise
 
 if TYPE_CHECKING:
     from cspace.localization.particles import MapLocalization
@@ -71,8 +72,7 @@ def localize(
     begun = perf_counter()
     if not isinstance(log, Log):
         raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
-    if filter not in FILTERS:
-        raise suggest("filter", filter, FILTERS)
+    check_known("filter", filter, FILTERS)
     if filter != "mcl" and not (n is most is None):
         raise InputError(f"filter={filter!r} has no particles; leave n and most out, or give filter='mcl'")
     if filter in MAP_FILTERS and not (compass is gps is None):
@@ -89,8 +89,8 @@ def localize(
         return run_map_filter(filter, log, known, {**shared, **sizes, "threads": threads}, limit)
     model = check_landmarks(known, sensor, filter)
     pose, P = read_start(log, start, start_covariance)
-    reader = Reader(log, known, model, compass or Compass(), gps or Gps())
-    timeline = lay_timeline(log, model, noise or RandomWalk())
+    reader = Reader(log, known, model, read_sensor(compass, Compass, "compass"), read_sensor(gps, Gps, "gps"))
+    timeline = lay_timeline(log, model, read_noise(noise))
     reader.timeline = timeline
     run = Pass(timeline, UPDATES[filter], read_share(gate, "gate"), limit)
     passed = run.run(pose, P, reader.read)
@@ -104,9 +104,7 @@ def check_landmarks(known: Any, sensor: Any, filter: str) -> RangeBearing:
         raise InputTypeError(
             f"the map is a {type(known).__name__}, and filter={filter!r} needs Landmarks; {remedy}"
         )
-    if sensor is not None and not isinstance(sensor, RangeBearing):
-        raise InputTypeError(f"sensor is a {type(sensor).__name__}; filter={filter!r} needs a RangeBearing")
-    return sensor or RangeBearing()
+    return read_sensor(sensor, RangeBearing)
 
 
 class Reader:

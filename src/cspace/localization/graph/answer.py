@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, whole_number
-from cspace.errors import InputError, Renamed, suggest
+from cspace.errors import InputError, Renamed, check_known
 from cspace.tables import one_line, shown
 from cspace.tolerances import SAME_CHI2
 
@@ -130,8 +130,7 @@ class GraphAnswer(Renamed):
         """
         pair = [pose, pose if other is None else other]
         rows = [whole_number(row, "pose", 0, len(self.poses) - 1) for row in pair]
-        if frame not in ("base", "map"):
-            raise suggest("frame", frame, ("base", "map"))
+        check_known("frame", frame, ("base", "map"))
         a, b = (np.array([row], dtype=np.int32) for row in rows)
         found: Array = self._read_covariances(a, b, self._size(rows[0]), self._size(rows[1]))[0]
         if frame == "base":

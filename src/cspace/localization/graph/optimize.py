@@ -9,8 +9,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from cspace._core import GraphSolver, TimeOver, set_deadline
-from cspace.arrays import positive_number, whole_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.arrays import any_array, positive_number, whole_number
+from cspace.errors import InputError, InputTypeError, check_known
 from cspace.localization.graph.answer import GraphAnswer, list_rejected
 from cspace.localization.graph.checks import Mask
 from cspace.localization.graph.graph_arrays import GraphArrays
@@ -66,7 +66,8 @@ class Request(NamedTuple):
             raise InputTypeError(
                 "robust= and kernel= exclude each other: one rejects measurements, one weighs them"
             )
-        start = self.start or ("rotations" if self.robust is None else "odometry")
+        usual = "rotations" if self.robust is None else "odometry"
+        start = usual if self.start is None else self.start
         find_word("start", start, STARTS)
         return self._replace(
             start=start,
@@ -80,8 +81,8 @@ class Request(NamedTuple):
 
 def find_word(name: str, word: Any, known: tuple[str | None, ...]) -> int:
     """The place of a word among those known; an error with the nearest ones for others."""
-    if word not in known:
-        raise suggest(name, word, [each for each in known if each is not None])
+    if not (word is None and None in known):
+        check_known(name, word, [each for each in known if each is not None])
     return known.index(word)
 
 
@@ -127,7 +128,7 @@ def read_trusted(graph: GraphArrays, value: Any) -> Mask:
     """Which edges are never doubted."""
     if value is None:
         return graph.consecutive
-    mask = np.asarray(value)
+    mask = any_array(value, "trusted")
     if mask.dtype != bool or mask.shape != (len(graph.edges),):
         raise InputError(
             f"trusted has shape {mask.shape} of {mask.dtype}, expected ({len(graph.edges)},) of bool:"

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from cspace.arrays import Array
-from cspace.errors import suggest
+from cspace.errors import check_known
 from cspace.localization.graph import PoseGraph
 from cspace.localization.log import Scans
 from cspace.maps import EvidenceGrid
@@ -97,8 +97,7 @@ class LaserSlam:
 
     def map_at(self, stage: str) -> EvidenceGrid:
         """The map of the scans at the poses of a stage; UnknownNameError for one that is not there."""
-        if stage not in self.stages:
-            raise suggest("stage", stage, list(self.stages))
+        check_known("stage", stage, self.stages)
         return EvidenceGrid.from_scans(
             self.scans, self.stages[stage].poses, self.resolution, max_range=self.max_range
         )

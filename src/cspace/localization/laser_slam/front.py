@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace._core import LaserSlamRun, TimeOver, set_deadline
-from cspace.arrays import Array, positive_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.arrays import Array, positive_number, truth_value
+from cspace.errors import InputError, InputTypeError, check_known
 from cspace.localization.graph import GraphAnswer, PoseGraph
 from cspace.localization.landmark_slam import LandmarkSlam, run_ekf_slam, run_fast_slam
 from cspace.localization.laser_slam.answer import LaserSlam, LaserSlamStats, LoopClosure
@@ -70,8 +70,7 @@ def slam(
     """
     if not isinstance(log, Log):
         raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
-    if method not in METHODS:
-        raise suggest("method", method, METHODS)
+    check_known("method", method, METHODS)
     limit = None if time_limit is None else positive_number(time_limit, "time_limit", largest=inf)
     if method == "ekf":
         return run_ekf_slam(log, time_limit=limit)
@@ -80,7 +79,10 @@ def slam(
     drive = read_drive(log, positive_number(max_range, "max_range"))
     cell = positive_number(resolution, "resolution")
     check_bell(cell, SIGMA, f"resolution is {cell:g} m, and the bells of points {SIGMA:g} m; these may have")
-    mapper = Mapper(drive, cell, bool(loops), bool(calibrated), progress)
+    flags = truth_value(loops, "loops"), truth_value(calibrated, "calibrated")
+    if not (progress is None or callable(progress)):
+        raise InputTypeError(f"progress is a {type(progress).__name__}; give a function of a share, 0 to 1")
+    mapper = Mapper(drive, cell, *flags, progress)
     mapper.run(inf if limit is None else limit)
     return mapper.report()
 
@@ -125,7 +127,7 @@ class Mapper:
         self, drive: Drive, resolution: float, loops: bool, calibrated: bool, progress: Progress | None
     ) -> None:
         self.drive, self.resolution, self.loops, self.calibrated = drive, resolution, loops, calibrated
-        self.tell = progress or (lambda share: None)
+        self.tell = (lambda share: None) if progress is None else progress
         self.begun = perf_counter()
         self.stages: dict[str, TimedPoses] = {}
         self.factors = UNKNOWN_FACTORS

@@ -29,7 +29,7 @@ from cspace.localization.particles.particle_filter import (
 )
 from cspace.localization.particles.placing import FreePlaces
 from cspace.localization.particles.state import FilterEvent, PoseMode
-from cspace.localization.sensors import LaserScanner
+from cspace.localization.sensors import LaserScanner, read_sensor
 from cspace.maps import ByteField
 from cspace.spatial import log_se2, pose_2d, rotation_2d
 from cspace.tables import count_things, one_line
@@ -82,7 +82,7 @@ class HistogramFilter:
         self.sectors = whole_number(headings, "headings", 8, 720)
         self.threads = whole_number(threads, "threads", 0, 1024)
         self._places = FreePlaces(grid, np.inf)
-        self._lay_cells(sensor or LaserScanner())
+        self._lay_cells(read_sensor(sensor, LaserScanner))
         self._pending, self._since, self._seconds = np.zeros(3), np.zeros(3), 0.0
         self._given: Array | None = None
         self._found: list[PoseMode] | None = None
@@ -96,16 +96,17 @@ class HistogramFilter:
         if sensor.model != "likelihood_field":
             raise InputError("the histogram filter has no beam model; give model='likelihood_field'")
         low, high = np.asarray(self._places.low), np.asarray(self._places.high)
-        columns, rows = np.ceil((high - low) / self.side).astype(int)
+        columns, rows = np.ceil((high - low) / self.side).tolist()
         if rows * columns * self.sectors > MOST_CELLS:
             raise InputError(
-                f"{rows} × {columns} × {self.sectors} cells are more than {MOST_CELLS}; give a coarser"
+                f"{rows:g} × {columns:g} × {self.sectors} cells are more than {MOST_CELLS}; give a coarser"
                 " resolution or fewer headings"
             )
+        columns, rows = int(columns), int(rows)
         x, y = low[0] + self.side * (np.arange(columns) + 0.5), low[1] + self.side * (np.arange(rows) + 0.5)
         theta = (np.arange(self.sectors) + 0.5) * (2 * np.pi / self.sectors) - np.pi
         self._axes = theta, y, x
-        free = self._places.find_coarse_cells(self.side, (int(rows), int(columns)))
+        free = self._places.find_coarse_cells(self.side, (rows, columns))
         self._free = np.repeat(free[None].astype(np.float64), self.sectors, axis=0)
         sigma = float(np.hypot(sensor.sigma, 0.5 * self.side))
         self.model = ScanModel(make_field(find_walls(self.grid), sigma, sensor.floor), sensor)
@@ -159,6 +160,8 @@ class HistogramFilter:
         sector = 2 * np.pi / self.sectors
         turned = shift_axis(moved, self._pending[2] / sector, 0, wraps=True)
         self.belief = blur_axis(turned, np.sqrt(Q[2, 2]) / sector, 0, wraps=True)
+        if not self.belief.sum() > 0:  # it drove off the map
+            self.belief, self._is_known, self.updates = self._free.copy(), False, 0
         self.belief /= self.belief.sum()
         self._pending, self._seconds, self._given = np.zeros(3), 0.0, None
 
@@ -211,7 +214,7 @@ class HistogramFilter:
     @property
     def status(self) -> str:
         """One of "localised"; "ambiguous", with much of the probability in other modes; "lost", before the
-        first scan."""
+        first scan, and where the odometry left the map, until the next one."""
         if not self.updates and not self._is_known:
             return "lost"
         first, *others = self.modes

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_generator, bounded_number, whole_number
-from cspace.errors import InputError, InputTypeError
+from cspace.arrays import Array, as_generator, bounded_number, truth_value, whole_number
+from cspace.errors import InputError
 from cspace.localization.checks import read_covariance, read_pose
 from cspace.localization.filters.rows import find_twist, follow_rows
 from cspace.localization.particles.models import (
@@ -21,7 +21,8 @@ from cspace.localization.particles.placing import FreePlaces, spread_poses
 from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
-from cspace.mobile import MotionNoise, RandomWalk
+from cspace.mobile import MotionNoise
+from cspace.mobile.noise import read_noise
 from cspace.tables import count_things, one_line
 from cspace.tolerances import STANDING
 
@@ -92,7 +93,7 @@ class ParticleFilter:
         self.noise = read_motion(motion)
         self.least, largest = read_sizes(self.model, n, most)
         self.threads = whole_number(threads, "threads", 0, 1024)
-        self.recover = bool(recover)
+        self.recover = truth_value(recover, "recover")
         self._rng = as_generator(rng)
         reach = sensor.most_range if isinstance(sensor, RangeBearing) else np.inf
         self._places = FreePlaces(grid, reach)
@@ -312,15 +313,8 @@ def measure_step(row: Array) -> float:
 
 def read_motion(motion: Any | None) -> MotionNoise:
     """A model of noise. Raises InputTypeError for what is neither one nor a vehicle."""
-    if motion is None or hasattr(motion, "twist"):
-        return RandomWalk()
-    if not hasattr(motion, "covariance"):
-        raise InputTypeError(
-            f"motion is a {type(motion).__name__}; give a model of noise such as cspace.mobile.RandomWalk, or"
-            " a vehicle"
-        )
-    model: MotionNoise = motion
-    return model
+    is_vehicle = not isinstance(motion, type) and callable(getattr(motion, "twist", None))
+    return read_noise(None if is_vehicle else motion, "motion")
 
 
 def read_sizes(model: Any, n: int | None, most: int | None) -> tuple[int, int]:

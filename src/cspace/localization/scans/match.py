@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, guard_memory, one_array, one_number, positive_number
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError, check_known
 from cspace.localization.checks import read_pose
 from cspace.localization.scans.points import MOST_BEAMS, read_scan, thin_scan
 from cspace.maps import ByteField
@@ -75,8 +75,7 @@ def match_scan(
     least_score: of a match. Raises InputError for a scan without points, and UnknownNameError for another
     method.
     """
-    if method not in METHODS:
-        raise suggest("method", method, METHODS)
+    check_known("method", method, METHODS)
     points = thin_scan(read_scan(scan, "scan"), MOST_BEAMS)
     near = read_pose(guess, "guess")
     reach, turn = read_window(window)
