@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_generator, guard_memory, positive_number
+from cspace.arrays import Array, as_generator, positive_number
 from cspace.errors import InputError, InputTypeError
 from cspace.localization.checks import suggest_map
 from cspace.localization.filters.measurements import see_point
@@ -17,6 +17,7 @@ from cspace.maps import cast_rays
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile import MotionNoise, Odometry, TimedPoses
 from cspace.mobile.noise import read_noise
+from cspace.mobile.timed_poses import mark_times
 from cspace.spatial import exp_se2, log_se2, pose_2d
 
 
@@ -45,9 +46,7 @@ def simulate(
     odometry = disturb_odometry(
         Odometry.from_poses(truth.times, truth.poses), read_noise(noise), generator
     )
-    step, span = positive_number(period, "period"), float(np.ptp(truth.times))
-    with guard_memory("period", step, span / step + 1, "give a longer one"):
-        marks = np.arange(truth.times[0], truth.times[-1], step)
+    marks = mark_times(truth.times[0], truth.times[-1], positive_number(period, "period"), "period")
     rows = np.unique(np.searchsorted(truth.times, marks))
     times, poses = truth.times[rows], truth.poses[rows]
     if isinstance(landmarks, Landmarks):

@@ -10,12 +10,12 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, guard_memory, one_array, positive_number
+from cspace.arrays import Array, one_array, positive_number
 from cspace.errors import InputError, check_kind
 from cspace.math.wrapping import wrap_angle, wrap_near
 from cspace.mobile.noise import RandomWalk
 from cspace.mobile.odometry import Odometry
-from cspace.mobile.timed_poses import NO_REFERENCE, TimedPoses, read_times
+from cspace.mobile.timed_poses import NO_REFERENCE, TimedPoses, mark_times, read_times
 from cspace.mobile.wheels import DifferentialDrive
 from cspace.tables import one_line
 
@@ -150,8 +150,7 @@ def cut_windows(
     if not len(known):
         return known, poses
     begin, end = odometry.times[known[0]], odometry.times[known[-1]]
-    with guard_memory("window", window, (end - begin) / window + 1, "give a longer one"):
-        marks = np.arange(begin, end + window, window)
+    marks = mark_times(begin, end + window, window, "window")
     chosen = known[np.minimum(np.searchsorted(odometry.times[known], marks), len(known) - 1)]
     return np.unique(chosen), poses
 

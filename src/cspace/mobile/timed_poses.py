@@ -12,6 +12,7 @@ from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, shown
 from cspace.math.wrapping import wrap_angle
 from cspace.tables import count_things, one_line
+from cspace.tolerances import MOST_MARKS
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -97,6 +98,16 @@ def read_limit(value: Any, subject: str) -> float:
 def find_between(times: Array, first: Any, last: Any) -> npt.NDArray[np.bool_]:
     """Which times (n,) lie from first to last."""
     return (times >= read_limit(first, "first")) & (times <= read_limit(last, "last"))
+
+
+def mark_times(first: float, end: float, step: float, subject: str) -> Array:
+    """Times from first at equal distances [s] up to before end; InputError for too many of them."""
+    if not (end - first) / step <= MOST_MARKS:
+        raise InputError(
+            f"{subject} is {step:g} s, and the log {end - first:g} s long; give at least"
+            f" {(end - first) / MOST_MARKS:g} s"
+        )
+    return np.arange(first, end, step)
 
 
 def read_rows(values: npt.ArrayLike, subject: str, times: npt.NDArray[Any], last: tuple[int, ...]) -> Array:

@@ -64,7 +64,7 @@ class LandmarkFilter:
             if self._walk is not None and 0.0 <= dt < np.inf:
                 self._core.predict_walk(increment, self._walk, dt)
                 return
-        except TypeError:
+        except (TypeError, ValueError):
             pass  # what follows says what is wrong, or converts it
         step = read_pose(increment, "increment")
         dt = bounded_number(dt, "dt", 0.0, "give the seconds that the step took")
