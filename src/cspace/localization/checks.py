@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace import tolerances
 from cspace.arrays import Array, as_floats, one_array
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.spatial import as_pose_2d, to_xytheta
 from cspace.tolerances import FARTHEST_POINT
 
@@ -37,6 +38,16 @@ def read_covariance(covariance: npt.ArrayLike, subject: str = "start_covariance"
             " give variances on the diagonal, np.diag(...)"
         )
     return 0.5 * (P + P.T)
+
+
+class Running:
+    """Something that runs and changes: neither copied nor pickled, since a copy would share its state."""
+
+    _instead: ClassVar[str]
+    """What to keep in place of it."""
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise InputTypeError(f"a {type(self).__name__} is neither copied nor pickled; {self._instead}")
 
 
 def suggest_map(value: object) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -99,7 +99,7 @@ class GraphAnswer(Renamed):
     rejected_sightings: npt.NDArray[np.intp]
     stats: Mapping[str, Any]
     graph: GraphArrays
-    _solver: GraphSolver
+    _held: list[GraphSolver]
     _lock: Lock = field(default_factory=Lock)
 
     def __bool__(self) -> bool:
@@ -151,7 +151,7 @@ class GraphAnswer(Renamed):
         if reason:
             return Certificate(False, 0.0, self.chi2, f"not certified: {reason}")
         with self._lock:
-            is_proved, bound, least = self._solver.certify()
+            is_proved, bound, least = self._solver().certify()
         if not is_proved:
             reason = "the dual matrix is not positive semidefinite, so that there may be a better optimum"
             return Certificate(False, 0.0, self.chi2, f"not certified: {reason}")
@@ -166,6 +166,19 @@ class GraphAnswer(Renamed):
         """The graph with the answer as its start."""
         return self.graph.with_poses(self.poses, self.landmarks)
 
+    def _solver(self) -> GraphSolver:
+        """The compiled solver at the answer; that of a copy is made again."""
+        if not self._held:
+            from cspace.localization.graph.optimize import restore_solver
+
+            self._held.append(restore_solver(self))
+        return self._held[0]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle stores: the arrays, without the compiled solver."""
+        given = [getattr(self, each.name) for each in fields(self) if each.init and each.name[0] != "_"]
+        return type(self), (*given, [])
+
     def _explain_no_dual(self) -> str:
         """Why the problem has no dual that we know; empty where it has one."""
         if self.stats["residual"] != "twist":
@@ -174,7 +187,8 @@ class GraphAnswer(Renamed):
             return "a robust kernel weighs the measurements; optimize without one"
         if len(self.graph.fixed) + len(self.graph.fixed_landmarks) != 1 or self.graph.parts.any():
             return "the graph must be in one part, with one pose fixed"
-        row = self._solver.anisotropic_measurement
+        with self._lock:
+            row = self._solver().anisotropic_measurement
         edges = len(self.graph.edges)
         if row >= edges:
             return f"sighting {row - edges} has a range, a bearing, or information that is not isotropic"
@@ -191,7 +205,7 @@ class GraphAnswer(Renamed):
     ) -> Array:
         found = np.empty((len(first), rows, columns))
         with self._lock:
-            is_regular = self._solver.write_covariances(np.stack([first, second], axis=1), found)
+            is_regular = self._solver().write_covariances(np.stack([first, second], axis=1), found)
         if not is_regular:
             raise InputError(
                 "the normal equations at the answer are singular, so that there are no covariances;"

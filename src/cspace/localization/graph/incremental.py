@@ -12,6 +12,7 @@ import numpy.typing as npt
 from cspace._core import IncrementalSolver, are_clearly_positive
 from cspace.arrays import Array, any_array, as_floats, positive_number
 from cspace.errors import InputError, InputTypeError, check_known
+from cspace.localization.checks import Running
 from cspace.localization.graph.answer import GraphAnswer, turn_to_map
 from cspace.localization.graph.checks import Ids, check_points, read_information, read_poses
 from cspace.localization.graph.pose_graph import PoseGraph
@@ -21,7 +22,7 @@ SHOWN_WAITING = 5
 """The most ids that a message lists."""
 
 
-class IncrementalGraph:
+class IncrementalGraph(Running):
     """A pose graph in the plane or in space to which measurements are added one after the other.
 
     Each addition brings the estimate up to date: only the part of the factor that it touches is eliminated
@@ -32,6 +33,8 @@ class IncrementalGraph:
     relinearize: measurements are linearised anew where a pose has moved by more than this [m or rad] since.
     substitute: changes up to this [m or rad] are not passed on to distant poses.
     """
+
+    _instead = "keep to_graph(), or the measurements"
 
     def __init__(
         self,

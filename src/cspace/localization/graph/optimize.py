@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from time import perf_counter
 from typing import Any, Final, NamedTuple
@@ -38,6 +39,10 @@ STATUSES: Final = ("converged", "stopped", "singular")
 """The answers of the core, by number."""
 SHOWN_PARTS: Final = 5
 """The most parts of a graph that a message lists."""
+
+
+RESTORING: Final = 1
+"""Iterations from a state that is the optimum already, by which a solver gets its factor again."""
 
 
 class Request(NamedTuple):
@@ -204,6 +209,7 @@ def make_answer(
         "start": request.start if solver.found_start else "given",
         "residual": request.residual,
         "kernel": request.kernel,
+        "width": request.width,
     }
     rejected_numbers = int((~used[:k]).sum()) * (6 if graph.is_spatial else 3)
     rejected_numbers += int(graph.measured[~used[k:]].sum())
@@ -220,8 +226,33 @@ def make_answer(
         rejected_sightings=np.flatnonzero(~used[k:]),
         stats=stats,
         graph=graph,
-        _solver=solver,
+        _held=[solver],
     )
+
+
+def restore_solver(answer: GraphAnswer) -> GraphSolver:
+    """A solver at the state of an answer that was copied or pickled, with the measurements that it counts."""
+    stats, graph = answer.stats, answer.graph
+    is_used = np.ones(len(graph.edges), dtype=bool)
+    is_used[[loop.edge for loop in answer.rejected]] = False
+    is_seen = np.ones(len(graph.sightings), dtype=bool)
+    is_seen[answer.rejected_sightings] = False
+    kept = replace(
+        graph.with_poses(answer.poses, answer.landmarks),
+        edges=graph.edges[is_used],
+        motions=graph.motions[is_used],
+        information=graph.information[is_used],
+        sightings=graph.sightings[is_seen],
+        points=graph.points[is_seen],
+        point_information=graph.point_information[is_seen],
+        ranged=graph.ranged[is_seen],
+    )
+    request = Request(
+        "given", METHODS[0], stats["residual"], None, stats["kernel"], stats["width"], None, RESTORING, inf
+    ).check()
+    solver = make_solver(kept, read_trusted(kept, None))
+    run_solver(solver, request)
+    return solver
 
 
 def explain_status(

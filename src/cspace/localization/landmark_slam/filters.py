@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats, as_generator, bounded_number, whole_number
 from cspace.errors import InputError, check_known
-from cspace.localization.checks import read_covariance, read_pose
+from cspace.localization.checks import Running, read_covariance, read_pose
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes, read_outcomes
 from cspace.localization.log import LARGEST_NAME, UNKNOWN, Landmarks, Readings
 from cspace.localization.sensors import RangeBearing, read_sensor, read_share
@@ -41,10 +41,11 @@ MOST_PARTICLES: Final = 1_000_000
 """Particles above which a map of each no longer fits into memory."""
 
 
-class LandmarkFilter:
+class LandmarkFilter(Running):
     """What both filters share. Made by EkfSlam and FastSlam."""
 
     _core: Any
+    _instead = "keep its pose, covariance and landmarks"
 
     def __init__(self, noise: MotionNoise | None) -> None:
         model = read_noise(noise)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, bounded_number, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
-from cspace.localization.checks import read_covariance, read_pose
+from cspace.localization.checks import Running, read_covariance, read_pose
 from cspace.localization.filters.rows import (
     adjoin_rows,
     carry_covariance,
@@ -49,7 +49,7 @@ NARROWEST_BLUR: Final = 0.3
 """Standard deviation [cells] below which a blur moves nothing to the next cell."""
 
 
-class HistogramFilter:
+class HistogramFilter(Running):
     """Where a robot is, as the probability of each cell of x, y and θ.
 
     grid: an OccupancyGrid or an EvidenceGrid. motion, sensor: as of ParticleFilter, without the beam model.
@@ -59,6 +59,8 @@ class HistogramFilter:
     step some 20 ns per cell. Raises InputError for too many cells. Source: Thrun, Burgard & Fox 2005,
     section 8.2.
     """
+
+    _instead = "keep its belief"
 
     def __init__(
         self,

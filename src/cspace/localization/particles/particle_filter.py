@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_generator, bounded_number, truth_value, whole_number
 from cspace.errors import InputError
-from cspace.localization.checks import read_covariance, read_pose
+from cspace.localization.checks import Running, read_covariance, read_pose
 from cspace.localization.filters.rows import find_twist, follow_rows
 from cspace.localization.particles.models import (
     BEAM_MODEL_PARTICLES,
@@ -60,7 +60,7 @@ SEARCH_GROWTH: Final = 5
 be near the pose that fits best, or places that look alike get weights by chance."""
 
 
-class ParticleFilter:
+class ParticleFilter(Running):
     """Where a robot is, as weighted poses: predict with odometry, update with scans or readings.
 
     grid: an OccupancyGrid or an EvidenceGrid, a ByteField, or Landmarks. motion: the noise of the odometry
@@ -74,6 +74,8 @@ class ParticleFilter:
     Raises InputError for too many particles, a map without free cells, a start off the map or in a wall.
     Source: Thrun, Burgard & Fox 2005, chapter 8.
     """
+
+    _instead = "keep its particles and weights, or make another one with the same rng="
 
     def __init__(
         self,
