@@ -43,9 +43,7 @@ def simulate(
     truth = TimedPoses(run.times, run.poses)
     if not len(truth):
         raise InputError("the run has no poses; simulate needs one at least")
-    odometry = disturb_odometry(
-        Odometry.from_poses(truth.times, truth.poses), read_noise(noise), generator
-    )
+    odometry = disturb_odometry(Odometry.from_poses(truth.times, truth.poses), read_noise(noise), generator)
     marks = mark_times(truth.times[0], truth.times[-1], positive_number(period, "period"), "period")
     rows = np.unique(np.searchsorted(truth.times, marks))
     times, poses = truth.times[rows], truth.poses[rows]

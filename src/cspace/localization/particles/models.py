@@ -253,9 +253,7 @@ def make_model(grid: Any, sensor: LaserScanner | RangeBearing | None) -> ScanMod
             )
         return SightingModel(grid, sensor or RangeBearing())
     if not isinstance(grid, ByteField) and not hasattr(grid, "likelihood_field"):
-        raise InputTypeError(
-            f"grid is a {type(grid).__name__}, which is no map; {suggest_map(grid)}"
-        )
+        raise InputTypeError(f"grid is a {type(grid).__name__}, which is no map; {suggest_map(grid)}")
     if sensor is not None and not isinstance(sensor, LaserScanner):
         raise InputTypeError(f"a grid needs sensor=LaserScanner(…), not {type(sensor).__name__}")
     return ScanModel(grid, sensor or LaserScanner())
