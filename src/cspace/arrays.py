@@ -62,7 +62,7 @@ def shape_of(value: Any, subject: str) -> tuple[int, ...]:
 
 
 def any_array(value: Any, subject: str) -> npt.NDArray[Any]:
-    """The array that numpy reads; InputError for rows of different lengths."""
+    """The array (...) that numpy reads; InputError for rows of different lengths."""
     try:
         return np.asarray(value)
     except ValueError:

@@ -22,6 +22,7 @@ __all__ = [
     "TimeLimitError",
     "UnknownNameError",
     "attribute_error",
+    "check_kind",
     "check_known",
     "keyword_error",
     "name_new_keywords",

@@ -73,9 +73,9 @@ def localize(
     if not isinstance(log, Log):
         raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
     check_known("filter", filter, FILTERS)
-    if filter != "mcl" and not (n is most is None):
+    if filter != "mcl" and (n is not None or most is not None):
         raise InputError(f"filter={filter!r} has no particles; leave n and most out, or give filter='mcl'")
-    if filter in MAP_FILTERS and not (compass is gps is None):
+    if filter in MAP_FILTERS and (compass is not None or gps is not None):
         raise InputError(f"filter={filter!r} uses neither compass nor gps; the Kalman filters do")
     known = landmarks if landmarks is not None else log.landmarks
     limit = None if time_limit is None else positive_number(time_limit, "time_limit")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from threading import Lock
@@ -100,6 +100,7 @@ class GraphAnswer(Renamed):
     stats: Mapping[str, Any]
     graph: GraphArrays
     _held: list[GraphSolver]
+    _remake: Callable[[GraphAnswer], GraphSolver]
     _lock: Lock = field(default_factory=Lock)
 
     def __bool__(self) -> bool:
@@ -169,15 +170,13 @@ class GraphAnswer(Renamed):
     def _solver(self) -> GraphSolver:
         """The compiled solver at the answer; that of a copy is made again."""
         if not self._held:
-            from cspace.localization.graph.optimize import restore_solver
-
-            self._held.append(restore_solver(self))
+            self._held.append(self._remake(self))
         return self._held[0]
 
     def __reduce__(self) -> tuple[Any, ...]:
         """What pickle stores: the arrays, without the compiled solver."""
         given = [getattr(self, each.name) for each in fields(self) if each.init and each.name[0] != "_"]
-        return type(self), (*given, [])
+        return type(self), (*given, [], self._remake)
 
     def _explain_no_dual(self) -> str:
         """Why the problem has no dual that we know; empty where it has one."""

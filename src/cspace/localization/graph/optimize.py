@@ -227,6 +227,7 @@ def make_answer(
         stats=stats,
         graph=graph,
         _held=[solver],
+        _remake=restore_solver,
     )
 
 
