@@ -1,6 +1,7 @@
 // Laws of scan matching: window sums and searches equal plain loops, pooled bounds are bounds, cliques agree
 // pairwise, a drive around a square room closes.
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "check.hpp"
@@ -100,6 +101,20 @@ TEST(matches_find_the_motion) {
         const IcpResult lines = match_lines(see_room({}, 360), points, peak.pose, 0.5);
         CHECK(lines.is_found && std::hypot(lines.pose.x - pose.x, lines.pose.y - pose.y) < 0.02);
     }
+}
+
+TEST(bells_of_no_size_and_of_too_many_cells_are_refused) {
+    const auto refuses = [](double resolution, double sigma) {
+        try {
+            (void)make_point_field(see_room({}, 36), resolution, sigma);
+        } catch (const std::invalid_argument&) {
+            return true;
+        }
+        return false;
+    };
+    CHECK(!refuses(0.05, 0.05 * PointStamp::widest));
+    for (const double cells : {1.01 * PointStamp::widest, 1e9, 1e300, 0.0, -1.0, std::nan("")})
+        CHECK(refuses(0.05, 0.05 * cells));
 }
 
 TEST(members_of_a_clique_agree) {
