@@ -4,6 +4,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 
+#include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "maps_points.hpp"
@@ -15,6 +17,7 @@ using namespace cspace::localization;
 namespace {
 
 using Row3 = std::array<double, 3>;
+constexpr double farthest = 1e15;  // tolerances.FARTHEST_POINT: squares of sums stay finite
 using Row9 = std::array<double, 9>;
 
 RangeBearingSensor read_sensor(const std::array<double, 9>& row) {
@@ -102,6 +105,9 @@ void bind_localization_landmarks(nb::module_& m) {
             "predict_walk",
             [](LandmarkFilter& filter, const Row3& increment, const std::array<double, 6>& walk,
                double duration) {
+                if (!std::all_of(increment.begin(), increment.end(),
+                                 [](double number) { return std::abs(number) <= farthest; }))
+                    throw nb::type_error("the increment is too large");
                 filter.predict_walk(increment, {walk[0], walk[1], walk[2], walk[3], walk[4], walk[5]},
                                     duration);
             },

@@ -16,7 +16,8 @@ from cspace.errors import InputError, InputTypeError, shown
 from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
-__all__ += ["bounded_number", "guard_memory", "one_array", "shape_of", "whole_number"]
+__all__ += ["any_array", "bounded_number", "guard_memory", "one_array", "shape_of", "truth_value"]
+__all__ += ["whole_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -58,6 +59,21 @@ def shape_of(value: Any, subject: str) -> tuple[int, ...]:
         return np.shape(value)
     except ValueError:
         return as_floats(value, subject).shape  # raises, with the subject
+
+
+def any_array(value: Any, subject: str) -> npt.NDArray[Any]:
+    """The array (...) that numpy reads; InputError for rows of different lengths."""
+    try:
+        return np.asarray(value)
+    except ValueError:
+        raise InputError(f"{subject} has rows of different lengths; all need as many entries") from None
+
+
+def truth_value(value: Any, subject: str) -> bool:
+    """True or False, also as 0 and 1; InputTypeError for anything else."""
+    if isinstance(value, (bool, np.bool_)) or (isinstance(value, (int, np.integer)) and value in (0, 1)):
+        return bool(value)
+    raise InputTypeError(f"{subject} is {shown(value)}; give True or False")
 
 
 def as_arrays(

@@ -22,6 +22,7 @@ __all__ = [
     "TimeLimitError",
     "UnknownNameError",
     "attribute_error",
+    "check_kind",
     "check_known",
     "keyword_error",
     "name_new_keywords",
@@ -96,9 +97,18 @@ RENAMED: Final = MappingProxyType(
 FOREIGN_WORDS: Final = MappingProxyType(
     {
         "a*": "a_star",
+        "amcl": "mcl",
         "astar": "a_star",
         "d*": "d_star_lite",
+        "fast_slam": "fastslam",
+        "gmapping": "graph",
+        "kalman": "ekf",
         "local": "tip",
+        "particle": "mcl",
+        "particle_filter": "mcl",
+        "particles": "mcl",
+        "pf": "mcl",
+        "slam_toolbox": "graph",
         "theta*": "theta_star",
         "world": "base",
     }
@@ -201,6 +211,12 @@ def check_known(subject: str, name: object, known: Iterable[str]) -> None:
     """The error of suggest, raised for a value that is none of the known names."""
     if not (isinstance(name, str) and name in known):
         raise suggest(subject, name, known)
+
+
+def check_kind(subject: str, value: object, kind: type | tuple[type, ...], remedy: str) -> None:
+    """InputTypeError for a value that is of none of some classes, with what to give instead."""
+    if not isinstance(value, kind):
+        raise InputTypeError(f"{subject} is a {type(value).__name__}; {remedy}")
 
 
 def keyword_error(text: str) -> TypeError:

@@ -228,6 +228,13 @@ RUN_CELLS: Final = 1 << 28
 """Most cells of a grid that is searched over runs: its corners are numbered in rows as long as the next power
 of two, which fits into 31 bits then."""
 
+MOST_MARKS: Final = 10_000_000
+"""Most times at equal distances along a log: an hour at 3 kHz."""
+
+WIDEST_BELL: Final = 100
+"""Largest standard deviation of the bell of a point that scans are matched with, in cells; the core has the
+same number. Its stamps take 16 MB."""
+
 WIDEST_SIGMA: Final = 200
 """Largest standard deviation of a likelihood field, in cells: its table by squared distance then has half a
 million entries, and bytes no longer tell the distances of neighbouring cells apart."""

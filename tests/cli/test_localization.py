@@ -11,6 +11,7 @@ import cspace as cs
 from cli.run import cspace
 from cli.schema import check
 from cspace.cli.exits import Exit
+from cspace.localization import simulate
 from data import ROOT
 
 DRIVE = ROOT / "examples/small_drive"
@@ -44,6 +45,79 @@ def test_a_map_and_a_start_may_be_given(tmp_path):
     result = cspace(line)
     assert result.code == Exit.BAD_FILE
     assert f"{landmarks}:1: a map of landmarks has lines NAME X Y" in result.err
+
+
+def write_room(folder):
+    """A ROS map of a room in unknown space, and a log of its laser, as a folder of files; the frame of the
+    map is turned and shifted against that of the reference poses."""
+    blocked = np.zeros((60, 90), dtype=bool)
+    blocked[[0, -1]] = blocked[:, [0, -1]] = blocked[20:30, 40:55] = blocked[:12, 70:74] = True
+    room = cs.OccupancyGrid(blocked, 0.1, (-1.0, -2.0))
+    run = cs.navigation.follow([(0, 0), (6, 0), (6.5, 2.5), (0.5, 3)], vehicle=cs.Unicycle(), world=room)
+    log = simulate(run, room, cs.LaserScanner(most_range=9.0), period=0.4, rng=3)
+    cells = np.pad(np.where(blocked, 1.0, 0.0), 25, constant_values=np.nan)
+    cs.maps.EvidenceGrid.from_probability(cells, 0.1, (-3.5, -4.5)).save_ros(folder / "room.yaml")
+    lines = []
+    for time, pose in zip(log.odometry.times, log.odometry.dead_reckoning().poses, strict=True):
+        lines.append((time, "ODOM {:.6f} {:.6f} {:.6f} 0 0 0 {t:.4f} nohost {t:.4f}".format(*pose, t=time)))
+    for k, time in enumerate(log.scans.times):
+        ranges = " ".join(f"{r:.3f}" for r in np.nan_to_num(log.scans.ranges[k], nan=81.0, posinf=81.0))
+        pose = "{:.6f} {:.6f} {:.6f}".format(*log.truth.at(time))
+        head = f"ROBOTLASER1 0 {log.scans.angles[0]:.6f} {np.ptp(log.scans.angles):.6f} "
+        head += f"{log.scans.angles[1] - log.scans.angles[0]:.6f} 80 0.01 0 {len(log.scans.angles)} "
+        tail = f" 0 {pose} {pose} 0 0 0 0 0 {time:.4f} nohost {time:.4f}"
+        lines.append((time, head + ranges + tail))
+    (folder / "drive.log").write_text("\n".join(text for _, text in sorted(lines)) + "\n")
+    return log
+
+
+@pytest.mark.parametrize("name", ["mcl", "histogram"])
+def test_unknown_cells_of_a_ros_map_are_no_walls(tmp_path, name):
+    """A map of SLAM is mostly unknown: were that solid, every scan would fit there."""
+    log = write_room(tmp_path)
+    saved = tmp_path / "found.tum"
+    line = f"localize {tmp_path / 'drive.log'} --map {tmp_path / 'room.yaml'} --filter {name} --json"
+    result = cspace(f"{line} --seed 5 --save", saved)
+    assert result.code == Exit.DONE, result.out
+    assert np.hypot(*(cs.localization.read_poses(saved).poses[-1] - log.truth.poses[-1])[:2]) < 0.2
+
+
+def test_the_map_of_slam_is_saved_and_localises_in_its_own_frame(tmp_path):
+    pytest.importorskip("matplotlib")
+    log = write_room(tmp_path)
+    drive, saved, found = (tmp_path / name for name in ("drive.log", "made.yaml", "found.tum"))
+    made = cspace(f"slam {drive} --json --save-map {saved} --plot {tmp_path / 'slam.png'}")
+    assert made.code == Exit.DONE
+    assert str(saved) in made.json["written"]
+    assert cs.maps.EvidenceGrid.from_ros(saved).known.any()
+    line = f"localize {drive} --map {saved} --filter mcl --seed 5 --start 0 0 0"
+    assert cspace(f"{line} --save {found} --plot {tmp_path / 'run.png'}").code == Exit.DONE
+    assert cs.ate(cs.localization.read_poses(found), log.truth, interpolate=True).rmse < 0.1
+
+
+def test_errors_on_a_map_with_another_frame_are_those_after_alignment(tmp_path):
+    moved = cs.pose_2d(xytheta=[3.0, -1.0, 2.0])
+    log = cs.read_log(DRIVE)
+    known, first = log.landmarks, log.truth.at(log.odometry.times[0])
+    points = known.points @ moved[:2, :2].T + moved[:2, 2]
+    for name, there in (("here.txt", known.points), ("map.txt", points)):
+        np.savetxt(tmp_path / name, np.column_stack([known.names, there]), fmt=("%d", "%.9f", "%.9f"))
+    start = cs.to_xytheta(moved @ cs.pose_2d(xytheta=first))
+    line = f"localize {DRIVE} --map {tmp_path / 'map.txt'} --start {start[0]} {start[1]} {start[2]}"
+    here = cspace(f"localize {DRIVE} --map {tmp_path / 'here.txt'} --align se2 --json").json["rmse"]
+    assert cspace(f"{line} --align se2 --json").json["rmse"] == pytest.approx(here, rel=1e-6)
+    assert "with --align se2: map and truth have other frames" in cspace(line).out
+
+
+def test_a_folder_of_several_robots_is_evaluated_with_the_one_that_is_named(tmp_path):
+    two = tmp_path / "two"
+    shutil.copytree(DRIVE, two)
+    for kind in ("Odometry", "Measurement", "Groundtruth"):
+        shutil.copy(two / f"Robot1_{kind}.dat", two / f"Robot2_{kind}.dat")
+    assert cspace(f"evaluate {two} {two} --robot 2 --json").json["ate"]["max"] == 0.0
+    refused = cspace(f"evaluate {two} {two}")
+    assert refused.code == Exit.USAGE
+    assert "holds robots 1, 2; say which one" in refused.err
 
 
 def test_a_lost_robot_ends_in_one(tmp_path):
@@ -104,7 +178,12 @@ def test_slam_of_landmarks(tmp_path):
         (f"localize {DRIVE} --filter kalman", Exit.USAGE, "invalid choice: 'kalman'"),
         (f"localize {DRIVE} --animate run.png", Exit.USAGE, "does not end with .gif"),
         (f"localize {GRAPH}", Exit.BAD_FILE, "belongs to a pose graph"),
-        (f"slam {DRIVE}", Exit.USAGE, "the log has no scans"),
+        (f"slam {DRIVE}", Exit.USAGE, "take --method ekf or fastslam"),
+        (f"slam {DRIVE} --method ekf --save-map x.yaml", Exit.USAGE, "makes no map of cells"),
+        (f"slam {DRIVE} --save-map x.png", Exit.USAGE, "does not end with .yaml"),
+        (f"slam {GRAPH} --save-map x.yaml", Exit.USAGE, "are for logs"),
+        (f"localize {DRIVE} --map x.png --filter mcl", Exit.USAGE, "--resolution 0.05"),
+        (f"localize {DRIVE} --map x.yaml --resolution 1", Exit.USAGE, "--resolution is for images"),
         (f"slam {GRAPH} --method ekf", Exit.USAGE, "are for logs"),
         (f"slam {DRIVE} --robust dcs", Exit.USAGE, "is for pose graphs"),
         (f"slam {DRIVE} --method ekf --save x.g2o", Exit.USAGE, "has no pose graph"),

@@ -1,6 +1,7 @@
 // Laws of scan matching: window sums and searches equal plain loops, pooled bounds are bounds, cliques agree
 // pairwise, a drive around a square room closes.
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "check.hpp"
@@ -127,6 +128,20 @@ TEST(views_contain_what_lies_between_their_edges) {
         CHECK(view.contains(pose, place) == (inside * range > FieldOfView::margin));
         CHECK(FieldOfView{}.contains(pose, place));
     }
+}
+
+TEST(bells_of_no_size_and_of_too_many_cells_are_refused) {
+    const auto refuses = [](double resolution, double sigma) {
+        try {
+            (void)make_point_field(see_room({}, 36), resolution, sigma);
+        } catch (const std::invalid_argument&) {
+            return true;
+        }
+        return false;
+    };
+    CHECK(!refuses(0.05, 0.05 * PointStamp::widest));
+    for (const double cells : {1.01 * PointStamp::widest, 1e9, 1e300, 0.0, -1.0, std::nan("")})
+        CHECK(refuses(0.05, 0.05 * cells));
 }
 
 TEST(members_of_a_clique_agree) {

@@ -587,7 +587,7 @@ def test_a_misuse_is_named():
         EkfSlam(start_covariance=-np.eye(3))
     with pytest.raises(InputError, match="increment"):
         EkfSlam().predict([0.0, np.nan, 0.0])
-    with pytest.raises(InputError, match="duration"):
+    with pytest.raises(InputError, match="dt is"):
         EkfSlam().predict([0.0, 0.0, 0.0], -1.0)
     log = log_of(1, 5.0)
     with pytest.raises(TimeLimitError, match="time_limit"):

@@ -27,6 +27,7 @@ from cspace.localization import (
 from cspace.localization.filters.rows import relate_rows
 from cspace.localization.particles.beam_model import CELL, BeamTable
 from cspace.localization.particles.models import Judgement
+from cspace.localization.particles.models import ScanModel
 from cspace.localization.particles.recovery import FIRST_SCORES, ScoreMonitor
 from cspace.localization.particles.thinning import thin_ends
 from cspace.maps import OccupancyGrid
@@ -82,6 +83,28 @@ def route(points, speed=0.5, dt=0.1):
 
 
 WAY = [(2.0, 2.0), (7.5, 2.0), (7.5, 5.5), (3.6, 6.2), (3.6, 9.5), (6.5, 13.0)]
+
+
+def test_no_scan_fits_inside_of_what_is_solid():
+    """Beams end on surfaces. Solid are cells that a ROS map does not know, and the ground about a house."""
+    rng = np.random.default_rng(2)
+    for _ in range(8):
+        blocked = np.ones((90, 120), dtype=bool)
+        top, left = rng.integers(25, 40, 2)
+        blocked[top : top + 40, left : left + 50] = False
+        grid = OccupancyGrid(blocked, 0.1)
+        inside = grid.origin + 0.1 * np.array([left + 25.0, top + 20.0])
+        angles = np.linspace(-np.pi, np.pi, 60)
+        reach = cs.maps.cast_rays(grid, inside, angles)
+        pf = ParticleFilter(grid, start=(*inside, 0.0), rng=1)
+        scan = Scans([0.0], reach[None], angles)
+        pf.update(scan)
+        model = ScanModel(grid, LaserScanner())
+        cloud = _core.ParticleCloud(2, 1)
+        cloud.place(np.array([[*(inside - 10.0), 0.0], [1.0, 1.0, 0.4]]))
+        solid = model.weigh(cloud, Scans([0.0], np.full((1, 60), 0.3), angles), 0.0, 1)
+        assert pf.score > 0.85
+        assert solid < 0.2
 
 
 # --- draws ----------------------------------------------------------------------------------------------

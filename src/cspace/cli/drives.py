@@ -13,8 +13,13 @@ from cspace.cli.exits import UsageError
 from cspace.cli.output import Output, check_format, check_writable
 from cspace.errors import CspaceError
 
-GRIDS: Final = {".yaml", ".yml", ".map", ".png", ".pgm"}
+ROS_MAPS: Final = {".yaml", ".yml"}
+IMAGES: Final = {".png", ".pgm"}
+GRIDS: Final = ROS_MAPS | IMAGES | {".map"}
 """Endings of maps of cells; other files are lists of landmarks."""
+
+OTHER_FRAME: Final = 0.5
+"""The error after alignment, over the one before it, below which the frame is what differs."""
 
 
 def add_pictures(parser: argparse.ArgumentParser, what: str) -> None:
@@ -35,7 +40,15 @@ def check_pictures(args: argparse.Namespace) -> None:
 
 
 def load_map(path: Path, resolution: float | None) -> Any:
-    """A grid, or Landmarks of a text file."""
+    """A grid, or Landmarks of a text file. Unknown cells of a ROS map stay unknown: walls they are not."""
+    if path.suffix.lower() in ROS_MAPS:
+        from cspace.maps import EvidenceGrid
+
+        if resolution is not None:
+            raise UsageError(f"--resolution is for images; {path} says how large its cells are")
+        return EvidenceGrid.from_ros(path)
+    if path.suffix.lower() in IMAGES and resolution is None:
+        raise UsageError(f"{path} is an image; say how large its cells are, --resolution 0.05")
     if path.suffix.lower() in GRIDS:
         from cspace.cli.verbs.nav import load_world
 
@@ -76,6 +89,14 @@ def describe_drive(answer: Any) -> dict[str, Any]:
         "poses": answer.poses.tolist(),
         "deviations": np.sqrt(np.einsum("nii->ni", answer.covariances).clip(0.0)).tolist(),
     }
+
+
+def say_errors(answer: Any, truth: Any, error: float | None) -> str:
+    """The RMSE, and where the map has another frame than the truth also that after the best motion."""
+    aligned = measure_error(answer, truth, "se2") if error is not None else None
+    if error is None or aligned is None or aligned > OTHER_FRAME * error:
+        return say_length(error)
+    return f"{say_length(error)}, {say_length(aligned)} with --align se2: map and truth have other frames"
 
 
 def draw_drive(args: argparse.Namespace, answer: Any, log: Any, world: Any, align: str | None) -> list[str]:

@@ -7,12 +7,13 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError
+from cspace.errors import InputError, check_kind
 from cspace.localization.filters.measurements import see_point
 from cspace.localization.log import UNKNOWN, Landmarks, Readings
 from cspace.localization.sensors import RangeBearing
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile import TimedPoses
+from cspace.mobile.timed_poses import NO_REFERENCE
 
 MOST_DELAY: Final = 0.5
 """Largest delay [s], either way, that is tried."""
@@ -34,6 +35,9 @@ def calibrate_sensor(
     longest gap of the reference to interpolate in [s]. Raises InputError for fewer than 20 readings that can
     be compared.
     """
+    check_kind("readings", readings, Readings, "give cspace.localization.Readings, such as log.readings")
+    check_kind("landmarks", landmarks, Landmarks, "give cspace.localization.Landmarks, such as log.landmarks")
+    check_kind("reference", reference, TimedPoses, NO_REFERENCE)
     named = readings.subset(readings.landmark != UNKNOWN)
     points = landmarks.points[landmarks.rows_of(named.landmark)]
 

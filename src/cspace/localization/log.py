@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, one_array, one_number, positive_number
+from cspace.arrays import Array, as_floats, one_array, one_number, positive_number
 from cspace.errors import InputError
 from cspace.mobile import Odometry, TimedPoses
 from cspace.mobile.timed_poses import read_rows, read_times
@@ -155,6 +155,10 @@ class Fixes:
         return len(self.times)
 
 
+LARGEST_RANGE = float(np.finfo(np.float32).max)
+"""The largest range that float32 holds; a larger one is no return."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Scans:
     """Scans of a planar laser range finder.
@@ -174,7 +178,8 @@ class Scans:
     def __post_init__(self) -> None:
         object.__setattr__(self, "times", read_times(self.times))
         object.__setattr__(self, "angles", one_array(self.angles, "angles", (None,)))
-        ranges = np.ascontiguousarray(self.ranges, dtype=np.float32)
+        numbers = as_floats(self.ranges, "ranges", finite=False)
+        ranges = np.ascontiguousarray(np.where(numbers > LARGEST_RANGE, np.inf, numbers), dtype=np.float32)
         if ranges.shape != (len(self.times), len(self.angles)):
             raise InputError(
                 f"ranges has shape {ranges.shape}; expected a row per time and a column per angle,"
@@ -258,11 +263,15 @@ SENSED = ("scans", "readings", "headings", "fixes")
 """The kinds of measurements of a log, in the order in which equal times are merged."""
 
 
+LARGEST_NAME = 2**53
+"""The largest name of a landmark: float64 tells whole numbers apart up to it."""
+
+
 def read_names(values: npt.ArrayLike, subject: str, count: int | None) -> Ids:
     """Names of landmarks as whole numbers; InputError for others, or another number of them."""
     numbers = one_array(values, subject, (None,))
-    if (numbers != np.round(numbers)).any():
-        raise InputError(f"{subject} must be whole numbers; number the landmarks from 0")
+    if (numbers != np.round(numbers)).any() or (np.abs(numbers) > LARGEST_NAME).any():
+        raise InputError(f"{subject} must be whole numbers up to 2⁵³; number the landmarks from 0")
     if count is not None and len(numbers) != count:
         raise InputError(f"{subject} has {len(numbers)} rows; expected {count}, one per row")
     return numbers.astype(np.int64)
@@ -270,7 +279,7 @@ def read_names(values: npt.ArrayLike, subject: str, count: int | None) -> Ids:
 
 def read_column(values: npt.ArrayLike, subject: str, count: int) -> Array:
     """A column in which NaN means not measured; InputError for infinity, or another number of rows."""
-    column = np.array(values, dtype=np.float64, ndmin=1)
+    column = np.array(as_floats(values, subject, finite=False), ndmin=1)
     if column.shape != (count,):
         raise InputError(f"{subject} has shape {column.shape}; expected ({count},), one number per time")
     if np.isinf(column).any():

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, pi
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
 from cspace.arrays import Array, bounded_number, one_array, one_number, positive_number, whole_number
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError, check_kind, check_known
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class RangeBearing:
         for name in ("range_bias", "bearing_bias", "delay"):
             object.__setattr__(self, name, one_number(getattr(self, name), name))
         object.__setattr__(self, "mount", tuple(map(float, one_array(self.mount, "mount", (3,)))))
-        if self.most_range != inf:
+        if not is_unlimited(self.most_range):
             set_positive(self, "most_range")
         if self.bearing_sigma > pi:
             raise InputError(f"bearing_sigma is {self.bearing_sigma:g} rad; give radians, below π")
@@ -45,8 +45,7 @@ class RangeBearing:
 @dataclass(frozen=True)
 class Compass:
     """A sensor of the heading. sigma [rad]: its standard deviation. bias [rad]: what it reads too much, such
-    as
-    the declination. Raises InputError for a deviation that is not above zero."""
+    as the declination. Raises InputError for a deviation that is not above zero."""
 
     sigma: float = 0.05
     bias: float = 0.0
@@ -59,8 +58,7 @@ class Compass:
 @dataclass(frozen=True)
 class Gps:
     """A sensor of its own position. sigma [m]: standard deviation of x and of y. lever (2,): where on base
-    its
-    antenna is [m]. Raises InputError for a deviation that is not above zero."""
+    its antenna is [m]. Raises InputError for a deviation that is not above zero."""
 
     sigma: float = 2.0
     lever: tuple[float, float] = (0.0, 0.0)
@@ -111,8 +109,7 @@ class LaserScanner:
     mount: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        if self.model not in LASER_MODELS:
-            raise suggest("model of a laser scanner", self.model, LASER_MODELS)
+        check_known("model of a laser scanner", self.model, LASER_MODELS)
         set_positive(self, "independent", "sigma", "most_range", "range_sigma", "short_rate", "field_of_view")
         for name in ("beams", "readings"):
             object.__setattr__(self, name, whole_number(getattr(self, name), name, 1, MOST_BEAMS))
@@ -143,10 +140,27 @@ class LaserScanner:
         return self.hit / total, self.short / total, self.max / total, self.rand / total
 
 
+Sensor = TypeVar("Sensor", RangeBearing, LaserScanner, Compass, Gps)
+
+
+def read_sensor(sensor: object, kind: type[Sensor], subject: str = "sensor") -> Sensor:
+    """A sensor of a kind, with its defaults where none is given."""
+    if sensor is None:
+        return kind()
+    check_kind(subject, sensor, kind, f"give a cspace.localization.{kind.__name__}(...)")
+    assert isinstance(sensor, kind)
+    return sensor
+
+
 def set_positive(sensor: RangeBearing | Compass | Gps | LaserScanner, *names: str) -> None:
     """InputError for a field that is no number above zero."""
     for name in names:
         object.__setattr__(sensor, name, positive_number(getattr(sensor, name), name))
+
+
+def is_unlimited(value: object) -> bool:
+    """Whether a value is the number inf."""
+    return isinstance(value, (float, np.floating)) and value == inf
 
 
 def read_share(value: float, subject: str) -> float:

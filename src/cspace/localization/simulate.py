@@ -8,13 +8,16 @@ import numpy as np
 
 from cspace.arrays import Array, as_generator, positive_number
 from cspace.errors import InputError, InputTypeError
+from cspace.localization.checks import suggest_map
 from cspace.localization.filters.measurements import see_point
 from cspace.localization.filters.rows import follow_rows
 from cspace.localization.log import Landmarks, Log, Readings, Scans
-from cspace.localization.sensors import LaserScanner, RangeBearing
+from cspace.localization.sensors import LaserScanner, RangeBearing, read_sensor
 from cspace.maps import cast_rays
 from cspace.math.wrapping import wrap_angle
-from cspace.mobile import MotionNoise, Odometry, RandomWalk, TimedPoses
+from cspace.mobile import MotionNoise, Odometry, TimedPoses
+from cspace.mobile.noise import read_noise
+from cspace.mobile.timed_poses import mark_times
 from cspace.spatial import exp_se2, log_se2, pose_2d
 
 
@@ -35,23 +38,26 @@ def simulate(
     measured one with noise added, as the filters assume. rng: int, Generator or None.
     """
     generator = as_generator(rng)
+    if not hasattr(run, "times") or not hasattr(run, "poses"):
+        raise InputTypeError(f"run is a {type(run).__name__}; give what navigation.follow returns")
     truth = TimedPoses(run.times, run.poses)
     if not len(truth):
         raise InputError("the run has no poses; simulate needs one at least")
-    odometry = disturb_odometry(
-        Odometry.from_poses(truth.times, truth.poses), noise or RandomWalk(), generator
-    )
-    marks = np.arange(truth.times[0], truth.times[-1], positive_number(period, "period"))
+    odometry = disturb_odometry(Odometry.from_poses(truth.times, truth.poses), read_noise(noise), generator)
+    marks = mark_times(truth.times[0], truth.times[-1], positive_number(period, "period"), "period")
     rows = np.unique(np.searchsorted(truth.times, marks))
     times, poses = truth.times[rows], truth.poses[rows]
     if isinstance(landmarks, Landmarks):
         if isinstance(sensor, LaserScanner):
             raise InputTypeError("sensor is a LaserScanner; landmarks are read by a RangeBearing")
-        readings = draw_readings(times, poses, landmarks, sensor or RangeBearing(), generator)
+        readings = draw_readings(times, poses, landmarks, read_sensor(sensor, RangeBearing), generator)
         return Log(odometry, readings=readings, landmarks=landmarks, truth=truth)
+    if not hasattr(landmarks, "to_grid"):
+        what = f"landmarks is a {type(landmarks).__name__}, which is no map"
+        raise InputTypeError(f"{what}; {suggest_map(landmarks)}")
     if isinstance(sensor, RangeBearing):
         raise InputTypeError("sensor is a RangeBearing; a grid is scanned by a LaserScanner")
-    scans = draw_scans(times, poses, landmarks, sensor or LaserScanner(), generator)
+    scans = draw_scans(times, poses, landmarks, read_sensor(sensor, LaserScanner), generator)
     return Log(odometry, scans=scans, truth=truth)
 
 

@@ -130,7 +130,7 @@ class EvidenceGrid:
         cls, probability: ArrayLike, resolution: float = 1.0, origin: ArrayLike = (0.0, 0.0)
     ) -> EvidenceGrid:
         """A grid of probabilities (rows, columns) from 0 to 1, NaN and ½ where unknown; origin (2,) [m]."""
-        given = np.asarray(probability, dtype=np.float64)
+        given = as_floats(probability, "probability", finite=False)
         if given.ndim != 2 or not given.size:
             raise InputError(f"probability has shape {given.shape}; expected (rows, columns), at least one")
         bad = given[~((given >= 0) & (given <= 1)) & ~np.isnan(given)]

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.spatial import adjoint_2d, as_pose_2d, exp_se2, right_jacobian_se2
+from cspace.tolerances import FARTHEST_POINT
 
 
 def drive(T_map_base: Any, twist: npt.ArrayLike, dt: npt.ArrayLike) -> Array:
@@ -58,6 +59,7 @@ def chain_increments(start: Array, increments: Array) -> Array:
 
 
 def _steps(twist: npt.ArrayLike, dt: npt.ArrayLike) -> tuple[Array, Array]:
-    xi, time = as_floats(twist, "twist", last=(3,)), as_floats(dt, "dt")
+    xi = as_floats(twist, "twist", last=(3,), largest=FARTHEST_POINT)
+    time = as_floats(dt, "dt", largest=FARTHEST_POINT)
     leading_axes(twist=xi.shape[:-1], dt=time.shape)
     return xi, time

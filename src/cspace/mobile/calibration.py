@@ -10,12 +10,12 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, positive_number
-from cspace.errors import InputError
+from cspace.arrays import Array, one_array, positive_number
+from cspace.errors import InputError, check_kind
 from cspace.math.wrapping import wrap_angle, wrap_near
 from cspace.mobile.noise import RandomWalk
 from cspace.mobile.odometry import Odometry
-from cspace.mobile.timed_poses import TimedPoses
+from cspace.mobile.timed_poses import NO_REFERENCE, TimedPoses, mark_times, read_times
 from cspace.mobile.wheels import DifferentialDrive
 from cspace.tables import one_line
 
@@ -68,6 +68,8 @@ def calibrate(
     The covariance is that of ordinary least squares. Raises InputError where the two have too little time in
     common, or the robot neither drove nor turned.
     """
+    check_kind("odometry", odometry, Odometry, "give cspace.mobile.Odometry, such as log.odometry")
+    check_kind("reference", reference, TimedPoses, NO_REFERENCE)
     share = positive_number(part, "part", "it must be above 0 and at most 1", largest=1.0)
     if window is None:
         window = choose_window(odometry, reference, 0.5 * share, max_gap)
@@ -147,7 +149,8 @@ def cut_windows(
     known = np.flatnonzero(np.isfinite(poses[:, 0]))
     if not len(known):
         return known, poses
-    marks = np.arange(odometry.times[known[0]], odometry.times[known[-1]] + window, window)
+    begin, end = odometry.times[known[0]], odometry.times[known[-1]]
+    marks = mark_times(begin, end + window, window, "window")
     chosen = known[np.minimum(np.searchsorted(odometry.times[known], marks), len(known) - 1)]
     return np.unique(chosen), poses
 
@@ -288,8 +291,9 @@ def calibrate_wheels(
     positions are linear in the track. Raises InputError where the drive does not determine them. Source:
     Censi et al. 2013.
     """
-    turns = np.asarray(wheels, dtype=np.float64)
-    unit = Odometry(np.asarray(times, dtype=np.float64), np.column_stack([turns, np.zeros(len(turns))]))
+    check_kind("reference", reference, TimedPoses, NO_REFERENCE)
+    turns = one_array(wheels, "wheels", (None, 2), "turns of the left and the right wheel [rad]")
+    unit = Odometry(read_times(times), np.column_stack([turns, np.zeros(len(turns))]))
     rows, poses = cut_windows(unit, reference, positive_number(window, "window"), max_gap)
     if len(rows) - 1 < FEWEST_WINDOWS:
         raise InputError(

@@ -11,11 +11,12 @@ import numpy.typing as npt
 
 from cspace import tolerances
 from cspace.arrays import Array, as_floats, as_generator, bounded_number, leading_axes
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile.arcs import arc_jacobians
 from cspace.spatial import adjoint_2d, exp_se2, log_se2, pose_2d, to_xytheta
 from cspace.spatial.twists import sinc
+from cspace.tolerances import FARTHEST_POINT
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
 BACKWARDS, SHARES = -0.5 * (1.0 + NODES), 0.5 * WEIGHTS
@@ -238,9 +239,26 @@ def disturb_steps(xi: Array, Q: Array, rng: np.random.Generator) -> Array:
     return log_se2(exp_se2(xi) @ exp_se2(np.einsum("...ij,...j->...i", vectors, normal)))
 
 
+def read_noise(noise: object, subject: str = "noise") -> MotionNoise:
+    """A model of noise, a RandomWalk where none is given; InputTypeError for anything else."""
+    if noise is None:
+        return RandomWalk()
+    if isinstance(noise, type) or not callable(getattr(noise, "covariance", None)) or hasattr(noise, "poses"):
+        raise InputTypeError(
+            f"{subject} is {_say_kind(noise)}; give a model of noise such as cspace.mobile.RandomWalk()"
+        )
+    model: MotionNoise = noise  # type: ignore[assignment]
+    return model
+
+
+def _say_kind(value: object) -> str:
+    return f"the class {value.__name__}" if isinstance(value, type) else f"a {type(value).__name__}"
+
+
 def read_steps(steps: npt.ArrayLike, dt: npt.ArrayLike) -> tuple[Array, Array]:
     """Steps (..., 3) and durations (...), broadcast; InputError for a duration below zero."""
-    xi, time = as_floats(steps, "steps", last=(3,)), as_floats(dt, "dt")
+    xi = as_floats(steps, "steps", last=(3,), largest=FARTHEST_POINT)
+    time = as_floats(dt, "dt", largest=FARTHEST_POINT)
     if (time < 0).any():
         raise InputError(f"dt is {time.min():g} s; durations are not below zero")
     shape = leading_axes(steps=xi.shape[:-1], dt=time.shape)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats, one_array, one_number, positive_number, whole_number
+from cspace.arrays import Array, any_array, as_floats, one_array, one_number, positive_number, whole_number
 from cspace.errors import InputError
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile.arcs import chain_increments
-from cspace.mobile.timed_poses import TimedPoses, read_rows, read_times
+from cspace.mobile.timed_poses import TimedPoses, find_between, read_rows, read_times
 from cspace.mobile.wheels import WheelBase
 from cspace.spatial import exp_se2, inverse_pose_2d, log_se2, pose_2d, to_xytheta
 from cspace.tables import count_things, one_line
@@ -57,7 +57,7 @@ class Odometry:
         rad/s].
         """
         checked = read_times(times)
-        rows = one_array(twists, "twists", (None, 3))
+        rows = one_array(twists, "twists", (None, 3), "vx, vy [m/s], ω [rad/s]")
         if len(rows) == len(checked):
             rows = rows[:-1]
         return cls(checked, read_steps(rows, "twists", checked) * np.diff(checked)[:, None])
@@ -156,15 +156,14 @@ class Odometry:
 
     def between(self, first: float, last: float) -> Odometry:
         """The steps that begin at or after first and end at or before last [s]."""
-        keep = np.flatnonzero((self.times >= first) & (self.times <= last))
+        keep = np.flatnonzero(find_between(self.times, first, last))
         if not len(keep):
             return Odometry(np.empty(0), np.empty((0, 3)))
         return Odometry(self.times[keep], self.steps[keep[0] : keep[-1]])
 
     def corrected(self, *, distance: float = 1.0, turn: float = 1.0, drift: float = 0.0) -> Odometry:
         """The odometry with systematic errors taken out: vx and vy times `distance`, ω times `turn`, plus
-        `drift`
-        [rad/m] for each metre forwards, as cspace.mobile.calibrate finds them."""
+        `drift` [rad/m] for each metre forwards, as cspace.mobile.calibrate finds them."""
         k_d, k_r, k_m = (
             one_number(value, name)
             for value, name in ((distance, "distance"), (turn, "turn"), (drift, "drift"))
@@ -182,7 +181,7 @@ def wheel_angles(ticks: npt.ArrayLike, *, per_turn: float, bits: int | None = No
     width.
     """
     scale = 2.0 * np.pi / positive_number(per_turn, "per_turn")
-    counts = np.asarray(ticks)
+    counts = any_array(ticks, "ticks")
     if counts.ndim != 2:
         raise InputError(
             f"ticks has shape {counts.shape}; give a row per time and a counter per wheel, (n, k)"

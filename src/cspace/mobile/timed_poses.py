@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats, one_array
-from cspace.errors import InputError
+from cspace.errors import InputError, shown
 from cspace.math.wrapping import wrap_angle
 from cspace.tables import count_things, one_line
+from cspace.tolerances import MOST_MARKS
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,17 +48,18 @@ class TimedPoses:
         NaN outside of the times, and inside of gaps longer than max_gap [s].
         """
         when = as_floats(times, "times")
+        longest = read_limit(max_gap, "max_gap")
         if not len(self.times):
             return np.full((*when.shape, 3), np.nan)
         columns = [self.poses[:, 0], self.poses[:, 1], np.unwrap(self.poses[:, 2])]
         found = np.stack([np.interp(when, self.times, column) for column in columns], axis=-1)
         found[..., 2] = wrap_angle(found[..., 2])
-        found[self._is_unknown(when, max_gap)] = np.nan
+        found[self._is_unknown(when, longest)] = np.nan
         return found
 
     def between(self, first: float, last: float) -> TimedPoses:
         """The poses (n, 3) with times from first to last [s]."""
-        keep = (self.times >= first) & (self.times <= last)
+        keep = find_between(self.times, first, last)
         covariances = None if self.covariances is None else self.covariances[keep]
         return TimedPoses(self.times[keep], self.poses[keep], covariances)
 
@@ -66,6 +68,10 @@ class TimedPoses:
         after = np.clip(np.searchsorted(self.times, when, side="left"), 0, len(self.times) - 1)
         before = np.clip(np.searchsorted(self.times, when, side="right") - 1, 0, None)
         return np.asarray(outside | (self.times[after] - self.times[before] > max_gap))
+
+
+NO_REFERENCE: Final = "give TimedPoses, such as log.truth; a log without reference poses has none"
+"""What is wrong where reference poses are needed."""
 
 
 def read_times(times: npt.ArrayLike, subject: str = "times") -> Array:
@@ -79,6 +85,29 @@ def read_times(times: npt.ArrayLike, subject: str = "times") -> Array:
             " rows by time, or mend the clock"
         )
     return numbers
+
+
+def read_limit(value: Any, subject: str) -> float:
+    """One number, infinite ones too; InputError for others, and NaN."""
+    number = as_floats(value, subject, finite=False)
+    if number.ndim or np.isnan(number):
+        raise InputError(f"{subject} is {shown(value)}; it must be one number")
+    return float(number)
+
+
+def find_between(times: Array, first: Any, last: Any) -> npt.NDArray[np.bool_]:
+    """Which times (n,) lie from first to last."""
+    return (times >= read_limit(first, "first")) & (times <= read_limit(last, "last"))
+
+
+def mark_times(first: float, end: float, step: float, subject: str) -> Array:
+    """Times from first at equal distances [s] up to before end; InputError for too many of them."""
+    if not (end - first) / step <= MOST_MARKS:
+        raise InputError(
+            f"{subject} is {step:g} s, and the log {end - first:g} s long; give at least"
+            f" {(end - first) / MOST_MARKS:g} s"
+        )
+    return np.arange(first, end, step)
 
 
 def read_rows(values: npt.ArrayLike, subject: str, times: npt.NDArray[Any], last: tuple[int, ...]) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats, positive_number
-from cspace.errors import InputError
+from cspace.errors import InputError, check_kind
 from cspace.mobile.wheels import DifferentialDrive
 from cspace.tables import one_line
 
@@ -51,6 +51,7 @@ def umbmark(
     side. E_b = 90°/(90° − α), R = (L/2)/sin(β/2), E_d = (R + b/2)/(R − b/2); α and β are the means of these
     and of the same from x. Source: Borenstein & Feng 1996, type A and type B errors.
     """
+    check_kind("vehicle", vehicle, DifferentialDrive, "give a DifferentialDrive(wheel_radius, track)")
     length = positive_number(side, "side")
     cw, ccw = (
         mean_end(ends, name)

@@ -228,7 +228,8 @@ def check_sizes(vehicle: WheelBase, names: tuple[str, ...] = ()) -> None:
     known = [field.name for field in fields(vehicle)]  # type: ignore[arg-type]
     for name in names or [name for name in known if name not in ("angles", "max_wheel_speed")]:
         object.__setattr__(vehicle, name, positive_number(getattr(vehicle, name), name))
-    if vehicle.max_wheel_speed != inf:
+    limit: object = vehicle.max_wheel_speed
+    if not (isinstance(limit, (float, np.floating)) and limit == inf):
         least = np.finfo(np.float64).smallest_subnormal
         speed = bounded_number(
             vehicle.max_wheel_speed, "max_wheel_speed", least, "give one number above zero, or inf"

@@ -49,7 +49,7 @@ def animate_run(
     given, axes = ax is not None, flat_axes(ax)
     known = world if world is not None else getattr(answer, "landmarks", None)
     draw_map(axes, known, np.eye(3))
-    if not given and not hasattr(known, "kind") and not hasattr(known, "to_grid"):
+    if not given and not hasattr(known, "kind"):
         frame_points(axes, [answer.poses, *([] if truth is None else [truth.poses])], known)
     axes.set(xlabel="x [m]", ylabel="y [m]")
     stage = Stage(axes, answer, truth, scans, count)

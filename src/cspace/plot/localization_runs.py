@@ -107,15 +107,14 @@ def draw_drive(panel: Any, answer: Any, truth: Any, world: Any, T: Array) -> lis
 
 def draw_map(panel: Any, world: Any, T: Array) -> list[Any]:
     """A grid, or landmarks with their ellipses."""
-    grid = world.to_grid() if hasattr(world, "to_grid") else world
-    if hasattr(grid, "kind"):
-        return draw_world(grid, ax=panel)
-    if not hasattr(grid, "points") or not len(grid.points):
+    if hasattr(world, "kind"):
+        return draw_world(world, ax=panel)
+    if not hasattr(world, "points") or not len(world.points):
         return []
-    points = grid.points @ T[:2, :2].T + T[:2, 2]
+    points = world.points @ T[:2, :2].T + T[:2, 2]
     drawn: list[Any] = panel.plot(*points.T, "^", color=LANDMARK, ms=6, mew=0, label="landmarks", zorder=3)
-    if grid.covariances is not None:
-        P = T[:2, :2] @ grid.covariances @ T[:2, :2].T
+    if world.covariances is not None:
+        P = T[:2, :2] @ world.covariances @ T[:2, :2].T
         drawn += draw_ellipses(panel, points, P, facecolors="none", edgecolors=[LANDMARK], zorder=3)
     return drawn
 
@@ -166,6 +165,8 @@ def draw_consistency(panel: Any, answer: Any) -> list[Any]:
     panel.tick_params(labelsize=8)
     panel.grid(alpha=0.25)
     measured = getattr(answer, "measured", None)
+    if measured is None and hasattr(answer, "scores"):
+        measured = np.arange(len(answer.times))
     if measured is None or not len(measured):
         panel.set(ylabel="no measurements", yticks=[])
         panel.yaxis.label.set_fontsize(8)

@@ -52,8 +52,8 @@ def particles(pf: Any, *, ax: Any | None = None, grid: Any | None = None) -> lis
 
 def draw_map(axes: Any, grid: Any) -> list[Any]:
     """A grid, or landmarks as crosses."""
-    if hasattr(grid, "to_grid"):
-        return world(grid.to_grid(), ax=axes)
+    if hasattr(grid, "kind"):
+        return world(grid, ax=axes)
     if hasattr(grid, "points"):
         return list(axes.plot(*grid.points.T, "+", ms=9, mew=1.6, color=colors.INK, zorder=3))
     return []

@@ -78,7 +78,10 @@ def as_pose_2d(value: Any, subject: str = "planar pose") -> Array:
     """Planar poses as checked float64 arrays of shape (..., 3, 3); the rules are those of as_pose."""
     T, _ = _held_matrix(value, subject)
     if T.shape[-2:] != (3, 3):
-        raise InputError(f"{subject} has shape {T.shape}, expected (..., 3, 3): rotation, translation, 0 0 1")
+        remedy = "; cspace.pose_2d(xytheta=...) makes one of x, y, θ" if T.shape[-1:] == (3,) else ""
+        raise InputError(
+            f"{subject} has shape {T.shape}, expected (..., 3, 3): rotation, translation, 0 0 1{remedy}"
+        )
     _check_homogeneous(T, subject)
     _check_rotation(T[..., :2, :2], f"the rotation part of {subject}")
     return T

@@ -22,8 +22,9 @@ inline constexpr int full_score = 255;
 // The bell of one point, for several places of the point within its cell.
 class PointStamp {
   public:
+    // Throws std::invalid_argument for a bell that is wider than `widest` cells.
     PointStamp(double resolution, double sigma)
-        : radius_(int(std::ceil(reach * sigma / resolution))), width_(pack * ((2 * radius_ + pack) / pack)) {
+        : radius_(count_cells(sigma / resolution)), width_(pack * ((2 * radius_ + pack) / pack)) {
         bytes_.assign(std::size_t(parts * parts * (2 * radius_ + 1) * width_), 0);
         for (int part = 0; part < parts * parts; ++part) {
             const double x = (part % parts + 0.5) / parts - 0.5, y = (part / parts + 0.5) / parts - 0.5;
@@ -63,11 +64,17 @@ class PointStamp {
 
     int radius() const { return radius_; }
 
+    static constexpr double widest = 100;  // σ of a bell [cells]: its stamps take 16 MB
+
   private:
     static constexpr double reach = 2.5;  // of a stamp [σ]: beyond it a score is below 4 %
     static constexpr int parts = 8;       // of a cell's side, for the place of the point in it
     static constexpr int pack = 16;
 
+    static int count_cells(double cells) {
+        if (!(cells > 0 && cells <= widest)) throw std::invalid_argument("the bell of a point is too wide");
+        return int(std::ceil(reach * cells));
+    }
     static void raise_pack(std::uint8_t* to, const std::uint8_t* from) {
         for (int k = 0; k < pack; ++k) to[k] = std::max(to[k], from[k]);
     }

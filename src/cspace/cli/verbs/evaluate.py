@@ -26,6 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     text = "trajectory: TUM, KITTI, or a log whose reference poses count"
     parser.add_argument("estimate", metavar="EST", type=Path, help=f"estimated {text}")
     parser.add_argument("truth", metavar="TRUTH", type=Path, help=f"true {text}")
+    add_option(parser, "--robot N", "which robot of an MRCLAM folder", int)
     text = "the motion that is taken out first: in the plane, in space, or none (default: se2)"
     add_option(parser, "--align", text, choices=ALIGNMENTS, default="se2")
     text = "relative errors over DELTA m, s or frames; may be repeated (default: 1 m)"
@@ -45,10 +46,9 @@ def run(args: argparse.Namespace, out: Output) -> int:
         "max_difference": args.max_difference,
     }
     stretches = [read_stretch(*words) for words in args.rpe or [["1", "m"]]]
-    absolute = ate(args.estimate, args.truth, **options)
-    relative = [
-        rpe(args.estimate, args.truth, delta=delta, unit=unit, **options) for delta, unit in stretches
-    ]
+    estimate, truth = (choose_robot(path, args.robot) for path in (args.estimate, args.truth))
+    absolute = ate(estimate, truth, **options)
+    relative = [rpe(estimate, truth, delta=delta, unit=unit, **options) for delta, unit in stretches]
     if out.as_json:
         out.document(
             {
@@ -67,6 +67,13 @@ def run(args: argparse.Namespace, out: Output) -> int:
     else:
         print_errors(out, [absolute, *relative])
     return Exit.DONE
+
+
+def choose_robot(path: Path, robot: int | None) -> Any:
+    """The log of one robot of a folder, or the path of any other trajectory."""
+    from cspace.localization import read_log
+
+    return read_log(path, robot=robot) if robot is not None and path.is_dir() else path
 
 
 def read_stretch(word: str, unit: str) -> tuple[float, str]:

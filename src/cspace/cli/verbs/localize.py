@@ -22,7 +22,7 @@ from cspace.cli.drives import (
     load_map,
     measure_error,
     print_drive,
-    say_length,
+    say_errors,
 )
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output
@@ -50,6 +50,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_option(parser, "--start X Y THETA", text, read_angle)
     add_option(parser, "--smooth", "poses by all measurements, later ones too (Kalman filters)")
     add_option(parser, "--seed N", "the seed of mcl", read_seed)
+    text = "the motion that is taken out of errors and pictures, for maps with another frame than the truth"
+    add_option(parser, "--align", f"{text} (default: none)", choices=("se2", "none"), default="none")
     add_option(parser, "--save FILE", "write the poses as a TUM trajectory", Path)
     add_pictures(parser, "the drive, its errors and its consistency")
     add_degrees(parser)
@@ -70,10 +72,11 @@ def run(args: argparse.Namespace, out: Output) -> int:
     with show_progress(f"localizing by {args.filter}"):
         found: Any = localize(log, world, filter=args.filter, **more)
         answer = found.smoothed() if args.smooth and hasattr(found, "smoothed") else found
-    error = measure_error(answer, log.truth, None)
+    align = None if args.align == "none" else args.align
+    error = measure_error(answer, log.truth, align)
     known = world if world is not None else log.landmarks
     with show_progress("drawing"):
-        written = draw_drive(args, answer, log, known, None)
+        written = draw_drive(args, answer, log, known, align)
     if args.save is not None:
         write_poses(args.save, answer)
         written.append(str(args.save))
@@ -83,6 +86,6 @@ def run(args: argparse.Namespace, out: Output) -> int:
     else:
         facts = {"filter": answer.filter, "poses": str(len(answer)), "status": answer.status}
         notes = "; ".join(log.notes)
-        facts |= {"reason": answer.reason, "rmse": say_length(error), "notes": notes}
+        facts |= {"reason": answer.reason, "rmse": say_errors(answer, log.truth, error), "notes": notes}
         print_drive(out, facts, written)
     return Exit.DONE if answer else Exit.NEGATIVE

@@ -10,6 +10,7 @@ import numpy as np
 
 from cspace.cli.arguments import add_option, read_seed
 from cspace.cli.drives import (
+    ROS_MAPS,
     add_pictures,
     check_pictures,
     describe_drive,
@@ -19,13 +20,13 @@ from cspace.cli.drives import (
     say_length,
 )
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.output import Output
+from cspace.cli.output import Output, check_writable
 from cspace.cli.progress import show_progress
 
 EXAMPLES: Final = """
 cspace slam two_rounds.g2o --robust dcs --save optimum.g2o
 cspace slam small_drive --method ekf --save mapped.tum --json
-cspace slam intel.log.gz --save found.tum --plot map.png
+cspace slam intel.log.gz --save found.tum --save-map map.yaml --plot map.png
 """
 
 GRAPHS: Final = (".g2o", ".graph", ".toro", ".zip")
@@ -44,12 +45,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_option(parser, "--seed N", "the seed of fastslam", read_seed)
     text = "write the optimum as .g2o, or the poses of a log as a TUM trajectory"
     add_option(parser, "--save FILE", text, Path)
+    text = "write the map of --method graph as a ROS map: FILE.yaml and an image FILE.pgm"
+    add_option(parser, "--save-map FILE.yaml", text, Path)
     add_pictures(parser, "the graph before and after, or the drive")
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
     """Optimize a pose graph, or run SLAM over a log."""
     check_pictures(args)
+    if args.save_map is not None:
+        check_writable(args.save_map)
+        if args.save_map.suffix.lower() not in ROS_MAPS:
+            raise UsageError(f"a map is a ROS map, but {str(args.save_map)!r} does not end with .yaml")
     return run_graph(args, out) if is_graph(args.file) else run_log(args, out)
 
 
@@ -67,8 +74,8 @@ def run_graph(args: argparse.Namespace, out: Output) -> int:
     """The optimum of a pose graph."""
     from cspace.localization import PoseGraph
 
-    if args.method != "graph" or args.animate is not None or args.seed is not None:
-        raise UsageError("a pose graph is optimized; --method, --animate and --seed are for logs")
+    if args.method != "graph" or not (args.animate is args.seed is args.save_map is None):
+        raise UsageError("a pose graph is optimized; --method, --animate, --save-map and --seed are for logs")
     with show_progress(f"reading {args.file}"):
         graph = PoseGraph.read(args.file)
     with show_progress("optimizing"):
@@ -143,18 +150,24 @@ def run_log(args: argparse.Namespace, out: Output) -> int:
         raise UsageError("--robust is for pose graphs; SLAM of logs rejects false loops always")
     if args.save is not None and args.save.suffix.lower() == ".g2o" and args.method != "graph":
         raise UsageError(f"--method {args.method} has no pose graph; --save FILE.tum writes its poses")
+    if args.save_map is not None and args.method != "graph":
+        raise UsageError(f"--method {args.method} makes no map of cells; --save-map is for --method graph")
     with show_progress(f"reading {args.file}"):
         log = read_log(args.file, robot=args.robot)
+    check_method(args.method, log)
     with show_progress(f"SLAM by {args.method}"):
         answer: Any = slam(log, method=args.method, rng=args.seed)
     error = measure_error(answer, log.truth, "se2")
-    world = getattr(answer, "map", None)
+    world: Any = getattr(answer, "map", None)
     with show_progress("drawing"):
         written = draw_drive(args, answer, log, world, "se2")
     if args.save is not None:
         is_tum = args.save.suffix.lower() != ".g2o"
         write_poses(args.save, answer) if is_tum else answer.graph.to_g2o(args.save)
         written.append(str(args.save))
+    if args.save_map is not None:
+        world.save_ros(args.save_map)
+        written += [str(args.save_map), str(args.save_map.with_suffix(".pgm"))]
     points = getattr(getattr(answer, "landmarks", None), "points", np.zeros((0, 2)))
     if out.as_json:
         document = {"schema": "cspace.slam/1", "file": str(args.file), "method": args.method}
@@ -166,3 +179,11 @@ def run_log(args: argparse.Namespace, out: Output) -> int:
         facts |= {"status": answer.status, "reason": answer.reason, "rmse": say_length(error)}
         print_drive(out, {**facts, "notes": "; ".join(log.notes)}, written)
     return Exit.DONE if answer else Exit.NEGATIVE
+
+
+def check_method(method: str, log: Any) -> None:
+    """Refuse a method that the log has no measurements for, with those that it has."""
+    if method == "graph" and log.scans is None and log.readings is not None:
+        raise UsageError("the log has no scans, but readings of landmarks; take --method ekf or fastslam")
+    if method != "graph" and log.readings is None and log.scans is not None:
+        raise UsageError("the log has no readings of landmarks, but scans; take --method graph")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array
+from cspace.arrays import Array, truth_value
 from cspace.errors import InputError
 from cspace.localization.evaluation.tracks import Track
 from cspace.mobile import TimedPoses
@@ -34,7 +34,7 @@ def associate_tracks(
     short, long = (truth, estimate) if is_truth_shorter else (estimate, truth)
     assert short.times is not None
     assert long.times is not None
-    if interpolate:
+    if truth_value(interpolate, "interpolate"):
         found = interpolate_track(long, short.times, max_gap)
         known = np.flatnonzero(np.isfinite(found[:, 0, 0]))
         first, second = short.rows(known), Track(short.times[known], found[known])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from cspace.files import path_of
 from cspace.localization.graph.checks import read_poses
 from cspace.localization.log import Log
 from cspace.localization.logs.lines import read_lines
+from cspace.localization.logs.mrclam import is_mrclam, list_robots
 from cspace.localization.logs.pose_files import PoseFile, read_pose_file
 from cspace.localization.logs.read_log import read_by_content, read_log
 from cspace.mobile.timed_poses import read_times
@@ -89,4 +91,10 @@ def read_file(path: str, subject: str) -> Track:
         if found is not None:
             return Track(found.times, found.poses, found)
         return read_track(read_by_content(lines), f"{subject} {path}")
+    robots = list_robots(Path(path)) if is_mrclam(Path(path)) else []
+    if len(robots) > 1:
+        named = ", ".join(map(str, robots))
+        raise InputError(
+            f"{subject} {path} holds robots {named}; say which one: robot= of cspace.read_log, or --robot"
+        )
     return read_track(read_log(path), f"{subject} {path}")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from cspace import tolerances
-from cspace.arrays import Array, one_array, positive_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.arrays import Array, positive_number
+from cspace.errors import InputError, InputTypeError, check_known
+from cspace.localization.checks import read_covariance, read_pose, suggest_map
 from cspace.localization.filters.forward import Pass, Passed
 from cspace.localization.filters.gates import associate_reading
 from cspace.localization.filters.measurements import (
@@ -23,9 +23,9 @@ from cspace.localization.filters.run import Localization, LocalizationStats
 from cspace.localization.filters.timeline import KINDS, Timeline, lay_timeline
 from cspace.localization.filters.updates import UPDATES
 from cspace.localization.log import UNKNOWN, Landmarks, Log
-from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing, read_share
-from cspace.mobile import MotionNoise, RandomWalk
-from cspace.spatial import as_pose_2d, to_xytheta
+from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing, read_sensor, read_share
+from cspace.mobile import MotionNoise
+from cspace.mobile.noise import read_noise
 
 if TYPE_CHECKING:
     from cspace.localization.particles import MapLocalization
@@ -72,8 +72,11 @@ def localize(
     begun = perf_counter()
     if not isinstance(log, Log):
         raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
-    if filter not in FILTERS:
-        raise suggest("filter", filter, FILTERS)
+    check_known("filter", filter, FILTERS)
+    if filter != "mcl" and (n is not None or most is not None):
+        raise InputError(f"filter={filter!r} has no particles; leave n and most out, or give filter='mcl'")
+    if filter in MAP_FILTERS and (compass is not None or gps is not None):
+        raise InputError(f"filter={filter!r} uses neither compass nor gps; the Kalman filters do")
     known = landmarks if landmarks is not None else log.landmarks
     limit = None if time_limit is None else positive_number(time_limit, "time_limit")
     if not len(log.odometry.times):
@@ -86,8 +89,8 @@ def localize(
         return run_map_filter(filter, log, known, {**shared, **sizes, "threads": threads}, limit)
     model = check_landmarks(known, sensor, filter)
     pose, P = read_start(log, start, start_covariance)
-    reader = Reader(log, known, model, compass or Compass(), gps or Gps())
-    timeline = lay_timeline(log, model, noise or RandomWalk())
+    reader = Reader(log, known, model, read_sensor(compass, Compass, "compass"), read_sensor(gps, Gps, "gps"))
+    timeline = lay_timeline(log, model, read_noise(noise))
     reader.timeline = timeline
     run = Pass(timeline, UPDATES[filter], read_share(gate, "gate"), limit)
     passed = run.run(pose, P, reader.read)
@@ -97,12 +100,11 @@ def localize(
 def check_landmarks(known: Any, sensor: Any, filter: str) -> RangeBearing:
     """The sensor of a Kalman filter. Raises InputTypeError for a map or a sensor that it has no use for."""
     if known is not None and not isinstance(known, Landmarks):
+        remedy = "give filter='mcl'" if hasattr(known, "likelihood_field") else suggest_map(known)
         raise InputTypeError(
-            f"the map is a {type(known).__name__}, and filter={filter!r} needs Landmarks; give filter='mcl'"
+            f"the map is a {type(known).__name__}, and filter={filter!r} needs Landmarks; {remedy}"
         )
-    if sensor is not None and not isinstance(sensor, RangeBearing):
-        raise InputTypeError(f"sensor is a {type(sensor).__name__}; filter={filter!r} needs a RangeBearing")
-    return sensor or RangeBearing()
+    return read_sensor(sensor, RangeBearing)
 
 
 class Reader:
@@ -160,28 +162,6 @@ def read_start(
     """The first pose (3,) and its covariance (3, 3)."""
     pose = read_pose(start) if start is not None else find_start(log)
     return pose, np.diag(np.square(START_DEVIATIONS)) if covariance is None else read_covariance(covariance)
-
-
-def read_pose(start: npt.ArrayLike) -> Array:
-    """A first pose (3,), given as x, y, θ (3,) or (3, 3)."""
-    if np.shape(start) == (3, 3):
-        return np.ascontiguousarray(to_xytheta(as_pose_2d(start, "start")))
-    return one_array(start, "start", (3,))
-
-
-def read_covariance(covariance: npt.ArrayLike) -> Array:
-    """The covariance (3, 3) of a first pose, symmetrised; InputError for one that is none."""
-    P = one_array(covariance, "start_covariance", (3, 3))
-    least = float(np.linalg.eigvalsh(P)[0])
-    if (
-        np.abs(P - P.T).max() > tolerances.COVARIANCE_SYMMETRY * max(1.0, np.abs(P).max())
-        or least < -abs(P).max() * tolerances.COVARIANCE_SYMMETRY
-    ):
-        raise InputError(
-            f"start_covariance is not symmetric and positive semi-definite (least eigenvalue {least:.3g});"
-            " give variances on the diagonal, np.diag(...)"
-        )
-    return 0.5 * (P + P.T)
 
 
 def find_start(log: Log) -> Array:

@@ -8,13 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError, check_kind, check_known
 from cspace.localization.filters.backward import smooth_interval, smooth_lag
 from cspace.localization.filters.forward import REJECTIONS, Passed
 from cspace.localization.filters.rows import find_twist
 from cspace.localization.filters.timeline import Timeline
 from cspace.localization.log import Ids, Mask
 from cspace.mobile import TimedPoses
+from cspace.mobile.timed_poses import NO_REFERENCE
 from cspace.spatial import rotation_2d
 from cspace.tables import count_things, one_line, show_fields
 
@@ -75,8 +76,7 @@ class EstimatedPoses:
         """The covariances (n, 3, 3) in axes of base or of map, blkdiag(R, 1) P blkdiag(R, 1)ᵀ: the ellipses
         of
         pictures. Raises UnknownNameError for another frame."""
-        if frame not in FRAMES:
-            raise suggest("frame", frame, FRAMES)
+        check_known("frame", frame, FRAMES)
         if frame == "base":
             return self.covariances
         return turn_covariances(self.poses, self.covariances)
@@ -86,6 +86,7 @@ class EstimatedPoses:
 
         (n,); NaN where the truth is unknown.
         """
+        check_kind("truth", truth, TimedPoses, NO_REFERENCE)
         error = find_twist(self.poses, truth.at(self.times))
         return np.asarray(
             np.einsum("ni,nij,nj->n", error, np.linalg.pinv(self.covariances, hermitian=True), error)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from threading import Lock
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, whole_number
-from cspace.errors import InputError, Renamed, suggest
+from cspace.errors import InputError, Renamed, check_known
 from cspace.tables import one_line, shown
 from cspace.tolerances import SAME_CHI2
 
@@ -99,7 +99,8 @@ class GraphAnswer(Renamed):
     rejected_sightings: npt.NDArray[np.intp]
     stats: Mapping[str, Any]
     graph: GraphArrays
-    _solver: GraphSolver
+    _held: list[GraphSolver]
+    _remake: Callable[[GraphAnswer], GraphSolver]
     _lock: Lock = field(default_factory=Lock)
 
     def __bool__(self) -> bool:
@@ -130,8 +131,7 @@ class GraphAnswer(Renamed):
         """
         pair = [pose, pose if other is None else other]
         rows = [whole_number(row, "pose", 0, len(self.poses) - 1) for row in pair]
-        if frame not in ("base", "map"):
-            raise suggest("frame", frame, ("base", "map"))
+        check_known("frame", frame, ("base", "map"))
         a, b = (np.array([row], dtype=np.int32) for row in rows)
         found: Array = self._read_covariances(a, b, self._size(rows[0]), self._size(rows[1]))[0]
         if frame == "base":
@@ -152,7 +152,7 @@ class GraphAnswer(Renamed):
         if reason:
             return Certificate(False, 0.0, self.chi2, f"not certified: {reason}")
         with self._lock:
-            is_proved, bound, least = self._solver.certify()
+            is_proved, bound, least = self._solver().certify()
         if not is_proved:
             reason = "the dual matrix is not positive semidefinite, so that there may be a better optimum"
             return Certificate(False, 0.0, self.chi2, f"not certified: {reason}")
@@ -167,6 +167,17 @@ class GraphAnswer(Renamed):
         """The graph with the answer as its start."""
         return self.graph.with_poses(self.poses, self.landmarks)
 
+    def _solver(self) -> GraphSolver:
+        """The compiled solver at the answer; that of a copy is made again."""
+        if not self._held:
+            self._held.append(self._remake(self))
+        return self._held[0]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle stores: the arrays, without the compiled solver."""
+        given = [getattr(self, each.name) for each in fields(self) if each.init and each.name[0] != "_"]
+        return type(self), (*given, [], self._remake)
+
     def _explain_no_dual(self) -> str:
         """Why the problem has no dual that we know; empty where it has one."""
         if self.stats["residual"] != "twist":
@@ -175,7 +186,8 @@ class GraphAnswer(Renamed):
             return "a robust kernel weighs the measurements; optimize without one"
         if len(self.graph.fixed) + len(self.graph.fixed_landmarks) != 1 or self.graph.parts.any():
             return "the graph must be in one part, with one pose fixed"
-        row = self._solver.anisotropic_measurement
+        with self._lock:
+            row = self._solver().anisotropic_measurement
         edges = len(self.graph.edges)
         if row >= edges:
             return f"sighting {row - edges} has a range, a bearing, or information that is not isotropic"
@@ -192,7 +204,7 @@ class GraphAnswer(Renamed):
     ) -> Array:
         found = np.empty((len(first), rows, columns))
         with self._lock:
-            is_regular = self._solver.write_covariances(np.stack([first, second], axis=1), found)
+            is_regular = self._solver().write_covariances(np.stack([first, second], axis=1), found)
         if not is_regular:
             raise InputError(
                 "the normal equations at the answer are singular, so that there are no covariances;"

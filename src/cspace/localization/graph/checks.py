@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats, one_array
+from cspace.arrays import Array, any_array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial import as_pose
 from cspace.tolerances import SINGULAR_INFORMATION, SYMMETRIC_INFORMATION
@@ -32,7 +32,7 @@ def read_poses(value: Any, subject: str) -> Array:
 
 def read_pairs(value: Any, subject: str, first: int, second: int, meaning: str) -> Rows:
     """Rows of two indices (k, 2), below `first` and `second`."""
-    array = np.asarray(value)
+    array = any_array(value, subject)
     if array.size == 0:
         return np.zeros((0, 2), np.int32)
     if array.dtype.kind not in "iu":
@@ -79,7 +79,7 @@ def read_information(value: Any, subject: str, count: int, size: int) -> Array:
 
 def read_ids(value: Any, subject: str, count: int) -> Ids:
     """Whole numbers (n,), each once."""
-    array = np.asarray(value)
+    array = any_array(value, subject)
     if array.dtype.kind not in "iu" and array.size:
         raise InputTypeError(f"{subject} are {array.dtype}; they must be whole numbers")
     if array.shape != (count,):
@@ -92,7 +92,7 @@ def read_ids(value: Any, subject: str, count: int) -> Ids:
 
 def read_rows(value: Any, subject: str, count: int) -> npt.NDArray[np.intp]:
     """Row numbers (k,) below `count`, sorted, each once."""
-    array = np.asarray(value)
+    array = any_array(value, subject)
     if array.size == 0:
         return np.zeros(0, np.intp)
     if array.dtype.kind not in "iu" or array.ndim != 1:

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError, LogError, suggest
+from cspace.errors import InputError, LogError, check_known
 from cspace.files import path_of, read_regular
 from cspace.localization.graph.graph_arrays import Graph
 from cspace.localization.logs.lines import Lines, unpack_gzip
@@ -267,8 +267,8 @@ RECORDS: Final[Mapping[str, Mapping[str, Reader]]] = MappingProxyType(
 def read_graph(cls: type[Graph], path: str | os.PathLike[str], format: str | None) -> Graph:
     """See PoseGraph.read."""
     name = path_of(path, "a pose graph is given by its path")
-    if format is not None and format not in FORMATS:
-        raise suggest("format", format, FORMATS)
+    if format is not None:
+        check_known("format", format, FORMATS)
     lines = unpack_lines(name)
     rows = list(lines.rows())
     if not rows:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace._core import find_graph_parts
-from cspace.arrays import Array, as_floats, one_array
+from cspace.arrays import Array, any_array, as_floats, one_array
 from cspace.errors import InputError
 from cspace.localization.graph.checks import (
     Ids,
@@ -82,9 +82,10 @@ class GraphArrays:
         self._read_sightings()
         self._set("fixed", read_rows(self.fixed, "fixed", n))
         self._set("fixed_landmarks", read_rows(self.fixed_landmarks, "fixed_landmarks", len(self.landmarks)))
-        self._set("ids", read_ids(self.ids if np.size(self.ids) else np.arange(n), "ids", n))
+        self._set("ids", read_ids(self.ids if any_array(self.ids, "ids").size else np.arange(n), "ids", n))
         m, first = len(self.landmarks), int(self.ids.max()) + 1
-        names = self.landmark_ids if np.size(self.landmark_ids) else np.arange(first, first + m)
+        given = any_array(self.landmark_ids, "landmark_ids")
+        names = given if given.size else np.arange(first, first + m)
         self._set("landmark_ids", read_ids(names, "landmark_ids", m))
 
     def _set(self, name: str, array: Any) -> None:
@@ -103,7 +104,9 @@ class GraphArrays:
 
     def _read_sightings(self) -> None:
         d = self.dimension
-        self._set("landmarks", one_array(np.reshape(self.landmarks, (-1, d)), "landmarks", (None, d)))
+        places = as_floats(self.landmarks, "landmarks")
+        places = places if places.size else np.zeros((0, d))
+        self._set("landmarks", np.array(one_array(places, "landmarks", (None, d))))
         rows = read_pairs(
             self.sightings, "sightings", len(self.poses), len(self.landmarks), "rows of a pose and a landmark"
         )
@@ -112,8 +115,11 @@ class GraphArrays:
         if points.shape != (len(rows), d):
             raise InputError(f"points has shape {points.shape}, expected {(len(rows), d)}: one per sighting")
         ranged = np.zeros(len(rows), bool)
-        if np.size(self.ranged):
-            ranged = np.array(self.ranged, dtype=bool)
+        given = any_array(self.ranged, "ranged")
+        if given.size:
+            ranged = given.astype(bool) if given.dtype.kind in "biu" else given
+        if ranged.dtype != np.bool_:
+            raise InputError(f"ranged is {ranged.dtype}; give a truth value per sighting")
         if ranged.shape != (len(rows),):
             raise InputError(f"ranged has shape {ranged.shape}, expected ({len(rows)},): one per sighting")
         check_points(points, ranged, "points")

@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace._core import IncrementalSolver, are_clearly_positive
-from cspace.arrays import Array, as_floats, positive_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.arrays import Array, any_array, as_floats, positive_number
+from cspace.errors import InputError, InputTypeError, check_known
+from cspace.localization.checks import Running
 from cspace.localization.graph.answer import GraphAnswer, turn_to_map
 from cspace.localization.graph.checks import Ids, check_points, read_information, read_poses
 from cspace.localization.graph.pose_graph import PoseGraph
@@ -21,7 +22,7 @@ SHOWN_WAITING = 5
 """The most ids that a message lists."""
 
 
-class IncrementalGraph:
+class IncrementalGraph(Running):
     """A pose graph in the plane or in space to which measurements are added one after the other.
 
     Each addition brings the estimate up to date: only the part of the factor that it touches is eliminated
@@ -32,6 +33,8 @@ class IncrementalGraph:
     relinearize: measurements are linearised anew where a pose has moved by more than this [m or rad] since.
     substitute: changes up to this [m or rad] are not passed on to distant poses.
     """
+
+    _instead = "keep to_graph(), or the measurements"
 
     def __init__(
         self,
@@ -68,6 +71,8 @@ class IncrementalGraph:
             raise InputError(f"the edge joins pose {first[first == second][0]} to itself; leave it out")
         motions = as_floats(z, "z")
         is_spatial = motions.shape[-2:] == (4, 4)
+        if not motions.ndim or not motions.size:
+            raise InputError(f"z has shape {motions.shape}, expected (3,), (k, 3) or (4, 4), (k, 4, 4)")
         motions = motions.reshape(-1, 4, 4) if is_spatial else motions.reshape(-1, motions.shape[-1])
         if is_spatial or motions.shape[1:] != (3,):
             motions = read_poses(motions, "z")
@@ -105,7 +110,7 @@ class IncrementalGraph:
             raise InputError(
                 f"point has shape {points.shape}, expected ({len(first)}, 2) or ({len(first)}, 3)"
             )
-        is_ranged = np.broadcast_to(np.asarray(ranged, dtype=bool), (len(first),))
+        is_ranged = read_mask(ranged, "ranged", len(first))
         check_points(points, is_ranged, "point")
         measured = ~np.isnan(points)
         matrices = read_matrices(information, len(first), d)
@@ -177,8 +182,7 @@ class IncrementalGraph:
         frame as in GraphAnswer.covariance. It is taken where the measurements were linearised, at most
         `relinearize` from the estimate. Raises InputError for ids that are unknown.
         """
-        if frame not in ("base", "map"):
-            raise suggest("frame", frame, ("base", "map"))
+        check_known("frame", frame, ("base", "map"))
         names = [pose, pose if other is None else other]
         found = self._read_covariance("pose", names, 6 if self.is_spatial else 3)
         if frame == "base":
@@ -317,10 +321,18 @@ def read_ids(value: Any, subject: str) -> Ids:
     """One whole number or several, (k,)."""
     if type(value) is int and -(2**63) <= value < 2**63:
         return np.array([value], dtype=np.int64)
-    array = np.atleast_1d(np.asarray(value))
+    array = np.atleast_1d(any_array(value, subject))
     if array.dtype.kind not in "iu" or array.ndim != 1:
         raise InputTypeError(f"{subject} is {value!r:.60}; give a whole number, or a list of them")
     return array.astype(np.int64)
+
+
+def read_mask(value: Any, subject: str, count: int) -> npt.NDArray[np.bool_]:
+    """Truth values (count,), or one for all."""
+    mask = any_array(value, subject)
+    if mask.dtype != np.bool_ or mask.shape not in ((), (1,), (count,)):
+        raise InputError(f"{subject} is {mask.dtype} of shape {mask.shape}; give one truth value, or {count}")
+    return np.broadcast_to(mask, (count,))
 
 
 def read_matrices(value: Any, count: int, size: int) -> Array:

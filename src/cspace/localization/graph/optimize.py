@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from time import perf_counter
 from typing import Any, Final, NamedTuple
@@ -9,8 +10,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from cspace._core import GraphSolver, TimeOver, set_deadline
-from cspace.arrays import positive_number, whole_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.arrays import any_array, positive_number, whole_number
+from cspace.errors import InputError, InputTypeError, check_known
 from cspace.localization.graph.answer import GraphAnswer, list_rejected
 from cspace.localization.graph.checks import Mask
 from cspace.localization.graph.graph_arrays import GraphArrays
@@ -40,6 +41,10 @@ SHOWN_PARTS: Final = 5
 """The most parts of a graph that a message lists."""
 
 
+RESTORING: Final = 1
+"""Iterations from a state that is the optimum already, by which a solver gets its factor again."""
+
+
 class Request(NamedTuple):
     """The arguments of PoseGraph.optimize."""
 
@@ -66,7 +71,8 @@ class Request(NamedTuple):
             raise InputTypeError(
                 "robust= and kernel= exclude each other: one rejects measurements, one weighs them"
             )
-        start = self.start or ("rotations" if self.robust is None else "odometry")
+        usual = "rotations" if self.robust is None else "odometry"
+        start = usual if self.start is None else self.start
         find_word("start", start, STARTS)
         return self._replace(
             start=start,
@@ -80,8 +86,8 @@ class Request(NamedTuple):
 
 def find_word(name: str, word: Any, known: tuple[str | None, ...]) -> int:
     """The place of a word among those known; an error with the nearest ones for others."""
-    if word not in known:
-        raise suggest(name, word, [each for each in known if each is not None])
+    if not (word is None and None in known):
+        check_known(name, word, [each for each in known if each is not None])
     return known.index(word)
 
 
@@ -127,7 +133,7 @@ def read_trusted(graph: GraphArrays, value: Any) -> Mask:
     """Which edges are never doubted."""
     if value is None:
         return graph.consecutive
-    mask = np.asarray(value)
+    mask = any_array(value, "trusted")
     if mask.dtype != bool or mask.shape != (len(graph.edges),):
         raise InputError(
             f"trusted has shape {mask.shape} of {mask.dtype}, expected ({len(graph.edges)},) of bool:"
@@ -203,6 +209,7 @@ def make_answer(
         "start": request.start if solver.found_start else "given",
         "residual": request.residual,
         "kernel": request.kernel,
+        "width": request.width,
     }
     rejected_numbers = int((~used[:k]).sum()) * (6 if graph.is_spatial else 3)
     rejected_numbers += int(graph.measured[~used[k:]].sum())
@@ -219,8 +226,34 @@ def make_answer(
         rejected_sightings=np.flatnonzero(~used[k:]),
         stats=stats,
         graph=graph,
-        _solver=solver,
+        _held=[solver],
+        _remake=restore_solver,
     )
+
+
+def restore_solver(answer: GraphAnswer) -> GraphSolver:
+    """A solver at the state of an answer that was copied or pickled, with the measurements that it counts."""
+    stats, graph = answer.stats, answer.graph
+    is_used = np.ones(len(graph.edges), dtype=bool)
+    is_used[[loop.edge for loop in answer.rejected]] = False
+    is_seen = np.ones(len(graph.sightings), dtype=bool)
+    is_seen[answer.rejected_sightings] = False
+    kept = replace(
+        graph.with_poses(answer.poses, answer.landmarks),
+        edges=graph.edges[is_used],
+        motions=graph.motions[is_used],
+        information=graph.information[is_used],
+        sightings=graph.sightings[is_seen],
+        points=graph.points[is_seen],
+        point_information=graph.point_information[is_seen],
+        ranged=graph.ranged[is_seen],
+    )
+    request = Request(
+        "given", METHODS[0], stats["residual"], None, stats["kernel"], stats["width"], None, RESTORING, inf
+    ).check()
+    solver = make_solver(kept, read_trusted(kept, None))
+    run_solver(solver, request)
+    return solver
 
 
 def explain_status(

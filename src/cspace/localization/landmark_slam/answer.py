@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
-from cspace.errors import suggest
+from cspace.errors import check_known
 from cspace.localization.filters.rows import find_twist
 from cspace.localization.filters.run import FRAMES, turn_covariances
 from cspace.localization.landmark_slam.filters import LOST_AFTER
@@ -100,8 +100,7 @@ class LandmarkSlam:
     def covariance(self, *, frame: str = "base") -> Array:
         """The covariances (n, 3, 3) in axes of base or of map, blkdiag(R, 1) P blkdiag(R, 1)ᵀ. Raises
         UnknownNameError for another frame."""
-        if frame not in FRAMES:
-            raise suggest("frame", frame, FRAMES)
+        check_known("frame", frame, FRAMES)
         return self.covariances if frame == "base" else turn_covariances(self.poses, self.covariances)
 
     def nees(self, truth: TimedPoses) -> Array:

@@ -8,13 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_generator, bounded_number, one_array, whole_number
-from cspace.errors import InputError, suggest
-from cspace.localization.filters.localize import read_covariance, read_pose
+from cspace.arrays import Array, as_floats, as_generator, bounded_number, whole_number
+from cspace.errors import InputError, check_known
+from cspace.localization.checks import Running, read_covariance, read_pose
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes, read_outcomes
-from cspace.localization.log import Landmarks, Readings
-from cspace.localization.sensors import RangeBearing, read_share
+from cspace.localization.log import LARGEST_NAME, UNKNOWN, Landmarks, Readings
+from cspace.localization.sensors import RangeBearing, read_sensor, read_share
 from cspace.mobile import MotionNoise, RandomWalk
+from cspace.mobile.noise import read_noise
 from cspace.spatial import log_se2, pose_2d
 from cspace.tables import count_things, one_line
 
@@ -40,13 +41,14 @@ MOST_PARTICLES: Final = 1_000_000
 """Particles above which a map of each no longer fits into memory."""
 
 
-class LandmarkFilter:
+class LandmarkFilter(Running):
     """What both filters share. Made by EkfSlam and FastSlam."""
 
     _core: Any
+    _instead = "keep its pose, covariance and landmarks"
 
     def __init__(self, noise: MotionNoise | None) -> None:
-        model = noise or RandomWalk()
+        model = read_noise(noise)
         self._noise = model
         self._walk = (
             [model.distance, model.side, model.drift, model.turn, model.rest, model.rest_turn]
@@ -54,19 +56,19 @@ class LandmarkFilter:
             else None
         )
 
-    def predict(self, increment: npt.ArrayLike, duration: float = 0.0) -> None:
-        """Moves by an increment: the next pose in the last one, x, y, θ (3,) [m, rad], over a duration [s].
+    def predict(self, increment: npt.ArrayLike, dt: float = 0.0) -> None:
+        """Moves by an increment: the next pose in the last one, x, y, θ (3,) [m, rad], that took dt [s].
 
         The noise is that of the filter. Raises InputError for numbers that are not finite.
         """
         try:
-            if self._walk is not None and 0.0 <= duration < np.inf:
-                self._core.predict_walk(increment, self._walk, duration)
+            if self._walk is not None and 0.0 <= dt < np.inf:
+                self._core.predict_walk(increment, self._walk, dt)
                 return
-        except TypeError:
+        except (TypeError, ValueError):
             pass  # what follows says what is wrong, or converts it
-        step = one_array(increment, "increment", (3,))
-        dt = bounded_number(duration, "duration", 0.0, "give the seconds that the step took")
+        step = read_pose(increment, "increment")
+        dt = bounded_number(dt, "dt", 0.0, "give the seconds that the step took")
         if self._walk is not None:
             self._core.predict_walk(step, self._walk, dt)
         else:
@@ -96,7 +98,7 @@ class LandmarkFilter:
         """Rows name, range, bearing, NaN allowed (k, 3)."""
         if isinstance(readings, Readings):
             return np.stack([readings.landmark.astype(float), readings.range, readings.bearing], axis=-1)
-        rows = np.ascontiguousarray(readings, dtype=np.float64)
+        rows = np.ascontiguousarray(as_floats(readings, "readings", finite=False))
         if rows.size == 0:
             return np.empty((0, 3))
         if rows.ndim == 1:
@@ -166,12 +168,10 @@ class EkfSlam(LandmarkFilter):
         gate: float = 0.999,
     ) -> None:
         super().__init__(noise)
-        if linearization not in LINEARIZATIONS:
-            raise suggest("linearization", linearization, LINEARIZATIONS)
-        if association not in ASSOCIATIONS:
-            raise suggest("association", association, ASSOCIATIONS)
+        check_known("linearization", linearization, LINEARIZATIONS)
+        check_known("association", association, ASSOCIATIONS)
         self._core = _core.make_ekf_slam(
-            list_sensor(sensor or RangeBearing()),
+            list_sensor(read_sensor(sensor, RangeBearing)),
             list_rule(gate),
             LINEARIZATIONS.index(linearization),
             association == "joint",
@@ -208,10 +208,9 @@ class FastSlam(LandmarkFilter):
         rng: int | np.random.Generator | None = None,
     ) -> None:
         super().__init__(noise)
-        if version not in (1, 2):
-            raise InputError(f"version is {version!r}; it must be 1 or 2")
+        whole_number(version, "version", 1, 2)
         self._core = _core.make_fast_slam(
-            list_sensor(sensor or RangeBearing()),
+            list_sensor(read_sensor(sensor, RangeBearing)),
             list_rule(gate),
             version,
             whole_number(n, "n", 1, MOST_PARTICLES),
@@ -258,8 +257,9 @@ def read_start_rows(start: npt.ArrayLike, covariance: npt.ArrayLike | None) -> t
 def explain_rows(rows: Array) -> None:
     """InputError for the first reading that cannot be used."""
     names, ranges, bearings = rows.T
-    if not np.isfinite(names).all() or (names != np.round(names)).any() or (names < -1).any():
-        raise InputError("names of landmarks must be whole numbers from 0, or −1 where unknown")
+    is_name = (names == np.round(names)) & (names >= UNKNOWN) & (names <= LARGEST_NAME)
+    if not is_name.all():
+        raise InputError("names of landmarks must be whole numbers from 0 to 2⁵³, or −1 where unknown")
     Readings(np.zeros(len(rows)), names, ranges, bearings)
     if (names < 0).any() and (names >= 0).any():
         raise InputError("some readings have names and some have none; give all of them names, or −1 to all")

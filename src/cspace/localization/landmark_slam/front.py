@@ -18,8 +18,9 @@ from cspace.localization.landmark_slam.doubts import explain_doubt, find_rejecte
 from cspace.localization.landmark_slam.filters import EkfSlam, FastSlam, LandmarkFilter
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes, join_outcomes
 from cspace.localization.log import UNKNOWN, Log
-from cspace.localization.sensors import RangeBearing
-from cspace.mobile import MotionNoise, RandomWalk
+from cspace.localization.sensors import RangeBearing, read_sensor
+from cspace.mobile import MotionNoise
+from cspace.mobile.noise import read_noise
 
 ORIGIN: Final = np.zeros(3)
 
@@ -42,7 +43,7 @@ def run_ekf_slam(
     TimeLimitError beyond it. Raises InputError for a log without odometry or without readings, or with
     readings of which some have names and some have none.
     """
-    model = sensor or RangeBearing()
+    model = read_sensor(sensor, RangeBearing)
     slam = EkfSlam(
         start=start,
         start_covariance=start_covariance,
@@ -52,7 +53,7 @@ def run_ekf_slam(
         association=association,
         gate=gate,
     )
-    return run_filter(slam, "ekf", log, model, noise or RandomWalk(), time_limit)
+    return run_filter(slam, "ekf", log, model, read_noise(noise), time_limit)
 
 
 def run_fast_slam(
@@ -72,7 +73,7 @@ def run_fast_slam(
 
     start (3,) or (3, 3), start_covariance (3, 3). Raises InputError and TimeLimitError as run_ekf_slam.
     """
-    model = sensor or RangeBearing()
+    model = read_sensor(sensor, RangeBearing)
     slam = FastSlam(
         n=n,
         version=version,
@@ -83,7 +84,7 @@ def run_fast_slam(
         gate=gate,
         rng=rng,
     )
-    return run_filter(slam, f"fastslam{version}", log, model, noise or RandomWalk(), time_limit)
+    return run_filter(slam, f"fastslam{version}", log, model, read_noise(noise), time_limit)
 
 
 def run_filter(

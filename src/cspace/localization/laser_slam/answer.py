@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from cspace.arrays import Array
-from cspace.errors import suggest
+from cspace.errors import check_known
 from cspace.localization.graph import PoseGraph
 from cspace.localization.log import Scans
 from cspace.maps import EvidenceGrid
@@ -60,7 +60,8 @@ class LaserSlam:
     covariances (n, 3, 3) of ξ in T exp ξ, in base. graph: the PoseGraph with the poses as its start, the
     accepted loops after the edges between neighbouring scans. loops: every loop that was found. stages:
     trajectories by name, "odometry", "calibrated", "matched" and "closed", as far as each was done. scans:
-    those that were used. status: "mapped", "lost" (the last scans match nothing) or "time_limit"; reason.
+    those that were used. scores (n,): of their matches, 0 to 1; 0 where none confirms the odometry, NaN for
+    the first one. status: "mapped", "lost" (the last scans match nothing) or "time_limit"; reason.
     """
 
     times: Array
@@ -70,6 +71,7 @@ class LaserSlam:
     loops: tuple[LoopClosure, ...]
     stages: Mapping[str, TimedPoses]
     scans: Scans
+    scores: Array
     status: str
     reason: str
     stats: LaserSlamStats
@@ -95,8 +97,7 @@ class LaserSlam:
 
     def map_at(self, stage: str) -> EvidenceGrid:
         """The map of the scans at the poses of a stage; UnknownNameError for one that is not there."""
-        if stage not in self.stages:
-            raise suggest("stage", stage, list(self.stages))
+        check_known("stage", stage, self.stages)
         return EvidenceGrid.from_scans(
             self.scans, self.stages[stage].poses, self.resolution, max_range=self.max_range
         )

@@ -11,12 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace._core import LaserSlamRun, TimeOver, set_deadline
-from cspace.arrays import Array, positive_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.arrays import Array, positive_number, truth_value
+from cspace.errors import InputError, InputTypeError, check_known
 from cspace.localization.graph import GraphAnswer, PoseGraph
 from cspace.localization.landmark_slam import LandmarkSlam, run_ekf_slam, run_fast_slam
 from cspace.localization.laser_slam.answer import LaserSlam, LaserSlamStats, LoopClosure
 from cspace.localization.log import Log, Scans
+from cspace.localization.scans.match import check_bell
 from cspace.localization.scans.points import find_view, place_beams
 from cspace.mobile import Odometry, TimedPoses, calibrate
 from cspace.spatial import inverse_pose_2d, log_se2, pose_2d
@@ -70,15 +71,19 @@ def slam(
     """
     if not isinstance(log, Log):
         raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
-    if method not in METHODS:
-        raise suggest("method", method, METHODS)
+    check_known("method", method, METHODS)
     limit = None if time_limit is None else positive_number(time_limit, "time_limit", largest=inf)
     if method == "ekf":
         return run_ekf_slam(log, time_limit=limit)
     if method == "fastslam":
         return run_fast_slam(log, rng=rng, time_limit=limit)
     drive = read_drive(log, positive_number(max_range, "max_range"))
-    mapper = Mapper(drive, positive_number(resolution, "resolution"), bool(loops), bool(calibrated), progress)
+    cell = positive_number(resolution, "resolution")
+    check_bell(cell, SIGMA, f"resolution is {cell:g} m, and the bells of points {SIGMA:g} m; these may have")
+    flags = truth_value(loops, "loops"), truth_value(calibrated, "calibrated")
+    if not (progress is None or callable(progress)):
+        raise InputTypeError(f"progress is a {type(progress).__name__}; give a function of a share, 0 to 1")
+    mapper = Mapper(drive, cell, *flags, progress)
     mapper.run(inf if limit is None else limit)
     return mapper.report()
 
@@ -95,7 +100,10 @@ class Drive(NamedTuple):
 def read_drive(log: Log, max_range: float) -> Drive:
     """The scans that the odometry covers; InputError where there are none, or no beam returned."""
     if log.scans is None or not len(log.scans):
-        raise InputError('the log has no scans; method="graph" needs those of a laser')
+        others = (
+            "" if log.readings is None else '; its readings of landmarks are for method="ekf" or "fastslam"'
+        )
+        raise InputError(f'the log has no scans, and method="graph" needs those of a laser{others}')
     times = log.odometry.times
     if not len(times):
         raise InputError("the log has no odometry; SLAM needs it between the scans")
@@ -120,7 +128,7 @@ class Mapper:
         self, drive: Drive, resolution: float, loops: bool, calibrated: bool, progress: Progress | None
     ) -> None:
         self.drive, self.resolution, self.loops, self.calibrated = drive, resolution, loops, calibrated
-        self.tell = progress or (lambda share: None)
+        self.tell = (lambda share: None) if progress is None else progress
         self.begun = perf_counter()
         self.stages: dict[str, TimedPoses] = {}
         self.factors = UNKNOWN_FACTORS
@@ -241,6 +249,7 @@ class Mapper:
             loops=closures,
             stages=self.stages,
             scans=scans,
+            scores=np.concatenate([[np.nan], scores]),
             status=status,
             reason=reason,
             stats=stats,
@@ -255,7 +264,8 @@ class Mapper:
             return "time_limit", f"the time limit was over after {done}; the poses are the best until then"
         if len(scores) >= LOST_AFTER and not scores[-LOST_AFTER:].any():
             return "lost", f"the last {LOST_AFTER} scans or more match nothing; their poses are odometry"
-        return "mapped", f"{stats.scans - stats.unmatched} scans matched, {stats.rejected} loops rejected"
+        loops = f"{stats.accepted} loops accepted, {stats.rejected} rejected"
+        return "mapped", f"{stats.scans - stats.unmatched} scans matched, {loops}"
 
     def list_loops(self, used: npt.NDArray[np.intp], edges: int) -> tuple[LoopClosure, ...]:
         """All loops that were found; edges: of the graph that come before the accepted ones."""

@@ -23,13 +23,18 @@ def is_mrclam(folder: Path) -> bool:
     return any((folder / f"Landmark_Groundtruth.dat{ending}").is_file() for ending in ("", ".gz"))
 
 
+def list_robots(folder: Path) -> list[int]:
+    """The numbers of the robots whose files are in a folder."""
+    return sorted({int(found[1]) for path in folder.iterdir() if (found := FILE.fullmatch(path.name))})
+
+
 def read_mrclam(folder: Path, robot: int | None) -> Log:
     """The log of one robot, the first unless given, with landmarks and truth.
 
     Readings name the barcode that was seen; Barcodes.dat says whose it is. Readings of other robots and of
     unknown barcodes are left out. The odometry is the commanded velocity. Source: Leung et al. 2011.
     """
-    numbers = sorted({int(found[1]) for path in folder.iterdir() if (found := FILE.fullmatch(path.name))})
+    numbers = list_robots(folder)
     if not numbers:
         raise LogError("no Robot1_Odometry.dat, Robot2_… in the folder", path=str(folder))
     if robot is not None and robot not in numbers:

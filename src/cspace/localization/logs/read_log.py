@@ -66,4 +66,7 @@ def read_by_content(lines: Lines) -> Log:
     if not words[0]:
         raise LogError("the file has no lines", path=lines.path)
     shown: Any = shorten(" ".join(words), 40)
-    raise lines.error(number, f"{shown!r} begins no log of CARMEN, MRCLAM, Victoria Park, TUM or KITTI")
+    remedy = "; words are separated by blanks, numbers have points" if "," in words[0] else ""
+    raise lines.error(
+        number, f"{shown!r} begins no log of CARMEN, MRCLAM, Victoria Park, TUM or KITTI{remedy}"
+    )

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, bounded_number, one_array, positive_number, whole_number
+from cspace.arrays import Array, bounded_number, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
+from cspace.localization.checks import Running, read_covariance, read_pose
 from cspace.localization.filters.rows import (
     adjoin_rows,
     carry_covariance,
@@ -18,18 +19,19 @@ from cspace.localization.filters.rows import (
     move_pose,
     relate_rows,
 )
-from cspace.localization.particles.models import FEWEST_BEAMS, ScanModel
+from cspace.localization.particles.models import FEWEST_BEAMS, ScanModel, find_walls, make_field
 from cspace.localization.particles.particle_filter import (
     FULL_STEP,
     OTHER_SHARE,
+    START_DEVIATIONS,
     measure_step,
     read_motion,
 )
 from cspace.localization.particles.placing import FreePlaces
 from cspace.localization.particles.state import FilterEvent, PoseMode
-from cspace.localization.sensors import LaserScanner
+from cspace.localization.sensors import LaserScanner, read_sensor
 from cspace.maps import ByteField
-from cspace.spatial import as_pose_2d, log_se2, pose_2d, rotation_2d, to_xytheta
+from cspace.spatial import log_se2, pose_2d, rotation_2d
 from cspace.tables import count_things, one_line
 from cspace.tolerances import LEAST_OF_BEST, STANDING, UNIFORM_SHARE
 
@@ -47,7 +49,7 @@ NARROWEST_BLUR: Final = 0.3
 """Standard deviation [cells] below which a blur moves nothing to the next cell."""
 
 
-class HistogramFilter:
+class HistogramFilter(Running):
     """Where a robot is, as the probability of each cell of x, y and θ.
 
     grid: an OccupancyGrid or an EvidenceGrid. motion, sensor: as of ParticleFilter, without the beam model.
@@ -57,6 +59,8 @@ class HistogramFilter:
     step some 20 ns per cell. Raises InputError for too many cells. Source: Thrun, Burgard & Fox 2005,
     section 8.2.
     """
+
+    _instead = "keep its belief"
 
     def __init__(
         self,
@@ -71,13 +75,16 @@ class HistogramFilter:
         threads: int = 1,
     ) -> None:
         if isinstance(grid, ByteField) or not hasattr(grid, "likelihood_field"):
-            raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid or an EvidenceGrid")
+            raise InputTypeError(
+                f"grid is a {type(grid).__name__}; give an OccupancyGrid or an EvidenceGrid, for ROS maps"
+                " cspace.maps.EvidenceGrid.from_ros(path)"
+            )
         self.grid, self.noise = grid, read_motion(motion)
         self.side = positive_number(resolution, "resolution")
         self.sectors = whole_number(headings, "headings", 8, 720)
         self.threads = whole_number(threads, "threads", 0, 1024)
         self._places = FreePlaces(grid, np.inf)
-        self._lay_cells(sensor or LaserScanner())
+        self._lay_cells(read_sensor(sensor, LaserScanner))
         self._pending, self._since, self._seconds = np.zeros(3), np.zeros(3), 0.0
         self._given: Array | None = None
         self._found: list[PoseMode] | None = None
@@ -91,33 +98,29 @@ class HistogramFilter:
         if sensor.model != "likelihood_field":
             raise InputError("the histogram filter has no beam model; give model='likelihood_field'")
         low, high = np.asarray(self._places.low), np.asarray(self._places.high)
-        columns, rows = np.ceil((high - low) / self.side).astype(int)
+        columns, rows = np.ceil((high - low) / self.side).tolist()
         if rows * columns * self.sectors > MOST_CELLS:
             raise InputError(
-                f"{rows} × {columns} × {self.sectors} cells are more than {MOST_CELLS}; give a coarser"
+                f"{rows:g} × {columns:g} × {self.sectors} cells are more than {MOST_CELLS}; give a coarser"
                 " resolution or fewer headings"
             )
+        columns, rows = int(columns), int(rows)
         x, y = low[0] + self.side * (np.arange(columns) + 0.5), low[1] + self.side * (np.arange(rows) + 0.5)
         theta = (np.arange(self.sectors) + 0.5) * (2 * np.pi / self.sectors) - np.pi
         self._axes = theta, y, x
-        free = self._places.find_coarse_cells(self.side, (int(rows), int(columns)))
+        free = self._places.find_coarse_cells(self.side, (rows, columns))
         self._free = np.repeat(free[None].astype(np.float64), self.sectors, axis=0)
         sigma = float(np.hypot(sensor.sigma, 0.5 * self.side))
-        self.model = ScanModel(self.grid.likelihood_field(sigma, sensor.floor), sensor)
+        self.model = ScanModel(make_field(find_walls(self.grid), sigma, sensor.floor), sensor)
         t, v, u = np.meshgrid(theta, y, x, indexing="ij")
         self._centers = np.stack([u.ravel(), v.ravel(), t.ravel()], axis=-1)
         self._cloud = _core.ParticleCloud(len(self._centers), 0)
         self._cloud.place(self._centers)
 
     def _put_start(self, start: npt.ArrayLike, covariance: npt.ArrayLike | None) -> None:
-        shape = np.shape(start)
-        pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
+        pose = read_pose(start)
         self._places.check_start(pose)
-        P = (
-            np.diag([0.01, 0.01, 0.0025])
-            if covariance is None
-            else one_array(covariance, "start_covariance", (3, 3))
-        )
+        P = np.diag(np.square(START_DEVIATIONS)) if covariance is None else read_covariance(covariance)
         cell = 2 * np.pi / self.sectors
         P = P + np.diag([self.side**2, self.side**2, cell**2]) / 12
         xi = find_twist(pose, self._centers)
@@ -130,12 +133,11 @@ class HistogramFilter:
     ) -> None:
         """Moves the probability by odometry, as ParticleFilter.predict; steps below a cell are kept until
         the next update."""
-        step = to_xytheta(as_pose_2d(increment, "increment")) if np.shape(increment) == (3, 3) else increment
-        row = one_array(step, "increment", (3,))
+        row = read_pose(increment, "increment")
         if covariance is not None:
             A = adjoin_rows(relate_rows(row, np.zeros(3)))
             Q = np.zeros((3, 3)) if self._given is None else self._given
-            self._given = carry_covariance(A, Q) + one_array(covariance, "covariance", (3, 3))
+            self._given = carry_covariance(A, Q) + read_covariance(covariance, "covariance")
         self._pending, self._since = follow_rows(self._pending, row), follow_rows(self._since, row)
         self._seconds += bounded_number(dt, "dt", 0.0, "give seconds, not below zero")
         self._found = None
@@ -160,6 +162,8 @@ class HistogramFilter:
         sector = 2 * np.pi / self.sectors
         turned = shift_axis(moved, self._pending[2] / sector, 0, wraps=True)
         self.belief = blur_axis(turned, np.sqrt(Q[2, 2]) / sector, 0, wraps=True)
+        if not self.belief.sum() > 0:  # it drove off the map
+            self.belief, self._is_known, self.updates = self._free.copy(), False, 0
         self.belief /= self.belief.sum()
         self._pending, self._seconds, self._given = np.zeros(3), 0.0, None
 
@@ -212,7 +216,7 @@ class HistogramFilter:
     @property
     def status(self) -> str:
         """One of "localised"; "ambiguous", with much of the probability in other modes; "lost", before the
-        first scan."""
+        first scan, and where the odometry left the map, until the next one."""
         if not self.updates and not self._is_known:
             return "lost"
         first, *others = self.modes
@@ -224,7 +228,8 @@ class HistogramFilter:
     def reason(self) -> str:
         """The status as one sentence."""
         listed = count_things(len(self.modes), "mode")
-        return f"{listed}, the heaviest with {self.modes[0].share:.0%} of the probability"
+        text = f"{listed}, the heaviest with {self.modes[0].share:.0%} of the probability"
+        return text if self.updates else f"{text}; nothing measured yet"
 
     def __bool__(self) -> bool:
         return self.status == "localised"

@@ -70,10 +70,10 @@ class Passage:
 
 
 def localize_on_map(
-    name: str, log: Log, grid: Any, made: MapFilter, sensor: Any, limit: float | None
+    name: str, log: Log, grid: Any, made: MapFilter, sensor: Any, begun: float, limit: float | None
 ) -> MapLocalization:
-    """Runs a filter along the odometry of a log, with its scans, or with its readings on Landmarks."""
-    begun = perf_counter()
+    """Runs a filter along the odometry of a log, with its scans, or with its readings on Landmarks; begun:
+    when its time limit began, by perf_counter."""
     times, measurements = list_measurements(log, grid, sensor)
     odometry = log.odometry
     inside = (times >= odometry.times[0]) & (times <= odometry.times[-1])

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, one_array
 from cspace.errors import InputError, InputTypeError
+from cspace.localization.checks import suggest_map
 from cspace.localization.log import UNKNOWN, Landmarks, Readings, Scans
 from cspace.localization.particles.beam_model import BeamTable
 from cspace.localization.particles.evidence import Evidence, RayJudge
@@ -89,7 +90,7 @@ class ScanModel:
             self.field = grid
         else:
             assert self.walls is not None
-            self.field = self.walls.likelihood_field(scanner.sigma, scanner.floor)
+            self.field = make_field(self.walls, scanner.sigma, scanner.floor)
         field = self.field
         self.map = _core.ScoreMap(field.scores, field.resolution, tuple(field.origin), field.outside)
         self.free = find_free_cells(grid, field)
@@ -198,6 +199,17 @@ def find_walls(grid: Any) -> OccupancyGrid:
     return walls
 
 
+def make_field(walls: OccupancyGrid, sigma: float, floor: float) -> ByteField:
+    """The likelihood field of the blocked cells that touch a free one. Beams end on these, and not inside of
+    what is solid, as unknown cells are that count as blocked: there every scan would fit."""
+    blocked = walls.blocked
+    padded = np.pad(blocked, 1, constant_values=True)
+    rows = padded[:-2] & padded[1:-1] & padded[2:]
+    inner = rows[:, :-2] & rows[:, 1:-1] & rows[:, 2:]
+    surfaces = OccupancyGrid(blocked & ~inner, walls.resolution, walls.origin) if inner.any() else walls
+    return surfaces.likelihood_field(sigma, floor)
+
+
 def find_free_cells(grid: Any, field: ByteField) -> npt.NDArray[np.bool_] | None:
     """The cells in which base may be; None where there is nothing to tell."""
     if isinstance(grid, ByteField):
@@ -288,10 +300,7 @@ def make_model(grid: Any, sensor: LaserScanner | RangeBearing | None) -> ScanMod
             )
         return SightingModel(grid, sensor or RangeBearing())
     if not isinstance(grid, ByteField) and not hasattr(grid, "likelihood_field"):
-        raise InputTypeError(
-            f"grid is a {type(grid).__name__}; give an OccupancyGrid, an EvidenceGrid, a ByteField or"
-            " Landmarks"
-        )
+        raise InputTypeError(f"grid is a {type(grid).__name__}, which is no map; {suggest_map(grid)}")
     if sensor is not None and not isinstance(sensor, LaserScanner):
         raise InputTypeError(f"a grid needs sensor=LaserScanner(…), not {type(sensor).__name__}")
     return ScanModel(grid, sensor or LaserScanner())

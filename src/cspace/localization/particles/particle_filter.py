@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_generator, bounded_number, one_array, whole_number
-from cspace.errors import InputError, InputTypeError
+from cspace.arrays import Array, as_generator, bounded_number, truth_value, whole_number
+from cspace.errors import InputError
+from cspace.localization.checks import Running, read_covariance, read_pose
 from cspace.localization.filters.rows import find_twist, follow_rows
 from cspace.localization.particles.models import (
     BEAM_MODEL_PARTICLES,
@@ -21,8 +22,8 @@ from cspace.localization.particles.placing import FreePlaces, lift_share, spread
 from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor, add_doubt
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
-from cspace.mobile import MotionNoise, RandomWalk
-from cspace.spatial import as_pose_2d, to_xytheta
+from cspace.mobile import MotionNoise
+from cspace.mobile.noise import read_noise
 from cspace.tables import count_things, one_line
 from cspace.tolerances import STANDING
 
@@ -67,7 +68,7 @@ KEPT_SHARE: Final = 0.1
 """The least share of the weight that the particles before a search keep: later scans may agree with them."""
 
 
-class ParticleFilter:
+class ParticleFilter(Running):
     """Where a robot is, as weighted poses: predict with odometry, update with scans or readings.
 
     grid: an OccupancyGrid or an EvidenceGrid, a ByteField, or Landmarks. motion: the noise of the odometry
@@ -81,6 +82,8 @@ class ParticleFilter:
     Raises InputError for too many particles, a map without free cells, a start off the map or in a wall.
     Source: Thrun, Burgard & Fox 2005, chapter 8.
     """
+
+    _instead = "keep its particles and weights, or make another one with the same rng="
 
     def __init__(
         self,
@@ -100,7 +103,7 @@ class ParticleFilter:
         self.noise = read_motion(motion)
         self.least, largest = read_sizes(self.model, n, most)
         self.threads = whole_number(threads, "threads", 0, 1024)
-        self.recover = bool(recover)
+        self.recover = truth_value(recover, "recover")
         self._rng = as_generator(rng)
         reach = sensor.most_range if isinstance(sensor, RangeBearing) else np.inf
         self._places = FreePlaces(grid, reach)
@@ -121,12 +124,11 @@ class ParticleFilter:
         if start is None:
             self._cloud.place(self._places.draw(self.least, self._rng))
             return
-        shape = np.shape(start)
-        pose = to_xytheta(as_pose_2d(start, "start")) if shape == (3, 3) else one_array(start, "start", (3,))
+        pose = read_pose(start)
         self._places.check_start(pose)
         P = np.diag(np.square(START_DEVIATIONS))
         if covariance is not None:
-            P = one_array(covariance, "start_covariance", (3, 3))
+            P = read_covariance(covariance)
         self._cloud.place(spread_poses(self._cloud, pose[None], P, self._places, self.least))
 
     # --- the two steps of the filter --------------------------------------------------------------------
@@ -138,13 +140,9 @@ class ParticleFilter:
         or (3, 3), that took dt [s], with noise. covariance (3, 3) of w in T D exp w, in the new base; unless
         given, that of the model of the motion. While the robot stands nothing happens.
         """
-        shape = np.shape(increment)
-        if shape == (3, 3):
-            step = to_xytheta(as_pose_2d(increment, "increment"))
-        else:
-            step = one_array(increment, "increment", (3,))
+        step = read_pose(increment, "increment")
         seconds = bounded_number(dt, "dt", 0.0, "give seconds, not below zero")
-        Q = None if covariance is None else one_array(covariance, "covariance", (3, 3))
+        Q = None if covariance is None else read_covariance(covariance, "covariance")
         if Q is not None:
             self._move()
         self._pending, self._since = follow_rows(self._pending, step), follow_rows(self._since, step)
@@ -357,12 +355,15 @@ class ParticleFilter:
             if not self.updates:
                 return "nothing was measured yet, and the start is unknown"
             return f"the best particle scores {self.score:.2f}, below {self._monitor.threshold:.2f}"
+        far, turned = first.spread
+        within = f"within {far:.2f} m and {np.degrees(turned):.1f}° (1σ)"
+        if status == "ambiguous" and not any(mode.share >= OTHER_SHARE for mode in self.modes[1:]):
+            return f"one place, but only {within}"
         if status == "ambiguous":
             return (
                 f"{count_things(len(self.modes), 'mode')}, the heaviest with {first.share:.0%} of the weight"
             )
-        far, turned = first.spread
-        return f"within {far:.2f} m and {np.degrees(turned):.1f}° (1σ), score {self.score:.2f}"
+        return within + (f", score {self.score:.2f}" if np.isfinite(self.score) else ", nothing measured yet")
 
     def __bool__(self) -> bool:
         return self.status == "localised"
@@ -382,15 +383,8 @@ def measure_step(row: Array) -> float:
 
 def read_motion(motion: Any | None) -> MotionNoise:
     """A model of noise. Raises InputTypeError for what is neither one nor a vehicle."""
-    if motion is None or hasattr(motion, "twist"):
-        return RandomWalk()
-    if not hasattr(motion, "covariance"):
-        raise InputTypeError(
-            f"motion is a {type(motion).__name__}; give a model of noise such as cspace.mobile.RandomWalk, or"
-            " a vehicle"
-        )
-    model: MotionNoise = motion
-    return model
+    is_vehicle = not isinstance(motion, type) and callable(getattr(motion, "twist", None))
+    return read_noise(None if is_vehicle else motion, "motion")
 
 
 def read_sizes(model: Any, n: int | None, most: int | None) -> tuple[int, int]:

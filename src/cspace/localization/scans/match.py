@@ -10,11 +10,12 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, guard_memory, one_array, one_number, positive_number
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError, check_known
+from cspace.localization.checks import read_pose
 from cspace.localization.scans.points import MOST_BEAMS, read_scan, thin_scan
 from cspace.maps import ByteField
-from cspace.spatial import as_pose_2d, to_xytheta
 from cspace.tables import one_line
+from cspace.tolerances import WIDEST_BELL
 
 METHODS: Final = ("correlation", "icp")
 AMBIGUOUS: Final = 0.95
@@ -74,14 +75,9 @@ def match_scan(
     least_score: of a match. Raises InputError for a scan without points, and UnknownNameError for another
     method.
     """
-    if method not in METHODS:
-        raise suggest("method", method, METHODS)
+    check_known("method", method, METHODS)
     points = thin_scan(read_scan(scan, "scan"), MOST_BEAMS)
-    near = (
-        to_xytheta(as_pose_2d(guess, "guess"))
-        if np.shape(guess) == (3, 3)
-        else one_array(guess, "guess", (3,))
-    )
+    near = read_pose(guess, "guess")
     reach, turn = read_window(window)
     least = one_number(least_score, "least_score")
     if isinstance(field, ByteField):
@@ -111,6 +107,7 @@ def read_window(window: Any) -> tuple[float, float]:
 def make_field(points: Array, resolution: float, sigma: float) -> ByteField:
     """A field of bells exp(−d²/2σ²) about points (m, 2); InputError for points that are too far apart."""
     cell, width = positive_number(resolution, "resolution"), positive_number(sigma, "sigma")
+    check_bell(cell, width, f"sigma is {width:g} m; give one of at most")
     try:
         with guard_memory("resolution", cell, np.ptp(points, axis=0).prod() / cell**2, "give larger cells"):
             scores, x, y = _core.make_field_of_points(points, cell, width)
@@ -120,6 +117,14 @@ def make_field(points: Array, resolution: float, sigma: float) -> ByteField:
             " beams without return, or give a larger resolution"
         ) from error
     return ByteField(scores, cell, np.array([x, y]))
+
+
+def check_bell(resolution: float, sigma: float, text: str) -> None:
+    """InputError for a bell of more than tolerances.WIDEST_BELL cells. text: what precedes the limit."""
+    if sigma > WIDEST_BELL * resolution:
+        raise InputError(
+            f"{text} {WIDEST_BELL * resolution:g} m, {WIDEST_BELL} cells of {resolution:g} m, or larger cells"
+        )
 
 
 def report_match(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import (
     Array,
+    any_array,
     bounded_number,
     guard_memory,
     one_array,
@@ -161,7 +162,7 @@ def _read_cells(free: Any, field: ByteField) -> npt.NDArray[np.uint8]:
     """A byte per cell, or none if all are free."""
     if free is None:
         return np.empty(0, np.uint8)
-    cells = np.asarray(free)
+    cells = any_array(free, "free")
     if cells.dtype != np.bool_ or cells.shape != field.scores.shape:
         raise InputError(
             f"free is {cells.dtype} of shape {cells.shape}; give truth values of the shape of the field,"
