@@ -17,13 +17,18 @@ from cspace.trajectory.path import Path
 from cspace.trajectory.timed_path import FEED, Grid, Places, TimedPath, move_along, move_along_path
 
 CHECKED_PLACES: Final = 10
-"""Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss."""
+"""Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss, and
+whose peak between them a parabola has but for a rounding."""
 
 MOST_ROUNDS: Final = 8
 """Of checking and tightening."""
 
 TIGHTENED: Final = 1.5
 """Multiple of what exceeds a limit by which it is tightened: the motion changes with it."""
+
+
+TIGHTENED_LEAST: Final = 1e-6
+"""Share of a limit that is added to that: else a round leaves a little of what its neighbours change."""
 
 
 @dataclass
@@ -187,7 +192,7 @@ class SampledLimits:
         return SampledLimits(self.path, self.torque, self.frame, expected)
 
     def measure(self, timed: TimedPath) -> Excess:
-        """How far limits are exceeded at samples of each interval."""
+        """How far limits are exceeded at samples of each interval, and by parabolas between them."""
         shares = np.arange(CHECKED_PLACES + 1.0) / CHECKED_PLACES
         at = timed._look_at(tuple(shares))
         q, qd, qdd = move_along_path(self.path, at)
@@ -199,23 +204,25 @@ class SampledLimits:
             if reverses.any():  # dry friction acts both ways there
                 dry = np.where(reverses, self.torque.dry, 0.0)
                 tau = np.abs(tau - dry * np.sign(qd).reshape(tau.shape)) + dry
-            over = (np.abs(tau) - self.torque.limit).max(axis=0)
+            over = _peaks(np.abs(tau)) - self.torque.limit
         if self.frame is not None:
-            used = self.frame.shares(q, qd).reshape(len(shares), -1).max(axis=0)
+            used = _peaks(self.frame.shares(q, qd).reshape(len(shares), -1))
         return Excess(over, used)
 
     def tighten_by(self, excess: Excess) -> bool:
         """Whether nothing is exceeded; else the limits are tightened where it is."""
         kept, (over, used) = True, excess
         slack = 0.0 if self.torque is None else LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)
-        if over is not None and (over > slack).any():
+        if over is not None and self.torque is not None and (over > slack).any():
             kept = False
             own = np.zeros_like(over) if self.margin is None else self.margin
-            self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
+            more = TIGHTENED * over + TIGHTENED_LEAST * self.torque.limit
+            self.margin = np.ascontiguousarray(own + np.where(over > slack, more, 0.0))
         if used is not None and (used > 1.0 + LIMIT_ROUNDING).any():
             kept = False
             own = np.ones_like(used) if self.slower is None else self.slower
-            self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
+            more = (used + TIGHTENED_LEAST) ** (2.0 * TIGHTENED)
+            self.slower = own * np.where(used > 1.0 + LIMIT_ROUNDING, more, 1.0)
         return kept
 
 
@@ -240,6 +247,16 @@ class Excess(NamedTuple):
             return own
 
         return Excess(inside(self.torque), inside(self.frame))
+
+
+def _peaks(values: Array) -> Array:
+    """The largest values (...) of the parabolas through three samples in a row, of samples (m, ...)."""
+    before, middle, after = values[:-2], values[1:-1], values[2:]
+    slope, bend = 0.5 * (after - before), after - 2.0 * middle + before
+    inside = np.abs(slope) < -bend
+    rise = np.where(inside, slope * slope, 0.0) / np.where(inside, -2.0 * bend, 1.0)
+    peaks: Array = np.maximum(values.max(axis=0), (middle + rise).max(axis=0))
+    return peaks
 
 
 def _inverse_squares(shares: Array) -> Array:
