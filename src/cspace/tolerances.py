@@ -678,6 +678,9 @@ PATH_CURVED: Final = 1e-9
 MOTION_CHECK_STEP: Final = 1e-3
 """[s] Between the configurations at which the result is checked once more."""
 
+MOTION_CHECK_EXCESS: Final = 1e-6
+"""Share of a limit from which on that check says it exceeded: it looks for faults, not for roundings."""
+
 SMOOTH_CORNER: Final = 1e-9
 """Change of direction that is rounding: the path goes straight on."""
 
