@@ -405,3 +405,18 @@ def test_sampled_limits_hold_between_their_samples(name, jerk):
             assert used.max() <= 1.0 + 1e-9
             assert used.max() > 0.5
     assert timed >= 5
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_dry_friction_at_rest_refuses_no_path(seed):
+    """At the instant at which a motion stands its dry friction is zero: a step of the torque at both ends."""
+    robot = cs.load_robot("puma560")
+    rng = np.random.default_rng(seed)
+    middle = robot.limits.range.mean(axis=0).clip(-1, 1)
+    weak = 0.5 * np.where(np.isfinite(robot.limits.effort), robot.limits.effort, 60.0)
+    options = {"velocity": 4.0, "acceleration": 20.0, "positions": False, "torque": weak}
+    for _ in range(20):
+        motion = cs.time_parametrize(cs.spline(middle + rng.uniform(-0.6, 0.6, (5, 6))), robot, **options)
+        assert motion, motion.reason
+        state = (motion(np.array([0.0, motion.duration]), order) for order in range(3))
+        assert (np.abs(robot.inverse_dynamics(*state)) <= weak * (1 + 1e-9)).all()

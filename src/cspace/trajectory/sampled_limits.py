@@ -71,12 +71,38 @@ class TorqueLimits:
         slopes = path.slope_controls(grid.piece, grid.begin, grid.end)
         return (slopes.min(axis=1) <= 0.0) & (slopes.max(axis=1) >= 0.0) & (self.dry > 0.0)
 
+    def bound_sizes(self, tau: Array, signs: Array, reverses: Any) -> Array:
+        """Sizes (m, k, dof) of torques, continuous along intervals; of samples (m, k, dof) of intervals.
+
+        signs: of the velocities. Where a motion stands the dry friction is that beside it, and where a joint
+        may reverse (k, dof) it acts both ways.
+        """
+        if not self.resists or not self.dry.any():
+            return np.abs(tau)
+        beside = signs.copy()
+        beside[0], beside[-1] = signs[1], signs[-2]
+        smooth = tau - self.dry * signs
+        both: Array = np.abs(smooth) + self.dry
+        return np.where(reverses, both, np.abs(smooth + self.dry * beside))
+
+    def find_spread(self, path: Path, grid: Grid, reverses: Any) -> Array:
+        """By which share of it dry friction may be more or less (k, dof) than what `terms` counts.
+
+        It acts both ways where joints may reverse (k, dof), and not at all at the instant at which a motion
+        stands: in intervals beside the ends and the stops half of it is counted.
+        """
+        stands = np.array(path.stop_flags, dtype=bool)
+        stands[[0, -1]] = True
+        beside = ((grid.begin == 0.0) & stands[grid.piece]) | ((grid.end == 1.0) & stands[grid.piece + 1])
+        spread: Array = np.where(reverses, 1.0, np.where(beside[:, None] & (self.dry > 0.0), 0.5, 0.0))
+        return spread
+
     def terms(
-        self, q: Array, slope: Array, bend: Array, squared_speed: Array, reverses: Any
+        self, q: Array, slope: Array, bend: Array, squared_speed: Array, spread: Array
     ) -> tuple[Array, ...]:
         """τ = along s̈ + across ṡ² + offset: the three terms, each (m, dof).
 
-        Where a joint reverses (m, dof) its dry friction, which may act both ways, is left out. Damping is
+        Of dry friction the part that is certain is counted: 1 − spread (m, dof) of it. Damping is
         proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
         """
         rest = np.zeros_like(q)
@@ -90,7 +116,7 @@ class TorqueLimits:
             self._torque(q, k * slope, bend, friction=True) - self._torque(q, k * slope, bend)
             for k in (1.0, 2.0)
         )
-        damping, dry = twice - once, np.where(reverses, 0.0, 2.0 * once - twice)
+        damping, dry = twice - once, (1.0 - spread) * (2.0 * once - twice)
         x = squared_speed[:, None]
         root = np.sqrt(np.maximum(x, STANDING_SPEED * squared_speed.max(initial=1.0)))
         return along, across + 0.5 * damping / root, weight + dry + 0.5 * damping * root
@@ -151,7 +177,7 @@ class SampledLimits:
         return along, across, offset, reversal if margin is None else margin, limit, inverse
 
     def _sample(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
-        """Along, across and offset of torques, dry friction (k, dof) of joints that reverse, inverse squares.
+        """Along, across and offset of torques, what of dry friction is not certain (k, dof), inverse squares.
 
         They are kept for the grid of the last call. Of damping they depend on the motion that is expected.
         """
@@ -163,10 +189,13 @@ class SampledLimits:
         q, slope, bend = self.path.evaluate_motion(pieces, places)
         along = across = offset = reversal = inverse = None
         if self.torque is not None:
-            reverses = self.torque.find_reversals(self.path, Grid(piece, begin, end))
-            reversal = np.where(reverses, self.torque.dry, 0.0) if reverses.any() else None
+            spread = np.zeros((len(piece), self.path.dof))
+            if self.torque.resists:
+                own = Grid(piece, begin, end)
+                spread = self.torque.find_spread(self.path, own, self.torque.find_reversals(self.path, own))
+                reversal = np.ascontiguousarray(spread * self.torque.dry) if spread.any() else None
             along, across, offset = self.torque.terms(
-                q, slope, bend, self._expected_at(pieces, places), np.repeat(reverses, 3, axis=0)
+                q, slope, bend, self._expected_at(pieces, places), np.repeat(spread, 3, axis=0)
             )
         if self.frame is not None:
             inverse = _inverse_squares(self.frame.shares(q, slope).reshape(-1, 3))
@@ -198,13 +227,11 @@ class SampledLimits:
         q, qd, qdd = move_along_path(self.path, at)
         over = used = None
         if self.torque is not None:
-            tau = self.torque.torques(q, qd, qdd)
-            tau = tau.reshape(len(shares), -1, self.path.dof)
+            shape = (len(shares), -1, self.path.dof)
+            tau = self.torque.torques(q, qd, qdd).reshape(shape)
             reverses = self.torque.find_reversals(self.path, timed.intervals)
-            if reverses.any():  # dry friction acts both ways there
-                dry = np.where(reverses, self.torque.dry, 0.0)
-                tau = np.abs(tau - dry * np.sign(qd).reshape(tau.shape)) + dry
-            over = _peaks(np.abs(tau)) - self.torque.limit
+            over = _peaks(self.torque.bound_sizes(tau, np.sign(qd).reshape(shape), reverses))
+            over = np.maximum(over, np.abs(tau).max(axis=0)) - self.torque.limit
         if self.frame is not None:
             used = _peaks(self.frame.shares(q, qd).reshape(len(shares), -1))
         return Excess(over, used)
