@@ -675,6 +675,9 @@ LEAST_DEVIATION: Final = 1e-3
 PATH_CURVED: Final = 1e-9
 """Second derivative above which a piece is a blend, not a leg."""
 
+PATH_START_ROUNDING: Final = 1e-8
+"""[rad or m] By which the begin of a joint path is moved onto the start: what Newton's method leaves."""
+
 MOTION_CHECK_STEP: Final = 1e-3
 """[s] Between the configurations at which the result is checked once more."""
 

@@ -104,7 +104,7 @@ def move_cartesian(
     tip about which it may turn freely ("z", or a direction (3,) in its frame). scene: obstacles; branches
     that touch them or the arm itself are left out, proved with `margin` [m] to spare. limits: True for
     those of the robot, False for none, or Limits. tolerance [m and rad]: the largest distance of the tip
-    from the path, checked at the middle of each piece of the joint path. as_far_as_possible: where no
+    from the path, checked at five places of each piece of the joint path. as_far_as_possible: where no
     branch arrives, the motion along the part of the path that the farthest one follows; stopped_by says
     what ends it, and s_end where.
 

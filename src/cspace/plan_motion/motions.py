@@ -173,7 +173,7 @@ def check_once_more(
 def find_excess(robot: Robot, timed: TimedPath, t: Array, q: Array, limits: dict[str, Any]) -> str:
     """The first limit that a motion exceeds at times t (k,), where it is at q (k, dof), in words.
 
-    limits: as of check_once_more. What they limit is computed anew, by derivatives and the model of the robot.
+    limits: as of check_once_more. What they limit is computed anew, by derivatives and the robot's model.
     """
     for name, share in _shares_of_limits(robot, timed, t, q, limits):
         exceeded = np.argwhere(share > 1.0 + MOTION_CHECK_EXCESS)

@@ -42,7 +42,7 @@ MOST_JERK_INTERVALS: Final = 3000
 """From which on grids are not halved further under jerk limits: a solution takes half a second."""
 
 ROUGHLY: Final = 0.01
-"""Of a motion without jerk limits, from which the search under them begins: how well its duration is known."""
+"""Of the duration of a motion without jerk limits, from which the search under them begins."""
 
 EMPTY_GRID: Final = Grid(np.zeros(0, dtype=np.int32), np.zeros(0), np.zeros(0))
 
