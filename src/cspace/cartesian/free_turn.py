@@ -22,7 +22,7 @@ from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
-from cspace.kinematics.batch import limits_of
+from cspace.kinematics.batch import check_robot, limits_of
 from cspace.math.wrapping import TURN
 from cspace.model import Limits
 from cspace.spatial import exp_so3, log_so3
@@ -53,6 +53,7 @@ def follow_free_turn(
     well chooses the turn first. start (dof,): any configuration that reaches the first pose up to such a
     turn. Other arguments as of follow_cartesian.
     """
+    check_robot(robot)
     check_cartesian_path(path)
     solver = as_solver(robot)
     if len(solver.redundant_joints) > 1:

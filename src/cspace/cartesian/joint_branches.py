@@ -22,7 +22,7 @@ from cspace.cartesian.refine import (
 from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.tracking.track import track
 from cspace.kinematics import KinematicModel
-from cspace.kinematics.batch import limits_of
+from cspace.kinematics.batch import check_robot, limits_of
 from cspace.model import Limits
 from cspace.tolerances import PATH_START_ROUNDING, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
@@ -94,6 +94,7 @@ def follow_cartesian(
     At the ends of its pieces a joint path attains position, slope and bend exactly: J q' = t and
     J q'' = t' − J' q' with the twist t of the path and its rate t'.
     """
+    check_robot(robot)
     check_cartesian_path(path)
     tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)

@@ -32,6 +32,18 @@ MOST_SAMPLES: Final = 100_000_000
 """Of one call of sample."""
 
 
+FACTORS: Final = (1e-30, 1e30)
+"""Of durations, least and largest: with others derivatives leave the range of numbers."""
+
+
+def read_factor(value: float) -> float:
+    """A factor of a duration; InputError for one that is not above zero, or beyond FACTORS."""
+    factor = positive_number(value, "factor", largest=FACTORS[1])
+    if factor < FACTORS[0]:
+        raise InputError(f"factor is {factor:g}; it must be {FACTORS[0]:g} or more")
+    return factor
+
+
 @show_fields
 class Samples(NamedTuple):
     """A trajectory at times that strictly increase, the last of them its end.
