@@ -161,3 +161,30 @@ def test_the_tip_is_near_its_path_everywhere_beside_singular_configurations_too(
         turned = np.linalg.norm(reached[:, :3, :3] - wanted[:, :3, :3], axis=(1, 2)) * np.sqrt(0.5)
         assert turned.max() <= 1e-5
     assert arrived >= 3
+
+
+@pytest.mark.parametrize("name", ["iiwa14", "panda", "xarm7", "gen3"])
+def test_singular_starts_of_redundant_arms_are_answered(name):
+    """No solution has a slope there: the motion goes on, or ends at a place with a cause, without errors."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(1)
+    for _ in range(6):
+        q = np.clip(rng.choice([0.0, 0.0, np.pi / 2, -np.pi / 2], robot.dof), *robot.limits.range)
+        T = robot.fk(q)
+        motion = move_cartesian(
+            robot, line_path(T, T @ cs.pose(rng.uniform(-0.1, 0.1, 3))), q, velocity=2.0, acceleration=5.0
+        )
+        assert motion or "at s = " in motion.reason
+
+
+@pytest.mark.parametrize(("name", "moves"), [("planar_3r", True), ("scara", True), ("planar_2r", False)])
+def test_a_free_turn_of_an_arm_with_few_joints(name, moves):
+    """Where a turn leaves a freedom it is searched; where it leaves none the answer says so, at once."""
+    robot = cs.load_robot(name)
+    q = robot.random_configuration(rng=np.random.default_rng(0), reach=0.6)
+    T = np.asarray(robot.fk(q))
+    goal = T.copy()
+    goal[:2, 3] *= 0.9
+    motion = move_cartesian(robot, line_path(T, goal), q, velocity=2.0, acceleration=5.0, free_axis="z")
+    assert bool(motion) == moves, motion.reason
+    assert moves or "no freedom" in motion.reason
