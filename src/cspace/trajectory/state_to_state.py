@@ -155,20 +155,17 @@ def state_to_state(
     Kröger 2010 states the problem; Berscheid and Kröger 2021 solve it by polynomials of degree six.
     """
     check_known("synchronize", synchronize, SYNCHRONIZE)
-    joint_names = read_names(joint_names)
+    names = read_names(joint_names)
     if synchronize == "time" and duration is cycle is lowest_velocity is lowest_acceleration is None:
-        motion = move_plain_states(
-            (start, start_velocity, start_acceleration, goal, goal_velocity, goal_acceleration),
-            (velocity, acceleration, jerk),
-            joint_names,
-        )
+        ends = start, start_velocity, start_acceleration, goal, goal_velocity, goal_acceleration
+        motion = move_plain_states(ends, (velocity, acceleration, jerk), names)
         if motion is not None:
             return motion[0]
     first = read_states(start, start_velocity, start_acceleration, "start")
     dof = first.shape[-1]
     last = read_states(goal, goal_velocity, goal_acceleration, "goal", dof)
     limits = AxisLimits(velocity, acceleration, jerk, lowest_velocity, lowest_acceleration, dof)
-    labels = joint_names if joint_names is not None else tuple(f"joint {j}" for j in range(dof))
+    labels = names if names is not None else tuple(f"joint {j}" for j in range(dof))
     if len(labels) != dof:
         raise InputError(f"joint_names has {len(labels)} names, start {dof} joints")
     check_accelerations(limits, labels)
@@ -182,7 +179,7 @@ def state_to_state(
     batch = solve_batch(
         first, last, limits, asked, shape, read_duration(cycle, "cycle"), synchronize, threads
     )
-    batch.joint_names = None if joint_names is None else labels
+    batch.joint_names = names
     return batch if shape else batch[0]
 
 
