@@ -12,7 +12,7 @@ from cspace.arrays import Array
 from cspace.dynamics import inverse_dynamics
 from cspace.kinematics import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED
+from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED, TIGHTENED_LEAST
 from cspace.trajectory.path import Path
 from cspace.trajectory.timed_path import FEED, Grid, Places, TimedPath, move_along, move_along_path
 
@@ -25,10 +25,6 @@ MOST_ROUNDS: Final = 8
 
 TIGHTENED: Final = 1.5
 """Multiple of what exceeds a limit by which it is tightened: the motion changes with it."""
-
-
-TIGHTENED_LEAST: Final = 1e-6
-"""Share of a limit that is added to that: else a round leaves a little of what its neighbours change."""
 
 
 @dataclass
