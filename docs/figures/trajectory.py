@@ -21,7 +21,7 @@ def main() -> None:
     motion = robot.move_to(goal, start=start, jerk=200)
     own = robot.limits
     limits = cs.Limits(own.lower, own.upper, own.velocity, own.acceleration, np.full(7, 150.0))
-    plot.save(plot.trajectory(motion, limits=limits), HERE / "trajectory.png")
+    plot.save(plot.trajectory(motion, limits=limits, robot=robot, speed=0.9), HERE / "trajectory.png")
 
 
 if __name__ == "__main__":

@@ -679,8 +679,21 @@ LEAST_DEVIATION: Final = 1e-3
 PATH_CURVED: Final = 1e-9
 """Second derivative above which a piece is a blend, not a leg."""
 
+TIGHTENED_LEAST: Final = 1e-6
+"""Share of a limit by which it is tightened at least where samples exceed it: else a round leaves a little of
+what its neighbours change."""
+
+LEAST_FACTOR: Final = 1e-30
+"""Of a duration, and the inverse of the largest: with others derivatives leave the range of numbers."""
+
+PATH_START_ROUNDING: Final = 1e-8
+"""[rad or m] By which the begin of a joint path is moved onto the start: what Newton's method leaves."""
+
 MOTION_CHECK_STEP: Final = 1e-3
 """[s] Between the configurations at which the result is checked once more."""
+
+MOTION_CHECK_EXCESS: Final = 1e-6
+"""Share of a limit from which on that check says it exceeded: it looks for faults, not for roundings."""
 
 SMOOTH_CORNER: Final = 1e-9
 """Change of direction that is rounding: the path goes straight on."""

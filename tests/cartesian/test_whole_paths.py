@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.cartesian import follow_cartesian, follow_free_turn, follow_redundant
+from cspace.cartesian import follow_cartesian, follow_free_turn, follow_redundant, move_cartesian
 from cspace.errors import InputError
 from cspace.trajectory import arc_path, line_path
 
@@ -122,3 +122,69 @@ def test_a_valve_turns_as_often_as_it_takes(axis, column, turns):
     tip = robot.fk(q)
     np.testing.assert_allclose(tip[:, :3, column], np.tile(valve["axis"], (2000, 1)), atol=3e-5)
     np.testing.assert_allclose(np.linalg.norm(tip[:, :3, 3] - valve["center"], axis=1), 0.08, atol=2e-5)
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda", "iiwa14", "puma560", "gen3"])
+def test_motions_of_the_tip_begin_at_their_start_in_every_bit(name):
+    robot = cs.load_robot(name)
+    rng, arrived = np.random.default_rng(2), 0
+    for q in robot.random_configuration(8, rng=rng, reach=0.6):
+        T = robot.fk(q)
+        path = line_path(T, T @ cs.pose(rng.uniform(-0.1, 0.1, 3), rpy=rng.uniform(-0.2, 0.2, 3)))
+        for free_axis in (None, "z"):
+            motion = move_cartesian(robot, path, q, velocity=2.0, acceleration=5.0, free_axis=free_axis)
+            if motion:
+                arrived += 1
+                assert (motion(0.0) == q).all()
+                assert motion.path.continuity >= 2
+    assert arrived >= 8
+
+
+@pytest.mark.parametrize(("name", "seed"), [("crx3ia", 7), ("irb120", 10), ("ur5e", 1), ("sawyer", 3)])
+def test_the_tip_is_near_its_path_everywhere_beside_singular_configurations_too(name, seed):
+    """Paths that end as near to the border of the reach as a branch goes; looked at between all nodes."""
+    robot = cs.load_robot(name)
+    rng, arrived = np.random.default_rng(seed), 0
+    for q in robot.random_configuration(6, rng=rng, reach=0.7):
+        T = robot.fk(q)
+        path = line_path(T, T @ cs.pose(2.0 * rng.normal(size=3)))
+        motion = move_cartesian(robot, path, q, velocity=2.0, acceleration=5.0, as_far_as_possible=True)
+        if not motion:
+            continue
+        arrived += 1
+        breaks = motion.path.breaks
+        s = np.unique(
+            (breaks[:-1, None] + np.linspace(0, 1, 41) * np.diff(breaks)[:, None]).clip(0, breaks[-1])
+        )
+        reached, wanted = robot.fk(motion.path(s)), motion.cartesian(s)
+        assert np.linalg.norm(reached[:, :3, 3] - wanted[:, :3, 3], axis=1).max() <= 1e-5
+        turned = np.linalg.norm(reached[:, :3, :3] - wanted[:, :3, :3], axis=(1, 2)) * np.sqrt(0.5)
+        assert turned.max() <= 1e-5
+    assert arrived >= 3
+
+
+@pytest.mark.parametrize("name", ["iiwa14", "panda", "xarm7", "gen3"])
+def test_singular_starts_of_redundant_arms_are_answered(name):
+    """No solution has a slope there: the motion goes on, or ends at a place with a cause, without errors."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(1)
+    for _ in range(6):
+        q = np.clip(rng.choice([0.0, 0.0, np.pi / 2, -np.pi / 2], robot.dof), *robot.limits.range)
+        T = robot.fk(q)
+        motion = move_cartesian(
+            robot, line_path(T, T @ cs.pose(rng.uniform(-0.1, 0.1, 3))), q, velocity=2.0, acceleration=5.0
+        )
+        assert motion or "at s = " in motion.reason
+
+
+@pytest.mark.parametrize(("name", "moves"), [("planar_3r", True), ("scara", True), ("planar_2r", False)])
+def test_a_free_turn_of_an_arm_with_few_joints(name, moves):
+    """Where a turn leaves a freedom it is searched; where it leaves none the answer says so, at once."""
+    robot = cs.load_robot(name)
+    q = robot.random_configuration(rng=np.random.default_rng(0), reach=0.6)
+    T = np.asarray(robot.fk(q))
+    goal = T.copy()
+    goal[:2, 3] *= 0.9
+    motion = move_cartesian(robot, line_path(T, goal), q, velocity=2.0, acceleration=5.0, free_axis="z")
+    assert bool(motion) == moves, motion.reason
+    assert moves or "no freedom" in motion.reason

@@ -337,7 +337,7 @@ def test_a_path_in_time_is_written_as_samples(tmp_path):
     assert float(re.search(r"trajectory: ([0-9.]+) s", slow.out)[1]) > 1.5 * motion.duration
     assert "time_from_start" in message.read_text()
     for words, fault in (
-        (f"--trajectory {tmp_path / 'move.txt'}", "must be .yaml or .csv"),
+        (f"--trajectory {tmp_path / 'move.txt'}", "must be .yaml, .csv or .json"),
         ("--jerk 2", "--trajectory"),
         (f"--plot {tmp_path / 'move.gif'}", "picture format"),
     ):

@@ -53,3 +53,39 @@ def test_limits_of_the_caller_are_told_apart_from_those_of_the_robot():
     assert result.code == 0
     assert "panda_joint1 exceeds its velocity limit" in result.out
     assert "TrajectoryCheck" not in result.out
+
+
+@pytest.mark.parametrize("verb", ["traj", "plan"])
+def test_missing_limits_are_named_by_their_options(verb, tmp_path):
+    goal = f"--trajectory {tmp_path / 'a.yaml'}" if verb == "plan" else ""
+    result = cspace(f"{verb} ur5e --to up {goal}")
+    assert result.code == 2
+    assert "pass --acceleration" in result.err
+    assert "=" not in result.err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8",
+        "traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --profile quintic",
+        "traj panda --from ready --line 0.4 0.2 0.4 --jerk 400",
+        "plan panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8",
+    ],
+)
+def test_a_json_file_is_the_motion_itself(words, tmp_path):
+    file, samples = tmp_path / "a.json", tmp_path / "a.csv"
+    option = "--trajectory" if words.startswith("plan") else "-o"
+    assert cspace(f"{words} {option} {file}").code == 0
+    assert cspace(f"{words} {option} {samples} --rate 250").code == 0
+    motion, read = cs.trajectory.from_json(file), cs.trajectory.from_csv(samples)
+    assert motion.duration == read.duration
+    t = motion.sample(250.0).times
+    np.testing.assert_allclose(motion(t), read(t), atol=1e-12)
+
+
+def test_a_film_and_a_picture_of_a_motion(tmp_path):
+    words = "traj planar_3r --from 2.2 -1.2 -0.6 --to 1.9 -1.1 -0.5 --velocity 2 --acceleration 6 --jerk 40"
+    for name, magic in (("a.gif", b"GIF8"), ("a.png", b"\x89PNG")):
+        assert cspace(f"{words} --plot {tmp_path / name}").code == 0
+        assert (tmp_path / name).read_bytes()[:4] == magic

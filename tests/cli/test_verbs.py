@@ -187,7 +187,7 @@ def test_traj_goes_through_waypoints_and_along_lines(tmp_path):
         (f"--from ready --to {GOAL} --blend 0.1", "--blend does not go with --to"),
         ("--from ready --line 1 0", "--line has 2 numbers"),
         ("--from ready --line 0.4 0 0.5 --profile cubic", "--profile does not go with --line"),
-        (f"--from ready --to {GOAL} -o move.txt", "it must be .yaml or .csv"),
+        (f"--from ready --to {GOAL} -o move.txt", "it must be .yaml, .csv or .json"),
         ("--waypoints nowhere.csv", "nowhere.csv"),
     ],
 )

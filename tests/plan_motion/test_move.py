@@ -5,6 +5,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError
+from cspace.plan_motion.motions import find_excess
 
 START = np.array([0.0, -0.5, 0.0, -2.0, 0.0, 1.6, 0.8])
 
@@ -91,3 +92,49 @@ def test_where_there_is_no_motion_it_says_why():
         cs.move(robot, START, START + 0.1, deviation=-1)
     with pytest.raises(InputError, match="pass acceleration="):
         cs.move(cs.load_robot("ur5e"), np.array([0, -1, 1, 0, 1, 0]), np.array([0.2, -1, 1, 0, 1, 0]))
+
+
+@pytest.mark.parametrize("name", ["velocity", "acceleration", "jerk", "torque", "speed", "turn_rate"])
+def test_the_last_check_finds_every_limit_that_is_exceeded(name):
+    """It stands on its own: a motion that was timed with other limits is caught, wherever it exceeds one."""
+    robot = cs.load_robot("panda")
+    rng = np.random.default_rng(7)
+    path = cs.spline(START + rng.uniform(-0.4, 0.4, (4, 7)))
+    motion = cs.time_parametrize(path, robot, jerk=True)
+    t = np.linspace(0.0, motion.duration, 2001)
+    q, qd, qdd, jerk = (motion(t, order) for order in range(4))
+    twist = np.einsum("kij,kj->ki", robot.jacobian(q), qd)
+    values = {
+        "velocity": np.abs(qd),
+        "acceleration": np.abs(qdd),
+        "jerk": np.abs(jerk),
+        "torque": np.abs(robot.inverse_dynamics(q, qd, qdd)),
+        "speed": np.linalg.norm(twist[:, :3], axis=1)[:, None],
+        "turn_rate": np.linalg.norm(twist[:, 3:], axis=1)[:, None],
+    }[name]
+    most = values.max(axis=0)
+    single = name in ("speed", "turn_rate")
+    enough = {name: float(most[0]) if single else most}
+    assert find_excess(robot, motion, t, q, {"jerk": True}) == ""
+    assert find_excess(robot, motion, t, q, enough) == ""
+    for j in range(values.shape[1]):
+        less = np.array(most)
+        less[j] *= 0.999
+        fault = find_excess(robot, motion, t, q, {name: float(less[0]) if single else less})
+        first = t[np.argmax(values[:, j] > less[j] * (1 + 1e-6))]
+        assert f"{'the tip' if single else robot.joint_names[j]} exceeds its {name} limit" in fault
+        assert f"at {first:.6g} s" in fault
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_limits_of_every_kind_pass_the_last_check(seed):
+    robot, rng = cs.load_robot("panda"), np.random.default_rng(seed)
+    goals = robot.random_configuration(40, rng=rng, reach=0.8)
+    goal = goals[~cs.collision.collides(robot, goals, shelf())][0]
+    for options in (
+        {"jerk": True, "torque": True},
+        {"velocity": 0.5, "speed": 0.3, "turn_rate": 1.0},
+        {"acceleration": 60.0, "torque": 0.6 * robot.limits.effort},
+    ):
+        motion = cs.move(robot, START, goal, shelf(), **options)
+        assert motion, motion.reason

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import InputError
-from cspace.trajectory import PolynomialTrajectory
+from cspace.errors import CspaceError, InputError, InputTypeError
+from cspace.trajectory import PolynomialTrajectory, state_to_state
 from cspace.trajectory.polynomials import attain_end
 
 
@@ -150,3 +150,60 @@ def test_bad_pieces_are_refused():
         PolynomialTrajectory([0, 2, 1], np.zeros((1, 2, 4)))
     with pytest.raises(InputError, match="limits is of 3 joints"):
         rest_to_rest().check(cs.Limits([0] * 3, [1] * 3))
+
+
+NOT_NUMBERS = ("x", b"x", [], object(), {}, 1 + 2j, None, np.nan, np.array(["a"]), lambda: 0)
+
+
+def every_kind():
+    """A motion of each class."""
+    way = cs.spline([[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]])
+    limits = {"velocity": 1.0, "acceleration": 1.0}
+    made = state_to_state([0.0, 0.0], [1.0, 1.0], jerk=1.0, **limits)
+    timed = [cs.time_parametrize(way, **limits), cs.time_parametrize(way, jerk=5.0, **limits)]
+    return [made, *timed, made.then(made.reversed())]
+
+
+@pytest.mark.parametrize("kind", range(4))
+def test_calls_with_anything_but_numbers_are_refused(kind):
+    motion = every_kind()[kind]
+    calls = [motion, motion.sample, motion.scaled, lambda x: motion(0.1, x)]
+    if hasattr(motion, "parameter"):
+        calls += [motion.parameter, lambda x: motion.parameter(0.1, x)]
+    for call in calls:
+        for value in NOT_NUMBERS:
+            if isinstance(value, list) and call in (motion, getattr(motion, "parameter", None)):
+                continue  # no times at all: no answers
+            with pytest.raises(CspaceError):
+                call(value)
+
+
+@pytest.mark.parametrize("kind", range(4))
+def test_any_factor_makes_a_motion_of_finite_numbers_or_is_refused(kind):
+    motion = every_kind()[kind]
+    for power in (*range(-300, 301, 20), -29, -15, 15, 29):
+        factor = 10.0**power
+        if not 1e-30 <= factor <= 1e30:
+            with pytest.raises(InputError, match="factor"):
+                motion.scaled(factor)
+            continue
+        other = motion.scaled(factor)
+        assert other.duration == pytest.approx(factor * motion.duration)
+        t = np.linspace(0.0, 1.0, 30)
+        np.testing.assert_allclose(other(t * other.duration), motion(t * motion.duration), atol=1e-9)
+        for order in (1, 2, 3):
+            assert np.isfinite(other(t * other.duration, order)).all()
+
+
+def test_no_jerk_limit_is_none_or_infinity():
+    ends = ([0.0, 0.3], [1.0, -1.0])
+    limits = {"velocity": 1.0, "acceleration": [1.0, 2.0]}
+    for options in ({}, {"cycle": 0.01}, {"duration": 9.0}, {"synchronize": "none"}):
+        one, other, third = (
+            state_to_state(*ends, **limits, **options, **each)
+            for each in ({}, {"jerk": None}, {"jerk": np.inf})
+        )
+        assert one.duration == other.duration == third.duration
+    for names in (3, 0.5, "ab", [1, 2], object()):
+        with pytest.raises(InputTypeError, match="joint_names"):
+            state_to_state(*ends, **limits, joint_names=names)

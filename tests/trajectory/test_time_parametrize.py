@@ -369,3 +369,54 @@ def test_the_feed_is_held_but_where_a_limit_is_named():
         cs.time_parametrize(cs.spline(q), robot, acceleration=6.0).below_feed()
     with pytest.raises(InputError, match="more than speed"):
         cs.time_parametrize(cs.spline(q), robot, acceleration=6.0, feed=1.0, speed=0.5)
+
+
+def fine_times(motion, parts=20):
+    """Times of a grid that is finer by far than the samples of the limits."""
+    t = motion.knots
+    return np.unique(t[:-1, None] + np.linspace(0.0, 1.0, parts + 1) * np.diff(t)[:, None]).clip(0, t[-1])
+
+
+@pytest.mark.parametrize("jerk", [None, 400.0])
+@pytest.mark.parametrize("name", ["panda", "puma560"])
+def test_sampled_limits_hold_between_their_samples(name, jerk):
+    """Torques with dry friction, tip speed and turn rate, on a finer grid, from both sides of each place."""
+    robot = cs.load_robot(name)
+    rng, timed = np.random.default_rng(5), 0
+    middle = robot.limits.range.mean(axis=0).clip(-1, 1)
+    effort = 0.6 * np.where(np.isfinite(robot.limits.effort), robot.limits.effort, 60.0)
+    for k in range(8):
+        path = cs.spline(middle + rng.uniform(-0.6, 0.6, (4, robot.dof)))
+        limits = {"velocity": 3.0, "acceleration": 15.0, "jerk": jerk, "positions": False}
+        asked = {"torque": effort} if k % 2 else {"speed": 0.4, "turn_rate": 0.9}
+        motion = cs.time_parametrize(path, robot, **limits, **asked)
+        if not motion:
+            continue
+        timed += 1
+        t = fine_times(motion)
+        for before in (False, True):
+            q, qd, qdd = (motion._evaluate(t, order, before) for order in range(3))
+            if k % 2:
+                used = np.abs(robot.inverse_dynamics(q, qd, qdd)) / effort
+            else:
+                twist = np.einsum("kij,kj->ki", robot.jacobian(q), qd)
+                rates = (np.linalg.norm(twist[:, part], axis=1) for part in (slice(3), slice(3, 6)))
+                used = np.stack(list(rates), axis=1) / [0.4, 0.9]
+            assert used.max() <= 1.0 + 1e-9
+            assert used.max() > 0.5
+    assert timed >= 5
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_dry_friction_at_rest_refuses_no_path(seed):
+    """At the instant at which a motion stands its dry friction is zero: a step of the torque at both ends."""
+    robot = cs.load_robot("puma560")
+    rng = np.random.default_rng(seed)
+    middle = robot.limits.range.mean(axis=0).clip(-1, 1)
+    weak = 0.5 * np.where(np.isfinite(robot.limits.effort), robot.limits.effort, 60.0)
+    options = {"velocity": 4.0, "acceleration": 20.0, "positions": False, "torque": weak}
+    for _ in range(20):
+        motion = cs.time_parametrize(cs.spline(middle + rng.uniform(-0.6, 0.6, (5, 6))), robot, **options)
+        assert motion, motion.reason
+        state = (motion(np.array([0.0, motion.duration]), order) for order in range(3))
+        assert (np.abs(robot.inverse_dynamics(*state)) <= weak * (1 + 1e-9)).all()

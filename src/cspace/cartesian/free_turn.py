@@ -22,16 +22,25 @@ from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
-from cspace.kinematics.batch import limits_of
+from cspace.kinematics.batch import check_robot, limits_of
 from cspace.math.wrapping import TURN
 from cspace.model import Limits
 from cspace.spatial import exp_so3, log_so3
 from cspace.spatial.vectors import AXES, cross, length_and_direction
+from cspace.tolerances import SINGULAR_VALUE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
 
 ANGLES: Final = 48
 """Of the free turn that are tried at each station: 7.5° apart."""
+
+CONFIGURATIONS_LOOKED_AT: Final = 3
+"""For the freedom that an arm has."""
+
+NO_FREEDOM: Final = (
+    "a free turn leaves this arm no freedom: it reaches each pose at single angles, which are not searched"
+)
+"""Of arms with few joints."""
 
 JOINT_VALUES: Final = 12
 """Of the redundant joint that are tried with each of them, where an arm has one as well."""
@@ -53,6 +62,7 @@ def follow_free_turn(
     well chooses the turn first. start (dof,): any configuration that reaches the first pose up to such a
     turn. Other arguments as of follow_cartesian.
     """
+    check_robot(robot)
     check_cartesian_path(path)
     solver = as_solver(robot)
     if len(solver.redundant_joints) > 1:
@@ -63,7 +73,11 @@ def follow_free_turn(
     bounds = limits_of(robot.limits, limits, robot.name)
     stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")
-    freedom = FreeTurn(robot, solver, tool_axis(axis), bounds)
+    along = tool_axis(axis)
+    if not solver.redundant_joints and not has_freedom(robot, along):
+        q = np.zeros((0, robot.dof)) if first is None else first[None]
+        return end_of_chain(q, 0.0, "unreachable", f"at s = 0: {NO_FREEDOM}", robot.dof)
+    freedom = FreeTurn(robot, solver, along, bounds)
     chain = ChainSearch(robot, freedom, stations, bounds, first).run()
     if chain.reason:
         return end_of_chain(chain.q, float(stations.s[len(chain.q)]), chain.cause, chain.reason, robot.dof)
@@ -97,6 +111,22 @@ def follow_turned(
     guess = np.stack([np.interp(at, s, column) for column in chain.T], axis=1)
     found = refine_branches(robot, turned, LeastMotion(robot, turned), guess[None], tolerance)
     return make_branch(chain[0], found[0])
+
+
+def has_freedom(robot: KinematicModel, axis: Array) -> bool:
+    """Whether joints can move while the tip keeps its place and an axis (3,) of it its direction.
+
+    At one of some configurations: at singular ones there is more freedom.
+    """
+    rng = np.random.default_rng(0)
+    for q in rng.uniform(-1.0, 1.0, (CONFIGURATIONS_LOOKED_AT, robot.dof)):
+        direction = robot.fk(q)[:3, :3] @ axis
+        across = np.linalg.svd(direction[None])[2][1:]
+        J = robot.jacobian(q)
+        sizes = np.linalg.svd(np.concatenate([J[:3], across @ J[3:]]), compute_uv=False)
+        if np.sum(sizes > SINGULAR_VALUE) == robot.dof:
+            return False
+    return True
 
 
 def tool_axis(axis: str | ArrayLike) -> Array:

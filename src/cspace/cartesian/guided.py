@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cspace.arrays import Array
 from cspace.cartesian.refine import Nodes
@@ -19,6 +20,9 @@ from cspace.trajectory.splines import quintic_controls
 
 ANCHOR: Final = 1e9
 """Weight of the start in the smoothing: it stays where it is."""
+
+FARTHEST_JOINT: Final = 1e6
+"""[rad or m] And per metre: a configuration or a slope that is beyond is lost beside a singular one."""
 
 CORRECTIONS: Final = 12
 """Of Newton's method from the spline between stations."""
@@ -60,20 +64,30 @@ class Guided:
         return values[:, : self.robot.dof], values[:, self.robot.dof :]
 
     def __call__(self, piece: Indices, u: Array, T: Array, guess: Array) -> Nodes:
-        """Newton's method; then J q' = t and J q'' = t' − J' q', with the derivatives of the last row."""
+        """Newton's method; then J q' = t and J q'' = t' − J' q', with the derivatives of the last row.
+
+        A node that is lost beside a singular configuration is on the guiding curve, with an infinite rest.
+        """
         r, d = zip(*(self.guide(piece, u, order) for order in range(3)), strict=True)
-        q = np.array(guess)
+        lost = ~_are_usable(guess)
+        q = np.where(lost[:, None], r[0], guess)
         left = np.full(len(q), np.inf)
         for _ in range(CORRECTIONS):
             error, left = self._measure_error(q, T)
-            if not (left > POSE_ROUNDING).any():
+            if not (left[~lost] > POSE_ROUNDING).any():
                 break
-            q += self._solve(q, d[0], error, _dot(d[0], r[0] - q))
+            moved = q + self._solve(q, d[0], error, _dot(d[0], r[0] - q))
+            lost |= ~_are_usable(moved)
+            q = np.where(lost[:, None], r[0], moved)
         twist, rate = self.path.twists_on(piece, u)
         slope = self._solve(q, d[0], twist, _dot(d[0], r[1]) + _dot(d[1], r[0] - q))
+        lost |= ~_are_usable(slope)
+        slope[lost] = 0.0
         rate = rate - np.einsum("nij,nj->ni", jacobian_dot(self.robot, q, slope), slope)
         last = _dot(d[0], r[2]) + 2 * _dot(d[1], r[1] - slope) + _dot(d[2], r[0] - q)
-        return Nodes(q, slope, self._solve(q, d[0], rate, last), left)
+        bend = self._solve(q, d[0], rate, last)
+        bend[lost] = 0.0
+        return Nodes(q, slope, bend, np.where(lost, np.inf, left))
 
     def _solve(self, q: Array, direction: Array, task: Array, last: Array) -> Array:
         """x with J x = task and direction · x = last, for each row; NaN where it is singular."""
@@ -82,15 +96,26 @@ class Guided:
         try:
             return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
         except np.linalg.LinAlgError:
-            return np.full_like(q, np.nan)
+            return np.stack([_solve_one(*row) for row in zip(matrix, right, strict=True)])
 
     def _measure_error(self, q: Array, T: Array) -> tuple[Array, Array]:
-        if not np.isfinite(q).all():
-            return np.full((len(q), 6), np.nan), np.full(len(q), np.inf)
         reached = self.robot.fk(q)
         turned = log_so3(T[:, :3, :3] @ np.swapaxes(reached[:, :3, :3], 1, 2))
         error = np.concatenate([T[:, :3, 3] - reached[:, :3, 3], turned], axis=1)
         return error, np.abs(error).max(axis=1)
+
+
+def _are_usable(rows: Array) -> NDArray[np.bool_]:
+    """Which rows (n, dof) are numbers from which there is a way on: beside singular ones they are huge."""
+    return np.asarray((np.abs(rows) < FARTHEST_JOINT).all(axis=1))
+
+
+def _solve_one(matrix: Array, right: Array) -> Array:
+    """x with matrix x = right; NaN where it is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.full_like(right, np.nan)
 
 
 def _dot(a: Array, b: Array) -> Array:

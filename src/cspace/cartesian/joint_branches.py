@@ -22,9 +22,9 @@ from cspace.cartesian.refine import (
 from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.tracking.track import track
 from cspace.kinematics import KinematicModel
-from cspace.kinematics.batch import limits_of
+from cspace.kinematics.batch import check_robot, limits_of
 from cspace.model import Limits
-from cspace.tolerances import SHORTEST_PATH_PIECE
+from cspace.tolerances import PATH_START_ROUNDING, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
 
@@ -88,12 +88,13 @@ def follow_cartesian(
     """The joint paths along a Cartesian path, as quintic pieces that keep to it within a tolerance.
 
     path: of the tip. start (dof,) [rad or m]: follow the branch of this configuration alone. limits: as of
-    robot.track. tolerance [m and rad]: the largest distance at the middle of each piece, which is halved
+    robot.track. tolerance [m and rad]: the largest distance at five places of each piece, which is halved
     until it is attained; the error falls with the sixth power of its length.
 
     At the ends of its pieces a joint path attains position, slope and bend exactly: J q' = t and
     J q'' = t' − J' q' with the twist t of the path and its rate t'.
     """
+    check_robot(robot)
     check_cartesian_path(path)
     tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)
@@ -105,8 +106,9 @@ def follow_cartesian(
     if whole:
         q = np.array([branch.q for branch in whole])[:, np.cumsum(is_new) - 1]
         refined = iter(refine_branches(robot, path, LeastMotion(robot, path), q, tolerance, (piece, u)))
+    given = None if start is None else np.asarray(start, dtype=np.float64)
     branches = tuple(
-        end_at_limits(make_branch(branch.q[0], next(refined)), bounds, robot)
+        end_at_limits(make_branch(branch.q[0] if given is None else given, next(refined)), bounds, robot)
         if branch
         else _ended(branch, s_of_row)
         for branch in found.branches
@@ -143,9 +145,24 @@ def _are_new(piece: Indices) -> NDArray[np.bool_]:
 def make_branch(q_start: Array, found: Refined) -> JointBranch:
     """The branch of a joint path that was found, or that cannot go on somewhere."""
     if found.path is not None:
-        return JointBranch(found.path, q_start, found.path.length, "end", None, "", found.deviation)
+        path = begin_at(found.path, q_start)
+        return JointBranch(path, q_start, path.length, "end", None, "", found.deviation)
     text = f"at s = {found.s_lost:.6g}: {BESIDE_SINGULAR}"
     return JointBranch(None, q_start, found.s_lost, "singularity", None, text, NO_DEVIATION)
+
+
+def begin_at(path: Path, q_start: Array) -> Path:
+    """A path that begins at q_start (dof,) in every bit, if it does but for rounding.
+
+    The first three control points are moved, so that slope and bend stay as they are.
+    """
+    gap = q_start - path.start
+    if not gap.any() or not np.abs(gap).max() <= PATH_START_ROUNDING:
+        return path
+    control = np.array(path.control_points)
+    control[0, 1:3] += gap
+    control[0, 0] = q_start
+    return Path(path.breaks, control, remarks=path.remarks)
 
 
 def end_at_limits(branch: JointBranch, bounds: Limits, robot: KinematicModel) -> JointBranch:

@@ -16,7 +16,7 @@ from cspace.cartesian.scene_check import find_touches, space_of_curves
 from cspace.errors import InputError
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel
-from cspace.kinematics.batch import limits_of
+from cspace.kinematics.batch import check_robot, limits_of
 from cspace.model import Limits
 from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike, one_pose
@@ -104,7 +104,7 @@ def move_cartesian(
     tip about which it may turn freely ("z", or a direction (3,) in its frame). scene: obstacles; branches
     that touch them or the arm itself are left out, proved with `margin` [m] to spare. limits: True for
     those of the robot, False for none, or Limits. tolerance [m and rad]: the largest distance of the tip
-    from the path, checked at the middle of each piece of the joint path. as_far_as_possible: where no
+    from the path, checked at five places of each piece of the joint path. as_far_as_possible: where no
     branch arrives, the motion along the part of the path that the farthest one follows; stopped_by says
     what ends it, and s_end where.
 
@@ -113,6 +113,7 @@ def move_cartesian(
     joints slow the tip down, and `binding` says which. Raises InputError for wrong shapes, NaN, and a start
     that is not at the begin of the path.
     """
+    check_robot(robot)
     check_cartesian_path(path)
     first = None if start is None else _check_start(robot, path, start, free_axis is not None)
     if first is not None and (outside := _explain_outside(robot, first, limits)):

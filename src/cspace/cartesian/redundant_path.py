@@ -17,7 +17,7 @@ from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
 from cspace.kinematics import KinematicModel
-from cspace.kinematics.batch import limits_of
+from cspace.kinematics.batch import check_robot, limits_of
 from cspace.math.wrapping import wrap_near
 from cspace.model import Limits
 from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path
@@ -50,6 +50,7 @@ def follow_redundant(
 
     Bellman 1957 (dynamic programming); Whittaker 1922 (smoothing by differences).
     """
+    check_robot(robot)
     check_cartesian_path(path)
     solver = as_solver(robot)
     if len(solver.redundant_joints) != 1:

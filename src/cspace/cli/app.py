@@ -48,6 +48,7 @@ SHELL_WORDS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "cs.robots.names()": "cspace robots",
         "cs.robots.search()": "cspace robots WORD",
+        ", with inf for none": "",
         "robot.with_spheres(…)": "--spheres FILE",
         'load the robot with geometry="skeleton"': "--geometry skeleton",
         "robot.escape leads out of it": "move it away from there",

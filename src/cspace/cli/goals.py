@@ -30,9 +30,9 @@ GOAL_WORDS: Final = ("xyz", "xy", "angle", *ORIENTATIONS, "matrix", *POINTED)
 """Every word of a goal."""
 KEYWORDS: Final = re.compile(
     r"\b(position|rotation|direction|look_at|ray|angle_to|angle|tool_axis|locked|swivel|samples|near"
-    r"|least_squares|goal_parts)=(?=[^=]|$)"
+    r"|least_squares|goal_parts|velocity|acceleration|jerk|duration|speed|turn_rate|torque)=(?=[^=]|$)"
 )
-"""The keywords of robot.ik that are options here."""
+"""The keywords of robot.ik and of motions that are options here."""
 NO_GOAL: Final = (
     "no goal is given: give a pose (--matrix, or --xyz with one of --rpy, --wxyz, --xyzw and --rotation), or"
     " the parts of one that matter (--xyz, --xy, --direction, --look-at, --ray, an orientation alone)"

@@ -3,6 +3,7 @@ result."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, Final
 
 import numpy as np
@@ -17,7 +18,7 @@ from cspace.plan_motion.plans import Seed, plan
 from cspace.planning import ArmPlanner, ArmSpace, Plan
 from cspace.robot import Robot
 from cspace.tables import one_line, shown
-from cspace.tolerances import LEAST_DEVIATION, MOTION_CHECK_STEP, PATH_CURVED
+from cspace.tolerances import LEAST_DEVIATION, MOTION_CHECK_EXCESS, MOTION_CHECK_STEP, PATH_CURVED
 from cspace.trajectory import Path, TimedPath, blend, time_parametrize
 from cspace.trajectory.timed_motion import TimedMotion, stand_still
 
@@ -64,8 +65,8 @@ def move(
 ) -> Motion:
     """The motion of a robot to a goal around obstacles, as fast as its limits allow.
 
-    A free way is planned, its corners are rounded, the path is timed, and the result is checked once more at
-    configurations along it.
+    A free way is planned, its corners are rounded, the path is timed, and the result is checked once more
+    against the scene and all limits, at times along it.
 
     start (dof,) [rad or m], or a named pose. goal, scene, planner, margin, rng, options: as of plan.
     deviation [rad or m, L2 norm]: how far the motion may pass from the corners of the plan; less where
@@ -111,7 +112,7 @@ def time_plan(
     timed = time_parametrize(path, robot, positions=False, **limits)
     if not timed:
         return Motion(timed, found, deviations, 0)
-    checked, fault = check_once_more(robot, timed, scene)
+    checked, fault = check_once_more(robot, timed, scene, limits)
     if fault:
         return _refuse(robot, found, fault)
     return Motion(timed, found, deviations, checked)
@@ -150,17 +151,68 @@ def _corner_of_pieces(path: Path, corners: Array) -> Any:
     return 1 + np.argmin(gaps, axis=1)
 
 
-def check_once_more(robot: Robot, timed: TimedPath, scene: Scene | None) -> tuple[int, str]:
-    """How many configurations of a motion were checked for contacts, and what is wrong, if anything."""
+def check_once_more(
+    robot: Robot, timed: TimedPath, scene: Scene | None, limits: dict[str, Any]
+) -> tuple[int, str]:
+    """How many times of a motion were checked for contacts and limits, and what is wrong, if anything.
+
+    limits: as of time_parametrize, by name.
+    """
     count = int(np.clip(np.ceil(timed.duration / MOTION_CHECK_STEP), 1, MOST_CHECKED)) + 1
     t = np.linspace(0.0, timed.duration, count)
-    touching = np.flatnonzero(collides(robot, timed(t), scene))
+    q = timed(t)
+    touching = np.flatnonzero(collides(robot, q, scene))
     if touching.size:
         return (
             count,
             f"the motion touches something at {t[touching[0]]:.6g} s, though its parts were proved free",
         )
-    return count, ""
+    return count, find_excess(robot, timed, t, q, limits)
+
+
+def find_excess(robot: Robot, timed: TimedPath, t: Array, q: Array, limits: dict[str, Any]) -> str:
+    """The first limit that a motion exceeds at times t (k,), where it is at q (k, dof), in words.
+
+    limits: as of check_once_more. What they limit is computed anew, by derivatives and the robot's model.
+    """
+    for name, share in _shares_of_limits(robot, timed, t, q, limits):
+        exceeded = np.argwhere(share > 1.0 + MOTION_CHECK_EXCESS)
+        if exceeded.size:
+            i, j = exceeded[0]
+            joint = robot.joint_names[j] if share.shape[1] == robot.dof else "the tip"
+            return f"{joint} exceeds its {name} limit at {t[i]:.6g} s, {share[i, j]:.6g} times, by a check"
+    return ""
+
+
+def _shares_of_limits(
+    robot: Robot, timed: TimedPath, t: Array, q: Array, limits: dict[str, Any]
+) -> Iterator[tuple[str, Array]]:
+    """Name and shares (k, n) of every limit, of the joints or the tip."""
+    own = robot.limits
+    yield "position", 1.0 + np.maximum(q - own.upper, own.lower - q)
+    rates = {1: timed(t, 1), 2: timed(t, 2)}
+    for order, name in enumerate(("velocity", "acceleration", "jerk"), start=1):
+        given = limits.get(name)
+        if name == "jerk" and (given is None or given is False):
+            continue
+        limit = getattr(own, name) if given is None or given is True else np.broadcast_to(given, robot.dof)
+        values = np.abs(rates[order] if order in rates else timed(t, order))
+        yield name, _divide(values, limit)
+    torque, speeds = limits.get("torque"), (limits.get("speed"), limits.get("turn_rate"))
+    if torque is not None and torque is not False:
+        tau = np.abs(robot.inverse_dynamics(q, rates[1], rates[2]))
+        yield "torque", _divide(tau, own.effort if torque is True else np.broadcast_to(torque, robot.dof))
+    if any(speed is not None for speed in speeds):
+        twist = np.einsum("kij,kj->ki", robot.jacobian(q), rates[1])
+        for name, limit, part in zip(("speed", "turn_rate"), speeds, (slice(3), slice(3, 6)), strict=True):
+            if limit is not None:
+                yield name, np.linalg.norm(twist[:, part], axis=1)[:, None] / float(limit)
+
+
+def _divide(values: Array, limit: Any) -> Array:
+    """Shares (k, n) of limits (n,); where they are zero time_parametrize lets nothing move."""
+    shares: Array = np.where(limit == 0.0, 0.0, values) / np.where(limit == 0.0, 1.0, limit)
+    return shares
 
 
 def _refuse(robot: Robot, found: Plan, reason: str) -> Motion:

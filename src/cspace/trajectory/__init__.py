@@ -5,6 +5,7 @@ from cspace.trajectory.cartesian_makers import arc_path, line_path, pose_path, s
 from cspace.trajectory.cartesian_path import CartesianPath, CartesianPiece
 from cspace.trajectory.fit_path import fit_path
 from cspace.trajectory.jerk_timed_path import JerkTimedPath
+from cspace.trajectory.json_files import from_json, to_json
 from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
 from cspace.trajectory.move_to import move_to
 from cspace.trajectory.path import Path
@@ -15,7 +16,7 @@ from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_motion import TimedMotion
 from cspace.trajectory.timed_path import SlowStretch, TimedPath
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
-from cspace.trajectory.trajectory_files import from_csv, from_json, to_csv, to_json, to_ros
+from cspace.trajectory.trajectory_files import from_csv, to_csv, to_ros
 
 __all__ = [
     "BindingLimit",

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats, positive_number
+from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.trajectory.piece_roots import find_piece_roots
-from cspace.trajectory.trajectory import Trajectory
+from cspace.trajectory.trajectory import Trajectory, read_factor
 
 
 class PolynomialTrajectory(Trajectory):
@@ -86,7 +86,7 @@ class PolynomialTrajectory(Trajectory):
 
         Raises InputError for a factor that is not above zero.
         """
-        factor = positive_number(factor, "factor")
+        factor = read_factor(factor)
         powers = factor ** -np.arange(self.degree + 1.0)
         return self._made_of(self.joint_knots * factor, self.coefficients * powers, self.origins * factor)
 

@@ -12,12 +12,13 @@ from cspace.arrays import Array
 from cspace.dynamics import inverse_dynamics
 from cspace.kinematics import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED
+from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED, TIGHTENED_LEAST
 from cspace.trajectory.path import Path
 from cspace.trajectory.timed_path import FEED, Grid, Places, TimedPath, move_along, move_along_path
 
 CHECKED_PLACES: Final = 10
-"""Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss."""
+"""Of each interval: the error between its ends and its middle is a smooth bump, which they cannot miss, and
+whose peak between them a parabola has but for a rounding."""
 
 MOST_ROUNDS: Final = 8
 """Of checking and tightening."""
@@ -66,12 +67,38 @@ class TorqueLimits:
         slopes = path.slope_controls(grid.piece, grid.begin, grid.end)
         return (slopes.min(axis=1) <= 0.0) & (slopes.max(axis=1) >= 0.0) & (self.dry > 0.0)
 
+    def bound_sizes(self, tau: Array, signs: Array, reverses: Any) -> Array:
+        """Sizes (m, k, dof) of torques, continuous along intervals; of samples (m, k, dof) of intervals.
+
+        signs: of the velocities. Where a motion stands the dry friction is that beside it, and where a joint
+        may reverse (k, dof) it acts both ways.
+        """
+        if not self.resists or not self.dry.any():
+            return np.abs(tau)
+        beside = signs.copy()
+        beside[0], beside[-1] = signs[1], signs[-2]
+        smooth = tau - self.dry * signs
+        both: Array = np.abs(smooth) + self.dry
+        return np.where(reverses, both, np.abs(smooth + self.dry * beside))
+
+    def find_spread(self, path: Path, grid: Grid, reverses: Any) -> Array:
+        """By which share of it dry friction may be more or less (k, dof) than what `terms` counts.
+
+        It acts both ways where joints may reverse (k, dof), and not at all at the instant at which a motion
+        stands: in intervals beside the ends and the stops half of it is counted.
+        """
+        stands = np.array(path.stop_flags, dtype=bool)
+        stands[[0, -1]] = True
+        beside = ((grid.begin == 0.0) & stands[grid.piece]) | ((grid.end == 1.0) & stands[grid.piece + 1])
+        spread: Array = np.where(reverses, 1.0, np.where(beside[:, None] & (self.dry > 0.0), 0.5, 0.0))
+        return spread
+
     def terms(
-        self, q: Array, slope: Array, bend: Array, squared_speed: Array, reverses: Any
+        self, q: Array, slope: Array, bend: Array, squared_speed: Array, spread: Array
     ) -> tuple[Array, ...]:
         """τ = along s̈ + across ṡ² + offset: the three terms, each (m, dof).
 
-        Where a joint reverses (m, dof) its dry friction, which may act both ways, is left out. Damping is
+        Of dry friction the part that is certain is counted: 1 − spread (m, dof) of it. Damping is
         proportional to ṡ, the root of ṡ². Its tangent at the squared speeds given stands for it.
         """
         rest = np.zeros_like(q)
@@ -85,7 +112,7 @@ class TorqueLimits:
             self._torque(q, k * slope, bend, friction=True) - self._torque(q, k * slope, bend)
             for k in (1.0, 2.0)
         )
-        damping, dry = twice - once, np.where(reverses, 0.0, 2.0 * once - twice)
+        damping, dry = twice - once, (1.0 - spread) * (2.0 * once - twice)
         x = squared_speed[:, None]
         root = np.sqrt(np.maximum(x, STANDING_SPEED * squared_speed.max(initial=1.0)))
         return along, across + 0.5 * damping / root, weight + dry + 0.5 * damping * root
@@ -146,7 +173,7 @@ class SampledLimits:
         return along, across, offset, reversal if margin is None else margin, limit, inverse
 
     def _sample(self, piece: Any, begin: Array, end: Array) -> tuple[Array | None, ...]:
-        """Along, across and offset of torques, dry friction (k, dof) of joints that reverse, inverse squares.
+        """Along, across and offset of torques, what of dry friction is not certain (k, dof), inverse squares.
 
         They are kept for the grid of the last call. Of damping they depend on the motion that is expected.
         """
@@ -158,10 +185,13 @@ class SampledLimits:
         q, slope, bend = self.path.evaluate_motion(pieces, places)
         along = across = offset = reversal = inverse = None
         if self.torque is not None:
-            reverses = self.torque.find_reversals(self.path, Grid(piece, begin, end))
-            reversal = np.where(reverses, self.torque.dry, 0.0) if reverses.any() else None
+            spread = np.zeros((len(piece), self.path.dof))
+            if self.torque.resists:
+                own = Grid(piece, begin, end)
+                spread = self.torque.find_spread(self.path, own, self.torque.find_reversals(self.path, own))
+                reversal = np.ascontiguousarray(spread * self.torque.dry) if spread.any() else None
             along, across, offset = self.torque.terms(
-                q, slope, bend, self._expected_at(pieces, places), np.repeat(reverses, 3, axis=0)
+                q, slope, bend, self._expected_at(pieces, places), np.repeat(spread, 3, axis=0)
             )
         if self.frame is not None:
             inverse = _inverse_squares(self.frame.shares(q, slope).reshape(-1, 3))
@@ -187,35 +217,35 @@ class SampledLimits:
         return SampledLimits(self.path, self.torque, self.frame, expected)
 
     def measure(self, timed: TimedPath) -> Excess:
-        """How far limits are exceeded at samples of each interval."""
+        """How far limits are exceeded at samples of each interval, and by parabolas between them."""
         shares = np.arange(CHECKED_PLACES + 1.0) / CHECKED_PLACES
         at = timed._look_at(tuple(shares))
         q, qd, qdd = move_along_path(self.path, at)
         over = used = None
         if self.torque is not None:
-            tau = self.torque.torques(q, qd, qdd)
-            tau = tau.reshape(len(shares), -1, self.path.dof)
+            shape = (len(shares), -1, self.path.dof)
+            tau = self.torque.torques(q, qd, qdd).reshape(shape)
             reverses = self.torque.find_reversals(self.path, timed.intervals)
-            if reverses.any():  # dry friction acts both ways there
-                dry = np.where(reverses, self.torque.dry, 0.0)
-                tau = np.abs(tau - dry * np.sign(qd).reshape(tau.shape)) + dry
-            over = (np.abs(tau) - self.torque.limit).max(axis=0)
+            over = _peaks(self.torque.bound_sizes(tau, np.sign(qd).reshape(shape), reverses))
+            over = np.maximum(over, np.abs(tau).max(axis=0)) - self.torque.limit
         if self.frame is not None:
-            used = self.frame.shares(q, qd).reshape(len(shares), -1).max(axis=0)
+            used = _peaks(self.frame.shares(q, qd).reshape(len(shares), -1))
         return Excess(over, used)
 
     def tighten_by(self, excess: Excess) -> bool:
         """Whether nothing is exceeded; else the limits are tightened where it is."""
         kept, (over, used) = True, excess
         slack = 0.0 if self.torque is None else LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)
-        if over is not None and (over > slack).any():
+        if over is not None and self.torque is not None and (over > slack).any():
             kept = False
             own = np.zeros_like(over) if self.margin is None else self.margin
-            self.margin = np.ascontiguousarray(own + TIGHTENED * np.maximum(over, 0.0))
+            more = TIGHTENED * over + TIGHTENED_LEAST * self.torque.limit
+            self.margin = np.ascontiguousarray(own + np.where(over > slack, more, 0.0))
         if used is not None and (used > 1.0 + LIMIT_ROUNDING).any():
             kept = False
             own = np.ones_like(used) if self.slower is None else self.slower
-            self.slower = own * np.maximum(used, 1.0) ** (2.0 * TIGHTENED)
+            more = (used + TIGHTENED_LEAST) ** (2.0 * TIGHTENED)
+            self.slower = own * np.where(used > 1.0 + LIMIT_ROUNDING, more, 1.0)
         return kept
 
 
@@ -240,6 +270,16 @@ class Excess(NamedTuple):
             return own
 
         return Excess(inside(self.torque), inside(self.frame))
+
+
+def _peaks(values: Array) -> Array:
+    """The largest values (...) of the parabolas through three samples in a row, of samples (m, ...)."""
+    before, middle, after = values[:-2], values[1:-1], values[2:]
+    slope, bend = 0.5 * (after - before), after - 2.0 * middle + before
+    inside = np.abs(slope) < -bend
+    rise = np.where(inside, slope * slope, 0.0) / np.where(inside, -2.0 * bend, 1.0)
+    peaks: Array = np.maximum(values.max(axis=0), (middle + rise).max(axis=0))
+    return peaks
 
 
 def _inverse_squares(shares: Array) -> Array:

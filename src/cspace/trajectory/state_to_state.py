@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -119,7 +119,7 @@ def state_to_state(
     *,
     velocity: ArrayLike,
     acceleration: ArrayLike,
-    jerk: ArrayLike = np.inf,
+    jerk: ArrayLike | None = None,
     lowest_velocity: ArrayLike | None = None,
     lowest_acceleration: ArrayLike | None = None,
     start_velocity: ArrayLike | None = None,
@@ -140,8 +140,8 @@ def state_to_state(
 
     start, goal (..., dof): positions [rad or m]; with leading axes one motion for each. start_velocity,
     start_acceleration, goal_velocity, goal_acceleration (..., dof): zero unless given. velocity,
-    acceleration, jerk () or (dof,): the highest magnitudes; inf is no limit. Without a limit of jerk of any
-    joint motions have trapezoidal velocities, and the accelerations at both ends are free.
+    acceleration, jerk () or (dof,): the highest magnitudes; inf or None is no limit. Without a limit of jerk
+    of any joint motions have trapezoidal velocities, and the accelerations at both ends are free.
     lowest_velocity, lowest_acceleration () or (dof,): below zero, where they differ. duration () or (...)
     [s]: in place of the shortest. cycle [s]: of which the duration is to be a multiple. synchronize: "time"
     (all joints end together), "phase" (along a straight line, in the shortest time) or "none". joint_names:
@@ -155,19 +155,17 @@ def state_to_state(
     Kröger 2010 states the problem; Berscheid and Kröger 2021 solve it by polynomials of degree six.
     """
     check_known("synchronize", synchronize, SYNCHRONIZE)
+    names = read_names(joint_names)
     if synchronize == "time" and duration is cycle is lowest_velocity is lowest_acceleration is None:
-        motion = move_plain_states(
-            (start, start_velocity, start_acceleration, goal, goal_velocity, goal_acceleration),
-            (velocity, acceleration, jerk),
-            None if joint_names is None else tuple(joint_names),
-        )
+        ends = start, start_velocity, start_acceleration, goal, goal_velocity, goal_acceleration
+        motion = move_plain_states(ends, (velocity, acceleration, jerk), names)
         if motion is not None:
             return motion[0]
     first = read_states(start, start_velocity, start_acceleration, "start")
     dof = first.shape[-1]
     last = read_states(goal, goal_velocity, goal_acceleration, "goal", dof)
     limits = AxisLimits(velocity, acceleration, jerk, lowest_velocity, lowest_acceleration, dof)
-    labels = tuple(joint_names) if joint_names is not None else tuple(f"joint {j}" for j in range(dof))
+    labels = names if names is not None else tuple(f"joint {j}" for j in range(dof))
     if len(labels) != dof:
         raise InputError(f"joint_names has {len(labels)} names, start {dof} joints")
     check_accelerations(limits, labels)
@@ -181,8 +179,20 @@ def state_to_state(
     batch = solve_batch(
         first, last, limits, asked, shape, read_duration(cycle, "cycle"), synchronize, threads
     )
-    batch.joint_names = None if joint_names is None else labels
+    batch.joint_names = names
     return batch if shape else batch[0]
+
+
+def read_names(names: Sequence[str] | None) -> tuple[str, ...] | None:
+    """Names of joints as a tuple; InputTypeError for anything but texts."""
+    if names is None:
+        return None
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise InputTypeError(f"joint_names is a {type(names).__name__}; give a list of texts")
+    made = tuple(names)
+    if not all(isinstance(name, str) for name in made):
+        raise InputTypeError("joint_names must be texts")
+    return made
 
 
 def move_plain_states(

@@ -23,7 +23,7 @@ class AxisLimits:
         self,
         velocity: ArrayLike,
         acceleration: ArrayLike,
-        jerk: ArrayLike,
+        jerk: ArrayLike | None,
         lowest_velocity: ArrayLike | None,
         lowest_acceleration: ArrayLike | None,
         dof: int,
@@ -59,8 +59,11 @@ def read_states(
     return states
 
 
-def read_magnitudes(value: ArrayLike, subject: str, out: Array) -> None:
-    """Write limits above zero into out (dof,); infinity is none. One number is that of all joints."""
+def read_magnitudes(value: ArrayLike | None, subject: str, out: Array) -> None:
+    """Write limits above zero into out (dof,); inf and None are none. One number is that of all joints."""
+    if value is None:
+        out[...] = np.inf
+        return
     row = as_floats(value, subject, finite=False)
     if row.shape not in ((), out.shape):
         raise InputError(f"{subject} has shape {row.shape}, expected () or {out.shape}, one per joint")

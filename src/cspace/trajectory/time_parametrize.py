@@ -41,6 +41,9 @@ MOST_INTERVALS: Final = 10_000_000
 MOST_JERK_INTERVALS: Final = 3000
 """From which on grids are not halved further under jerk limits: a solution takes half a second."""
 
+ROUGHLY: Final = 0.01
+"""Of the duration of a motion without jerk limits, from which the search under them begins."""
+
 EMPTY_GRID: Final = Grid(np.zeros(0, dtype=np.int32), np.zeros(0), np.zeros(0))
 
 
@@ -200,21 +203,25 @@ class _Timer:
             raise InputError(f"no limit applies to the joints that move at s = {s:.6g}; pass acceleration=")
         return None
 
-    def time(self, grid: Grid | None) -> TimedPath:
-        """The fastest motion; on a grid of its own without one."""
-        if self.sampled is None:
-            return self._solve(grid, None)
-        if self.sampled.torque is not None and self.sampled.torque.resists:
-            plain = self._solve(grid, None)
+    def time_once(self, grid: Grid | None, tolerance: float) -> TimedPath:
+        """The fastest motion whose sampled limits are not yet checked; on a grid of its own without one."""
+        if self.sampled is not None and self.sampled.torque is not None and self.sampled.torque.resists:
+            plain = self._solve(grid, None, tolerance)
             if plain:
                 self.sampled.expected = plain.grid, plain.squared_speed
-        timed = self._solve(grid, self.sampled)
+        return self._solve(grid, self.sampled, tolerance)
+
+    def time(self, grid: Grid | None) -> TimedPath:
+        """The fastest motion; on a grid of its own without one."""
+        timed = self.time_once(grid, self.within)
+        if self.sampled is None:
+            return timed
         converged = timed.converged
         for _ in range(MOST_ROUNDS):
             if not timed or self.sampled.tighten(timed):
                 timed.converged = converged
                 return timed
-            timed = self._solve(timed.intervals, self.sampled)
+            timed = self._solve(timed.intervals, self.sampled, self.within)
         if timed and not self.sampled.tighten(timed):
             return self._refuse(f"limits are still exceeded after {MOST_ROUNDS} rounds; pass a finer grid=")
         return timed
@@ -224,7 +231,7 @@ class _Timer:
         if any(self.ends):
             raise InputError("jerk= is for motions from rest to rest; leave out start_speed= and end_speed=")
         refuse_jumps(self.path)
-        plain = self.time(None)
+        plain = self.time_once(None, ROUGHLY)
         if not plain:
             return plain
         number = default_intervals(self.path) if count is None else count
@@ -278,13 +285,18 @@ class _Timer:
             proved=self.sampled is None,
         )
 
-    def _solve(self, grid: Grid | None, sample: SampledLimits | None) -> TimedPath:
+    @property
+    def within(self) -> float:
+        """By how much less finer grids change the duration, relative."""
+        return TIMED_WITHIN if self.tolerance is None else self.tolerance
+
+    def _solve(self, grid: Grid | None, sample: SampledLimits | None, tolerance: float) -> TimedPath:
         outcome, where, least, most, intervals, squared_speed, converged = time_path(
             *self.arrays,
             self.velocity,
             self.acceleration,
             *self.ends,
-            TIMED_WITHIN if self.tolerance is None else self.tolerance,
+            tolerance,
             None if grid is None else (grid.piece, grid.begin, grid.end),
             sample,
         )

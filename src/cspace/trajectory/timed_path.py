@@ -9,14 +9,14 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, positive_number
+from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
 from cspace.tables import count_things, one_line, shown
 from cspace.trajectory.limit_check import BindingLimit
 from cspace.trajectory.path import HIGHEST_ORDER, Path, _powers_to_bernstein, restrict_pieces
 from cspace.trajectory.piece_roots import find_piece_roots
-from cspace.trajectory.trajectory import Trajectory
+from cspace.trajectory.trajectory import Trajectory, read_factor
 
 NEAR_LIMIT: Final = 0.99
 """Share of a limit from which on it binds: an interval attains its limit at one place and keeps below it
@@ -148,9 +148,10 @@ class TimedPath(Trajectory):
     def parameter(self, t: Any, order: int = 0) -> Array:
         """The parameter s of the path, ṡ or s̈ (...) at times t (...) [s]; order: 0, 1 or 2.
 
-        Raises InputError for a time outside of 0 … duration.
+        Raises InputError for a time outside of 0 … duration, and for another order.
         """
-        times = self._check_times(np.asarray(t, dtype=np.float64))
+        order = whole_number(order, "order", 0, 2)
+        times = self._check_times(as_floats(t, "t"))
         if len(self._times) == 1:
             return np.zeros_like(times)
         at = self._place_times(times.ravel(), False)
@@ -262,7 +263,7 @@ class TimedPath(Trajectory):
 
         Raises InputError for a factor that is not above zero.
         """
-        factor = positive_number(factor, "factor")
+        factor = read_factor(factor)
         proved = self.proved and factor >= 1.0
         return self._remade(self.path, self.intervals, self.squared_speed / factor**2, proved)
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats, one_number, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
 from cspace.tables import count_things, one_line, show_fields, shown
-from cspace.tolerances import CONTINUITY_ROUNDING, TIME_ROUNDING
+from cspace.tolerances import CONTINUITY_ROUNDING, LEAST_FACTOR, TIME_ROUNDING
 from cspace.trajectory.limit_check import (
     BindingLimit,
     TrajectoryCheck,
@@ -30,6 +30,14 @@ QUANTITIES: Final = ("position", "velocity", "acceleration", "jerk")
 
 MOST_SAMPLES: Final = 100_000_000
 """Of one call of sample."""
+
+
+def read_factor(value: float) -> float:
+    """A factor of a duration; InputError for one that is not above zero, too large or too small."""
+    factor = positive_number(value, "factor", largest=1.0 / LEAST_FACTOR)
+    if factor < LEAST_FACTOR:
+        raise InputError(f"factor is {factor:g}; it must be {LEAST_FACTOR:g} or more")
+    return factor
 
 
 @show_fields

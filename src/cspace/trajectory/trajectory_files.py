@@ -1,4 +1,4 @@
-"""Trajectories as files: samples as CSV, polynomials as JSON, and JointTrajectory messages of ROS as YAML."""
+"""Samples of trajectories as files: CSV, and JointTrajectory messages of ROS as YAML."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import os
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -16,9 +16,6 @@ from cspace.files import path_of, read_text, write_text
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.time_scaling import connect_samples
 from cspace.trajectory.trajectory import Trajectory
-
-SCHEMA: Final = "cspace.trajectory/1"
-"""The layout of polynomials in JSON."""
 
 QUANTITIES: Final = ("q", "qd", "qdd")
 """What the columns of a CSV file begin with, before the name of a joint."""
@@ -89,52 +86,6 @@ def _read_rows(rows: list[list[str]], columns: int, path: str) -> Array:
         if not np.isfinite(table[i]).all():
             raise DescriptionError("the numbers must be finite", path=path, line=i + 2)
     return table
-
-
-def to_json(trajectory: PolynomialTrajectory, path: str | os.PathLike[str]) -> None:
-    """Write the polynomials of a trajectory, with all digits; the file is complete or untouched.
-
-    Raises InputError for a trajectory of another kind, and where the file cannot be written.
-    """
-    if not isinstance(trajectory, PolynomialTrajectory):
-        raise InputError(
-            f"trajectory is a {type(trajectory).__name__}, which has no polynomials; use to_csv, or to_ros"
-        )
-    values = {
-        "schema": SCHEMA,
-        "joint_names": trajectory.joint_names,
-        "reason": trajectory.reason,
-        "knots": trajectory.joint_knots.tolist(),
-        "origins": trajectory.origins.tolist(),
-        "coefficients": trajectory.coefficients.tolist(),
-    }
-    write_text(path_of(path), json.dumps(values, ensure_ascii=False) + "\n")
-
-
-def from_json(path: str | os.PathLike[str]) -> PolynomialTrajectory:
-    """The trajectory that to_json wrote, the same in every bit.
-
-    Returns a PolynomialTrajectory. Raises DescriptionError, with the file, for other contents.
-    """
-    try:
-        values: Any = json.loads(read_text(path_of(path), "JSON file", LARGEST_FILE, DescriptionError))
-    except (ValueError, RecursionError) as error:
-        if isinstance(error, DescriptionError):
-            raise
-        raise DescriptionError(f"this is no JSON: {error}", path=str(path)) from None
-    schema = values.get("schema") if isinstance(values, dict) else None
-    if schema != SCHEMA:
-        raise DescriptionError(f"the schema is {schema!r}, expected {SCHEMA!r}", path=str(path))
-    try:
-        return PolynomialTrajectory(
-            values["knots"],
-            values["coefficients"],
-            values["origins"],
-            joint_names=values["joint_names"],
-            reason=str(values["reason"]),
-        )
-    except (KeyError, TypeError, ValueError) as error:
-        raise DescriptionError(f"the polynomials cannot be read: {error}", path=str(path)) from None
 
 
 def to_ros(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float) -> None:

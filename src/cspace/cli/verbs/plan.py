@@ -119,7 +119,9 @@ def add_planner(parser: argparse.ArgumentParser) -> None:
 def add_timing(parser: argparse.ArgumentParser) -> None:
     """The words of the motion in time."""
     group = parser.add_argument_group("trajectory")
-    text = "round the corners, time the path, and write samples: .yaml for ROS (JointTrajectory), or .csv"
+    text = (
+        "round the corners, time the path, and write the motion: .yaml for ROS (JointTrajectory), .csv, .json"
+    )
     add_option(group, "--trajectory FILE", text, Path)
     add_option(group, "--rate HZ", "samples per second (default: 100)", read_number, default=100.0)
     for name, unit in (("acceleration", "rad/s²"), ("jerk", "rad/s³")):

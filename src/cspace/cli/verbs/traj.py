@@ -20,7 +20,9 @@ from cspace.cli.arguments import (
     read_radians,
 )
 from cspace.cli.exits import Exit, UsageError
+from cspace.cli.goals import name_options
 from cspace.cli.output import Output, Table, check_format, check_writable
+from cspace.cli.progress import show_progress
 from cspace.cli.robot import (
     degrees_note,
     joint_headings,
@@ -29,9 +31,11 @@ from cspace.cli.robot import (
     need_chain,
 )
 from cspace.cli.samples_files import check_samples_file, write_samples
-from cspace.cli.verbs.plan import start_of, typed_configuration
+from cspace.cli.verbs.plan import FILM_DPI, is_film, start_of, typed_configuration
+from cspace.errors import InputError, InputTypeError
 
 if TYPE_CHECKING:
+    from cspace.model import Limits
     from cspace.robot import Robot
     from cspace.trajectory import Trajectory
 
@@ -39,7 +43,7 @@ EXAMPLES: Final = """
 cspace traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --plot move.png
 cspace traj panda --from ready --to 1 0.2 0 -1.5 0 1.8 0.8 --profile trapezoidal --rate 500 -o move.yaml
 cspace traj ur5e --waypoints way.csv --blend 0.1 --acceleration 8 --torque --json
-cspace traj panda --from ready --line 0.4 0.2 0.4 --speed 25cm --turn-rate 1
+cspace traj panda --from ready --line 0.4 0.2 0.4 --speed 25cm --turn-rate 1 --plot line.gif
 """
 
 PROFILES: Final = ("double_s", "trapezoidal", "cubic", "quintic", "septic", "minimum_jerk")
@@ -74,12 +78,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_option(group, "--torque", "keep the efforts of the robot too, by its dynamics")
     add_option(group, "--speed V", "largest speed of the tip [m/s]: 0.25, or 25cm", read_length)
     add_option(group, "--turn-rate W", "largest angular velocity of the tip [rad/s]", read_number)
-    text = "write samples: .yaml for ROS (JointTrajectory), or .csv"
+    text = "write samples: .yaml for ROS (JointTrajectory), or .csv; or the motion itself: .json"
     add_option(parser, "-o --output FILE", text, Path)
     add_option(
         parser, "--rate HZ", "samples per second of -o and --json (default: 100)", read_number, default=100.0
     )
-    add_option(parser, "--plot FILE", "draw position to jerk with the limits (.png, .svg, .pdf)", Path)
+    text = "draw position to jerk, torques and tip speed with the limits (.png, .svg, .pdf), or a film (.gif)"
+    add_option(parser, "--plot FILE", text, Path)
     add_degrees(parser)
     add_chain(parser)
 
@@ -89,7 +94,10 @@ def run(args: argparse.Namespace, out: Output) -> int:
     check_files(args)
     robot = load_chosen(args)
     need_chain(robot)
-    motion = find_motion(args, robot)
+    try:
+        motion = find_motion(args, robot)
+    except (InputError, InputTypeError) as error:
+        raise UsageError(name_options(str(error))) from error
     written = write_files(args, robot, motion) if motion else []
     if out.as_json:
         out.document(describe_motion(args, robot, motion, written))
@@ -104,7 +112,8 @@ def run(args: argparse.Namespace, out: Output) -> int:
 def check_files(args: argparse.Namespace) -> None:
     """Refuse files that cannot be written, before any computation."""
     if args.plot is not None:
-        check_format(args.plot)
+        if not is_film(args.plot):
+            check_format(args.plot)
         check_writable(args.plot)
     if args.output is not None:
         check_samples_file(args.output, "-o")
@@ -210,9 +219,28 @@ def write_files(args: argparse.Namespace, robot: Robot, motion: Trajectory) -> l
     if args.plot is not None:
         from cspace import plot
 
-        plot.save(plot.trajectory(motion, limits=robot), args.plot)
+        if is_film(args.plot):
+            with show_progress("drawing the film"):
+                plot.save(plot.animation(motion, robot=robot), args.plot, dpi=FILM_DPI)
+        else:
+            rates = {"speed": args.speed, "turn_rate": args.turn_rate}
+            plot.save(
+                plot.trajectory(motion, limits=kept_limits(args, robot), robot=robot, **rates), args.plot
+            )
         written.append(args.plot)
     return written
+
+
+def kept_limits(args: argparse.Namespace, robot: Robot) -> Limits:
+    """The limits of the robot, or those given where they are lower."""
+    from cspace.model import Limits
+
+    own = robot.limits
+    lowest = {
+        name: np.minimum(getattr(own, name), np.inf if getattr(args, name) is None else getattr(args, name))
+        for name in ("velocity", "acceleration", "jerk")
+    }
+    return Limits(own.lower, own.upper, **lowest)
 
 
 def describe_motion(
