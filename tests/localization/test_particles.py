@@ -26,8 +26,7 @@ from cspace.localization import (
 )
 from cspace.localization.filters.rows import relate_rows
 from cspace.localization.particles.beam_model import CELL, BeamTable
-from cspace.localization.particles.models import Judgement
-from cspace.localization.particles.models import ScanModel
+from cspace.localization.particles.models import Judgement, ScanModel
 from cspace.localization.particles.recovery import FIRST_SCORES, ScoreMonitor
 from cspace.localization.particles.thinning import thin_ends
 from cspace.maps import OccupancyGrid
