@@ -3,7 +3,8 @@
 //
 // Far from the optimum the cost may rise before it falls, by orders of magnitude, while monotone methods
 // crawl. Gauss–Newton therefore tolerates some rises, and keeps the state of least cost; where it does not
-// settle, Levenberg–Marquardt goes on from there.
+// settle, Levenberg–Marquardt goes on from there. Where errors are large it converges linearly: its steps then are a
+// geometric series, whose sum is one step (Aitken 1926).
 #pragma once
 
 #include <algorithm>
@@ -26,6 +27,8 @@ inline constexpr double first_damping = 1e-5;  // of the diagonal
 inline constexpr double least_damping = 1e-12, largest_damping = 1e12;
 inline constexpr double settled_damping = 1e-2;  // above it a small step says nothing
 inline constexpr double least_radius = 1e-12;    // of the first one
+inline constexpr double series_cosine = 0.95;    // of two steps in a row that are of one geometric series
+inline constexpr double least_ratio = 0.3, largest_ratio = 0.98;  // of such a series: others are summed soon, or never
 
 }  // namespace descent
 
@@ -139,6 +142,7 @@ class GraphOptimizer {
     Outcome descend_newton(State& best) {
         State state = best;
         double least = INFINITY;
+        last_step_.clear();
         for (int rises = 0; iterations_left_-- > 0;) {
             const double cost = linearize(state);
             if (!std::isfinite(cost)) return Outcome::unsettled;
@@ -150,7 +154,9 @@ class GraphOptimizer {
             if (!solve_step(nullptr)) return std::isfinite(least) ? Outcome::singular : Outcome::unsettled;
             const double decrease = -inner(step_, equations_->gradient());
             equations_->move_state(state, step_.data(), trial_);
-            if (is_last(decrease, cost)) {
+            if (!is_last(decrease, cost)) {
+                sum_series(state);
+            } else {
                 constexpr double same = 1e-6;  // relative: within it two costs are of one minimum
                 if (cost > least * (1 + same)) return Outcome::unsettled;
                 if (measure_cost(trial_) < least) best = trial_;
@@ -159,6 +165,26 @@ class GraphOptimizer {
             std::swap(state, trial_);
         }
         return Outcome::stopped;
+    }
+
+    // Replaces the state after a step by that after the whole series, where the last two steps begin one and its cost
+    // is less.
+    void sum_series(const State& state) {
+        const double ratio = find_ratio();
+        last_step_ = step_;
+        if (!(ratio >= descent::least_ratio && ratio <= descent::largest_ratio)) return;
+        for (double& x : step_) x /= 1 - ratio;
+        equations_->move_state(state, step_.data(), summed_);
+        if (!(measure_cost(summed_) < measure_cost(trial_))) return;
+        std::swap(trial_, summed_);
+        last_step_.clear();
+    }
+    // The length of a step in that of the last one, if both have the same direction; otherwise 0.
+    double find_ratio() const {
+        if (last_step_.empty()) return 0;
+        const double square = inner(last_step_, last_step_), product = inner(last_step_, step_);
+        const double cosine = product / std::sqrt(square * inner(step_, step_));
+        return cosine >= descent::series_cosine ? product / square : 0;
     }
 
     GraphStatus descend_damped(State& best) {
@@ -268,8 +294,8 @@ class GraphOptimizer {
     FactorWeights weights_;
     GraphStats stats_;
     std::unique_ptr<Equations> equations_;
-    State trial_;
-    std::vector<double> step_, squares_, product_;
+    State trial_, summed_;
+    std::vector<double> step_, last_step_, squares_, product_;
     int iterations_left_ = 0;
 };
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "cspace/math/sparse/front.hpp"
-#include "cspace/math/sparse/minimum_degree.hpp"
+#include "cspace/math/sparse/nested_dissection.hpp"
 #include "cspace/math/sparse/symbolic.hpp"
 
 namespace cspace {
@@ -47,15 +47,15 @@ struct BlockSlot {
 template <class Fronts = HeaderFronts>
 class SparseCholesky {
   public:
-    SparseCholesky(const BlockGraph& graph, std::vector<int> order)
-        : factor_(analyze_pattern(graph, std::move(order))) {
+    SparseCholesky(const BlockGraph& graph, std::vector<int> order, const Amalgamation& rule = {})
+        : factor_(analyze_pattern(graph, std::move(order), rule)) {
         place_values(graph);
         place_panels();
         place_rows();
         place_targets();
         for (std::size_t s = 0; s < nodes(); ++s) place_runs(s);
     }
-    explicit SparseCholesky(const BlockGraph& graph) : SparseCholesky(graph, order_minimum_degree(graph)) {}
+    explicit SparseCholesky(const BlockGraph& graph) : SparseCholesky(graph, order_blocks(graph)) {}
 
     const SymbolicFactor& pattern() const { return factor_; }
     int rows() const { return factor_.starts.back(); }
