@@ -3,8 +3,8 @@
 //
 // Far from the optimum the cost may rise before it falls, by orders of magnitude, while monotone methods
 // crawl. Gauss–Newton therefore tolerates some rises, and keeps the state of least cost; where it does not
-// settle, Levenberg–Marquardt goes on from there. Where errors are large it converges linearly: its steps then are a
-// geometric series, whose sum is one step (Aitken 1926).
+// settle, Levenberg–Marquardt goes on from there. Where errors are large it converges linearly; its last steps are then
+// mixed (Anderson 1965, "Iterative procedures for nonlinear integral equations").
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 
 #include "cspace/localization/graph/normal_equations.hpp"
 #include "cspace/localization/graph/options.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::localization {
 
@@ -27,8 +28,9 @@ inline constexpr double first_damping = 1e-5;  // of the diagonal
 inline constexpr double least_damping = 1e-12, largest_damping = 1e12;
 inline constexpr double settled_damping = 1e-2;  // above it a small step says nothing
 inline constexpr double least_radius = 1e-12;    // of the first one
-inline constexpr double series_cosine = 0.95;    // of two steps in a row that are of one geometric series
-inline constexpr double least_ratio = 0.3, largest_ratio = 0.98;  // of such a series: others are summed soon, or never
+inline constexpr double slow_ratio = 0.3;        // of two steps in a row, from which convergence is linear
+inline constexpr double near_decrease = 0.1;     // of the cost, that a step predicts near the optimum
+inline constexpr std::size_t most_mixed = 4;     // earlier steps that are mixed with one
 
 }  // namespace descent
 
@@ -142,7 +144,7 @@ class GraphOptimizer {
     Outcome descend_newton(State& best) {
         State state = best;
         double least = INFINITY;
-        last_step_.clear();
+        last_step_.clear(), differences_.clear();
         for (int rises = 0; iterations_left_-- > 0;) {
             const double cost = linearize(state);
             if (!std::isfinite(cost)) return Outcome::unsettled;
@@ -155,7 +157,7 @@ class GraphOptimizer {
             const double decrease = -inner(step_, equations_->gradient());
             equations_->move_state(state, step_.data(), trial_);
             if (!is_last(decrease, cost)) {
-                sum_series(state);
+                mix_steps(state, decrease <= descent::near_decrease * cost);
             } else {
                 constexpr double same = 1e-6;  // relative: within it two costs are of one minimum
                 if (cost > least * (1 + same)) return Outcome::unsettled;
@@ -167,28 +169,57 @@ class GraphOptimizer {
         return Outcome::stopped;
     }
 
-    // Replaces the state after a step by that after the whole series, where the last two steps begin one and its cost
-    // is less.
-    void sum_series(const State& state) {
-        const double ratio = find_ratio();
+    // Replaces the state after a step by that after a mix of the last ones, where convergence is linear and its cost is
+    // less; whether it did.
+    bool mix_steps(const State& state, bool is_near) {
+        if (!last_step_.empty()) keep_difference();
+        const bool is_slow = is_near && !differences_.empty() &&
+                             inner(step_, step_) >= descent::slow_ratio * descent::slow_ratio *
+                                                        inner(last_step_, last_step_);
         last_step_ = step_;
-        if (!(ratio >= descent::least_ratio && ratio <= descent::largest_ratio)) return;
-        for (double& x : step_) x /= 1 - ratio;
-        equations_->move_state(state, step_.data(), summed_);
-        if (!(measure_cost(summed_) < measure_cost(trial_))) return;
-        std::swap(trial_, summed_);
-        last_step_.clear();
+        if (!is_near) return last_step_.clear(), differences_.clear(), false;
+        if (is_slow) {
+            find_mix();
+            equations_->move_state(state, mixed_.data(), other_);
+            if (measure_cost(other_) < measure_cost(trial_)) {
+                std::swap(trial_, other_);
+                last_move_ = mixed_;
+                return true;
+            }
+        }
+        last_move_ = step_;
+        return false;
     }
-    // The length of a step in that of the last one, if both have the same direction; otherwise 0.
-    double find_ratio() const {
-        if (last_step_.empty()) return 0;
-        const double square = inner(last_step_, last_step_), product = inner(last_step_, step_);
-        const double cosine = product / std::sqrt(square * inner(step_, step_));
-        return cosine >= descent::series_cosine ? product / square : 0;
+    // How the step has changed over the last move.
+    void keep_difference() {
+        if (differences_.size() == descent::most_mixed) differences_.erase(differences_.begin());
+        differences_.push_back({last_step_, last_move_});
+        Difference& last = differences_.back();
+        for (std::size_t k = 0; k < step_.size(); ++k) {
+            last.step[k] = step_[k] - last.step[k];
+            last.move[k] += last.step[k];
+        }
+    }
+    // The step, less the combination of earlier changes that leaves the least of it.
+    void find_mix() {
+        constexpr double dependent = 1e-14;  // of the largest square: changes of no direction of their own are left out
+        const std::size_t n = differences_.size();
+        double A[descent::most_mixed][descent::most_mixed] = {}, y[descent::most_mixed] = {}, largest = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t j = 0; j < n; ++j) A[i][j] = inner(differences_[i].step, differences_[j].step);
+            y[i] = inner(differences_[i].step, step_);
+            largest = std::max(largest, A[i][i]);
+        }
+        solve_positive(A, int(n), y, dependent * largest);
+        mixed_ = step_;
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t k = 0; k < mixed_.size(); ++k) mixed_[k] -= y[i] * differences_[i].move[k];
+        }
     }
 
     GraphStatus descend_damped(State& best) {
         double damping = descent::first_damping, growth = 2;
+        last_step_.clear(), differences_.clear();
         while (iterations_left_-- > 0) {
             const double cost = linearize(best);
             const std::vector<double> diagonal = equations_->diagonal();
@@ -204,10 +235,12 @@ class GraphOptimizer {
                 double decrease = -inner(step_, equations_->gradient());
                 for (std::size_t k = 0; k < added.size(); ++k) decrease += added[k] * step_[k] * step_[k];
                 equations_->move_state(best, step_.data(), trial_);
-                const double trial_cost = measure_cost(trial_);
+                double trial_cost = measure_cost(trial_);
                 const bool ends = damping <= descent::settled_damping && is_last(decrease, cost);
                 is_better = trial_cost < cost;
                 if (is_better) {
+                    if (!ends && mix_steps(best, decrease <= descent::near_decrease * cost))
+                        trial_cost = measure_cost(trial_);
                     std::swap(best, trial_);
                     const double gain = 2 * (cost - trial_cost) / decrease - 1;
                     damping =
@@ -294,8 +327,15 @@ class GraphOptimizer {
     FactorWeights weights_;
     GraphStats stats_;
     std::unique_ptr<Equations> equations_;
-    State trial_, summed_;
-    std::vector<double> step_, last_step_, squares_, product_;
+    // Of two steps in a row; move: the move between them and that change together.
+    struct Difference {
+        std::vector<double> step, move;
+    };
+
+    State trial_, other_;
+    std::vector<double> step_, squares_, product_;
+    std::vector<double> last_step_, last_move_, mixed_;
+    std::vector<Difference> differences_;
     int iterations_left_ = 0;
 };
 
