@@ -118,7 +118,7 @@ class GraphOptimizer {
     bool solve_step(const double* added) {
         ++stats_.factorizations;
         auto& solver = equations_->solver();
-        if (!solver.factor_matrix(equations_->values().data(), added)) return false;
+        if (!solver.factor_matrix(equations_->values(), added)) return false;
         const auto& gradient = equations_->gradient();
         for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = -gradient[k];
         solver.solve(step_.data());
@@ -270,7 +270,7 @@ class GraphOptimizer {
                 if (radius < descent::least_radius * first_radius) return GraphStatus::stopped;
                 blend_steps(newton, steepest, diagonal, radius);
                 product_.resize(step_.size());
-                equations_->solver().multiply(equations_->values().data(), step_.data(), product_.data());
+                equations_->solver().multiply(equations_->values(), step_.data(), product_.data());
                 const double decrease = -2 * inner(step_, equations_->gradient()) - inner(step_, product_);
                 equations_->move_state(best, step_.data(), trial_);
                 const double trial_cost = measure_cost(trial_);
@@ -296,7 +296,7 @@ class GraphOptimizer {
         steepest.resize(gradient.size()), product_.resize(gradient.size());
         for (std::size_t k = 0; k < gradient.size(); ++k)
             steepest[k] = diagonal[k] > 0 ? -gradient[k] / diagonal[k] : 0;
-        equations_->solver().multiply(equations_->values().data(), steepest.data(), product_.data());
+        equations_->solver().multiply(equations_->values(), steepest.data(), product_.data());
         const double curvature = inner(steepest, product_);
         const double scale = curvature > 0 ? -inner(gradient, steepest) / curvature : 0;
         for (double& x : steepest) x *= scale;
