@@ -163,8 +163,8 @@ TEST(order_of_a_tree_has_no_fill) {
     std::vector<BlockPair> pairs;
     for (int i = 1; i < 200; ++i) pairs.push_back({i, (i - 1) / 3});
     const BlockGraph graph = cspace::make_block_graph(std::vector<int>(200, 1), pairs);
-    const cspace::SymbolicFactor factor =
-        cspace::analyze_pattern(graph, cspace::order_minimum_degree(graph), {0, 0, 0, 1e-9, 1e-9, 1e-9, 1 << 20});
+    const cspace::SymbolicFactor factor = cspace::analyze_pattern(graph, cspace::order_minimum_degree(graph),
+                                                                  {0, 0, 0, 1e-9, 1e-9, 1e-9, 1 << 20});
     std::size_t stored = 0;
     for (const cspace::Supernode& at : factor.supernodes)
         stored += std::size_t(at.pivots * (at.pivots + 1) / 2 + at.pivots * at.below);

@@ -3,8 +3,8 @@
 //
 // Far from the optimum the cost may rise before it falls, by orders of magnitude, while monotone methods
 // crawl. Gauss–Newton therefore tolerates some rises, and keeps the state of least cost; where it does not
-// settle, Levenberg–Marquardt goes on from there. Where errors are large it converges linearly; its last steps are then
-// mixed (Anderson 1965, "Iterative procedures for nonlinear integral equations").
+// settle, Levenberg–Marquardt goes on from there. Where errors are large it converges linearly; its last
+// steps are then mixed (Anderson 1965, "Iterative procedures for nonlinear integral equations").
 #pragma once
 
 #include <algorithm>
@@ -145,7 +145,10 @@ class GraphOptimizer {
         State state = best;
         double least = INFINITY;
         last_step_.clear(), differences_.clear();
-        for (int rises = 0; iterations_left_-- > 0;) {
+        // The other half is for Levenberg–Marquardt, where this goes round in a cycle.
+        const int kept = options_.most_iterations / 2;
+        for (int rises = 0; iterations_left_ > kept;) {
+            --iterations_left_;
             const double cost = linearize(state);
             if (!std::isfinite(cost)) return Outcome::unsettled;
             if (cost < least) {
@@ -166,16 +169,16 @@ class GraphOptimizer {
             }
             std::swap(state, trial_);
         }
-        return Outcome::stopped;
+        return Outcome::unsettled;
     }
 
-    // Replaces the state after a step by that after a mix of the last ones, where convergence is linear and its cost is
-    // less; whether it did.
+    // Replaces the state after a step by that after a mix of the last ones, where convergence is linear and
+    // its cost is less; whether it did.
     bool mix_steps(const State& state, bool is_near) {
         if (!last_step_.empty()) keep_difference();
-        const bool is_slow = is_near && !differences_.empty() &&
-                             inner(step_, step_) >= descent::slow_ratio * descent::slow_ratio *
-                                                        inner(last_step_, last_step_);
+        const bool is_slow =
+            is_near && !differences_.empty() &&
+            inner(step_, step_) >= descent::slow_ratio * descent::slow_ratio * inner(last_step_, last_step_);
         last_step_ = step_;
         if (!is_near) return last_step_.clear(), differences_.clear(), false;
         if (is_slow) {
@@ -202,7 +205,8 @@ class GraphOptimizer {
     }
     // The step, less the combination of earlier changes that leaves the least of it.
     void find_mix() {
-        constexpr double dependent = 1e-14;  // of the largest square: changes of no direction of their own are left out
+        constexpr double dependent =
+            1e-14;  // of the largest square: changes of no direction of their own are left out
         const std::size_t n = differences_.size();
         double A[descent::most_mixed][descent::most_mixed] = {}, y[descent::most_mixed] = {}, largest = 0;
         for (std::size_t i = 0; i < n; ++i) {

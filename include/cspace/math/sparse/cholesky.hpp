@@ -45,7 +45,8 @@ struct BlockSlot {
     bool is_transposed;
 };
 
-// Numbers that are undefined at first: zeros for all of a large factor would take long, with no look at the clock.
+// Numbers that are undefined at first: zeros for all of a large factor would take long, with no look at the
+// clock.
 class RawNumbers {
   public:
     void allocate(std::size_t count) {

@@ -85,9 +85,8 @@ class MinimumDegree {
         for (int i = 0; i < int(stages_.size()); ++i) {
             if (!is_due(i)) later_.push_back(i);
         }
-        std::stable_sort(later_.begin(), later_.end(), [&](int a, int b) {
-            return stages_[std::size_t(a)] > stages_[std::size_t(b)];
-        });
+        std::stable_sort(later_.begin(), later_.end(),
+                         [&](int a, int b) { return stages_[std::size_t(a)] > stages_[std::size_t(b)]; });
     }
     bool is_due(int i) const { return stages_.empty() || stages_[std::size_t(i)] <= stage_; }
     void begin_next_stage() {
@@ -286,8 +285,8 @@ class MinimumDegree {
     };
 
     int n_, total_ = 0, least_ = 0, member_rows_ = 0;
-    int left_ = 0;           // rows of the variables that are not eliminated yet
-    std::vector<int> rows_;  // of a variable with all that are merged into it; 0 once merged
+    int left_ = 0;                     // rows of the variables that are not eliminated yet
+    std::vector<int> rows_;            // of a variable with all that are merged into it; 0 once merged
     std::vector<int> stages_, later_;  // later_: the next stage at its end
     int stage_ = 0, linked_ = 0;       // linked_: variables in the lists of degrees
     double operations_ = 0;

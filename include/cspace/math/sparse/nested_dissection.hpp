@@ -1,9 +1,10 @@
-// Nested dissection: an elimination order of the blocks of a symmetric matrix with little fill, where minimum degree
-// leaves much of it, on large meshes and maps (George 1973, "Nested dissection of a regular finite element mesh").
+// Nested dissection: an elimination order of the blocks of a symmetric matrix with little fill, where minimum
+// degree leaves much of it, on large meshes and maps (George 1973, "Nested dissection of a regular finite
+// element mesh").
 //
-// Nodes with two neighbours at most go first: a pose graph is mostly chains. A separator of the rest is eliminated
-// last, after the two parts that it leaves, and these are ordered in the same way. Small parts are ordered by minimum
-// degree.
+// Nodes with two neighbours at most go first: a pose graph is mostly chains. A separator of the rest is
+// eliminated last, after the two parts that it leaves, and these are ordered in the same way. Small parts are
+// ordered by minimum degree.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +32,7 @@ class NestedDissection {
     }
 
   private:
-        static constexpr int leaf_nodes = 200;  // of a part that minimum degree orders (found by trial)
+    static constexpr int leaf_nodes = 200;  // of a part that minimum degree orders (found by trial)
     static constexpr int chain_degree = 2;
 
     // A part of the graph, and the blocks that are its nodes.
@@ -133,7 +134,8 @@ inline std::vector<int> order_nested_dissection(const BlockGraph& graph) {
     return NestedDissection(graph).find_order();
 }
 
-// The order of minimum degree, or that of nested dissection where the factor is large and has fewer numbers with it.
+// The order of minimum degree, or that of nested dissection where the factor is large and has fewer numbers
+// with it.
 inline std::vector<int> order_blocks(const BlockGraph& graph) {
     constexpr double many = 3e10;  // multiplications of a factorisation, seconds: to dissect takes less
     MinimumDegree degrees(graph);

@@ -1,10 +1,10 @@
-// Vertex separators of weighted graphs: few nodes that leave two parts of about the same weight (Karypis & Kumar
-// 1998, "A fast and high quality multilevel scheme for partitioning irregular graphs"; Hendrickson & Rothberg
-// 1998, "Improving the run time and quality of nested dissection ordering").
+// Vertex separators of weighted graphs: few nodes that leave two parts of about the same weight (Karypis &
+// Kumar 1998, "A fast and high quality multilevel scheme for partitioning irregular graphs"; Hendrickson &
+// Rothberg 1998, "Improving the run time and quality of nested dissection ordering").
 //
-// The graph is made coarser by merging neighbours, separated where it is small, and the separator is refined on the
-// way back: a node that leaves it for one part pulls its neighbours of the other part in (Fiduccia & Mattheyses
-// 1982).
+// The graph is made coarser by merging neighbours, separated where it is small, and the separator is refined
+// on the way back: a node that leaves it for one part pulls its neighbours of the other part in (Fiduccia &
+// Mattheyses 1982).
 #pragma once
 
 #include <algorithm>
@@ -38,16 +38,17 @@ enum class Part : std::uint8_t { left, right, separator };
 
 namespace separators {
 
-inline constexpr double largest_part = 0.65;     // of all weights; more balance costs larger separators
-inline constexpr int coarse_nodes = 100;         // a graph of so many is separated directly
-inline constexpr double uneven_nodes = 1.5;      // largest weight of a coarse node, against the mean of the coarsest
+inline constexpr double largest_part = 0.65;  // of all weights; more balance costs larger separators
+inline constexpr int coarse_nodes = 100;      // a graph of so many is separated directly
+inline constexpr double uneven_nodes =
+    1.5;  // largest weight of a coarse node, against the mean of the coarsest
 inline constexpr double least_shrinking = 0.95;  // nodes of a coarser graph against those of the finer one
 inline constexpr std::size_t most_levels = 40;   // of coarser graphs
 inline constexpr int seeds = 8;                  // separators grown on the coarsest graph; the least is kept
-inline constexpr int many_nodes = 4000;          // above it, separators of a coarser graph are tried several times
-inline constexpr int tries = 8;                  // which are cheap there, and all that is left is to refine
-inline constexpr int most_passes = 10;           // of refinement, on each graph
-inline constexpr int patience = 300;             // moves without a gain, before a pass ends
+inline constexpr int many_nodes = 4000;  // above it, separators of a coarser graph are tried several times
+inline constexpr int tries = 8;          // which are cheap there, and all that is left is to refine
+inline constexpr int most_passes = 10;   // of refinement, on each graph
+inline constexpr int patience = 300;     // moves without a gain, before a pass ends
 
 // Numbers that look random, the same on every machine (Knuth's linear congruential generator MMIX).
 class Draws {
@@ -102,8 +103,7 @@ class Separator {
     }
     // The parts of a coarser graph.
     void project(const Separator& coarse, const std::vector<int>& coarse_node) {
-        for (std::size_t k = 0; k < part_.size(); ++k)
-            part_[k] = coarse.part_[std::size_t(coarse_node[k])];
+        for (std::size_t k = 0; k < part_.size(); ++k) part_[k] = coarse.part_[std::size_t(coarse_node[k])];
         set_weights();
     }
 
@@ -143,8 +143,7 @@ class Separator {
         }
     }
     void offer(int node) {
-        for (Part to : {Part::left, Part::right})
-            queue_[std::size_t(to)].push({gain(node, to), node});
+        for (Part to : {Part::left, Part::right}) queue_[std::size_t(to)].push({gain(node, to), node});
     }
     // The best node of the separator to move; −1: none.
     int take_node(Part to) {
@@ -226,13 +225,15 @@ class Separator {
             const auto k = std::size_t(part);
             node[k] = peek_node(part);
             value[k] = node[k] >= 0 ? gain(node[k], part) : 0;
-            const bool fits = node[k] >= 0 && (weight_[k] + graph_->weights[std::size_t(node[k])] <= largest_ ||
-                                               weight_[k] < weight_[1 - k]);
+            const bool fits =
+                node[k] >= 0 && (weight_[k] + graph_->weights[std::size_t(node[k])] <= largest_ ||
+                                 weight_[k] < weight_[1 - k]);
             if (!fits) node[k] = -1;
         }
         if (node[0] < 0 && node[1] < 0) return -1;
-        const bool is_left = node[1] < 0 || (node[0] >= 0 && (value[0] != value[1] ? value[0] > value[1]
-                                                                                   : weight_[0] < weight_[1]));
+        const bool is_left =
+            node[1] < 0 ||
+            (node[0] >= 0 && (value[0] != value[1] ? value[0] > value[1] : weight_[0] < weight_[1]));
         to = is_left ? Part::left : Part::right;
         return take_node(to);
     }
@@ -252,7 +253,8 @@ class Separator {
     int weight_[3] = {0, 0, 0}, total_ = 0, largest_ = 0;
 };
 
-// The node of a coarser graph for each node: pairs of neighbours, those of the strongest edges first to be found.
+// The node of a coarser graph for each node: pairs of neighbours, those of the strongest edges first to be
+// found.
 inline int match_neighbours(const WeightedGraph& graph, Draws& draws, std::vector<int>& coarse_node) {
     const int n = graph.nodes();
     int total = 0;
@@ -274,8 +276,8 @@ inline int match_neighbours(const WeightedGraph& graph, Draws& draws, std::vecto
         graph.visit_neighbours(node, [&](int i, int strength) {
             if (coarse_node[std::size_t(i)] >= 0) return;
             if (graph.weights[std::size_t(node)] + graph.weights[std::size_t(i)] > largest) return;
-            const bool is_lighter =
-                best >= 0 && strength == most && graph.weights[std::size_t(i)] < graph.weights[std::size_t(best)];
+            const bool is_lighter = best >= 0 && strength == most &&
+                                    graph.weights[std::size_t(i)] < graph.weights[std::size_t(best)];
             if (strength > most || is_lighter) best = i, most = strength;
         });
         coarse_node[std::size_t(node)] = count;
@@ -293,7 +295,8 @@ inline WeightedGraph merge_nodes(const WeightedGraph& graph, const std::vector<i
     }
     WeightedGraph coarse;
     coarse.weights.reserve(std::size_t(count)), coarse.starts.reserve(std::size_t(count) + 1);
-    std::vector<std::size_t> place(std::size_t(count), 0);  // of a neighbour among those of the node, plus one
+    std::vector<std::size_t> place(std::size_t(count),
+                                   0);  // of a neighbour among those of the node, plus one
     InterruptPoll poll(1 << 10);
     for (int node = 0; node < count; ++node) {
         poll.step();
@@ -367,7 +370,8 @@ inline Separator separate_coarsest(const WeightedGraph& graph, Draws& draws) {
 
 }  // namespace separators
 
-// The part of each node: no edge joins left and right. A part may be empty, where the graph is dense or small.
+// The part of each node: no edge joins left and right. A part may be empty, where the graph is dense or
+// small.
 inline std::vector<Part> find_separator(const WeightedGraph& graph) {
     using namespace separators;
     if (graph.nodes() == 0) return {};

@@ -185,8 +185,8 @@ inline std::vector<Supernode> merge_runs(const std::vector<Supernode>& runs, con
     return merged;
 }
 
-// Splits supernodes of too many columns into chains. A panel is stored as a rectangle, and the triangle above its
-// diagonal is lost.
+// Splits supernodes of too many columns into chains. A panel is stored as a rectangle, and the triangle above
+// its diagonal is lost.
 inline std::vector<Supernode> split_wide(const std::vector<Supernode>& runs, const std::vector<int>& sizes,
                                          int most) {
     std::vector<Supernode> split;
@@ -218,9 +218,9 @@ inline std::vector<Supernode> find_supernodes(const std::vector<int>& parent, co
         runs.push_back({column, 1, size, count[std::size_t(column)] - size});
     }
     constexpr double least_share = std::numeric_limits<double>::min();
-    return split_wide(merge_runs(merge_runs(runs, parent, {0, 0, 0, least_share, least_share, least_share}),
-                                 parent, rule),
-                      sizes, rule.most);
+    return split_wide(
+        merge_runs(merge_runs(runs, parent, {0, 0, 0, least_share, least_share, least_share}), parent, rule),
+        sizes, rule.most);
 }
 
 // The block rows below each supernode: those of its columns in the matrix, and those of its children.
