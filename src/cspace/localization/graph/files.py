@@ -33,8 +33,8 @@ LEFT_OUT: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
         "victoria": (),
     }
 )
-"""Records that relate no variables: what a pose saw before anything was recognised in it, and pairs of poses whose
-edge is listed too."""
+"""Records that relate no variables: what a pose saw before anything was recognised in it, and pairs of
+poses whose edge is listed too."""
 PARAMETERS: Final = "PARAMS_"
 """Begins records of sensors: calibrations, which matter to the measurements that name them alone."""
 ZIP: Final = b"PK\x03\x04"
@@ -330,8 +330,8 @@ def read_graph(cls: type[Graph], path: str | os.PathLike[str], format: str | Non
 
 
 def choose_meaning(draft: Draft) -> None:
-    """Files that end in .graph hold covariances or information. As covariances, angles cannot spread more than
-    over the whole circle.
+    """Files that end in .graph hold covariances or information. As covariances, angles cannot spread more
+    than over the whole circle.
     """
     spread = [np.diag(each.information)[(each.motion.size + 1) // 2 :].max() for each in draft.edges]
     if spread and float(np.median(spread)) > UNIFORM_ANGLE:
@@ -486,8 +486,8 @@ def stack_information(draft: Draft, measured: Sequence[Edge | Seen], size: int) 
         turned = transpose_mixed_blocks(given)
         if not len(find_indefinite(turned)):
             draft.notes.append(
-                f"the blocks of positions and rotations are transposed: {len(bad)} of {len(given)} matrices would"
-                " not be positive definite as they are"
+                f"the blocks of positions and rotations are transposed: {len(bad)} of {len(given)} matrices"
+                " would not be positive definite as they are"
             )
             given, bad = turned, bad[:0]
     if len(bad):
@@ -515,7 +515,8 @@ def find_indefinite(matrices: Array) -> npt.NDArray[np.intp]:
 def transpose_mixed_blocks(matrices: Array) -> Array:
     """Matrices (k, 6, 6) with their blocks of positions and rotations transposed.
 
-    gtsam turns the two halves around without this, so that files written by way of it have these blocks wrong.
+    gtsam turns the two halves around without this, so that files written by way of it have these blocks
+    wrong.
     """
     turned = matrices.copy()
     turned[:, :3, 3:] = matrices[:, 3:, :3]
