@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import InputError
+from cspace.errors import InputError, LogError
 from data import shared_data
 from localization.graph.graphs import random_graph
 
@@ -164,7 +164,7 @@ def test_blocks_that_gtsam_transposed_are_turned_back(tmp_path):
     assert not cs.PoseGraph.read(tmp_path / "b.g2o").notes
     turned[0] = -np.eye(6)  # no way of reading makes this positive
     write_space(tmp_path / "c.g2o", graph, turned)
-    with pytest.raises(InputError, match="positive"):
+    with pytest.raises(LogError, match="positive"):
         cs.PoseGraph.read(tmp_path / "c.g2o")
 
 
@@ -198,7 +198,7 @@ def test_sensors_off_the_base_see_the_same_landmarks(tmp_path):
     (tmp_path / "b.g2o").write_text(moved)
     same(graph, cs.PoseGraph.read(tmp_path / "b.g2o"))
     (tmp_path / "c.g2o").write_text(moved.replace("PARAMS_SE3OFFSET 0 ", "PARAMS_SE3OFFSET 7 "))
-    with pytest.raises(InputError, match="no sensor 0"):
+    with pytest.raises(LogError, match="no sensor 0"):
         cs.PoseGraph.read(tmp_path / "c.g2o")
 
 
