@@ -151,6 +151,19 @@ def search_pose() -> Call:
 
 
 @call
+def optimize_graph() -> Call:
+    n, rng = 30_000, np.random.default_rng(3)
+    loops = np.sort(rng.integers(0, n, (600, 2)), axis=1)
+    edges = np.concatenate(
+        [np.stack([np.arange(n - 1), np.arange(1, n)], axis=1), loops[loops[:, 0] < loops[:, 1]]]
+    )
+    graph = cs.PoseGraph(
+        np.tile(np.eye(4), (n, 1, 1)), edges, cs.exp_se3(rng.normal(0, 0.1, (len(edges), 6))), np.eye(6)
+    )
+    return lambda: graph.optimize(start="given")
+
+
+@call
 def likelihood_field() -> Call:
     grid = cs.OccupancyGrid(np.random.default_rng(2).random((12_000, 12_000)) < 1e-4, 0.05)
     return lambda: grid.likelihood_field(0.2)

@@ -202,7 +202,7 @@ class SolverOf : public GraphSolver {
         std::vector<double> squares;
         equations->linearize(state_, residual_, weights_, squares);
         auto& solver = equations->solver();
-        if (!solver.factor_matrix(equations->values().data())) {
+        if (!solver.factor_matrix(equations->values())) {
             singular_ = variable_of(solver.failed_block());
             return false;
         }

@@ -163,8 +163,8 @@ TEST(order_of_a_tree_has_no_fill) {
     std::vector<BlockPair> pairs;
     for (int i = 1; i < 200; ++i) pairs.push_back({i, (i - 1) / 3});
     const BlockGraph graph = cspace::make_block_graph(std::vector<int>(200, 1), pairs);
-    const cspace::SymbolicFactor factor =
-        cspace::analyze_pattern(graph, cspace::order_minimum_degree(graph), {0, 0, 0, 1e-9, 1e-9, 1e-9});
+    const cspace::SymbolicFactor factor = cspace::analyze_pattern(graph, cspace::order_minimum_degree(graph),
+                                                                  {0, 0, 0, 1e-9, 1e-9, 1e-9, 1 << 20});
     std::size_t stored = 0;
     for (const cspace::Supernode& at : factor.supernodes)
         stored += std::size_t(at.pivots * (at.pivots + 1) / 2 + at.pivots * at.below);
@@ -192,4 +192,126 @@ TEST(added_diagonal_is_damping) {
     std::vector<double> x(std::size_t(solver.rows()), 1.0), y = x;
     solver.solve(x.data()), damped.solve(y.data());
     for (std::size_t k = 0; k < x.size(); ++k) CHECK_NEAR(x[k], y[k], 1e-12);
+}
+
+namespace {
+
+// A box of so many nodes along each side, with the edges of a grid.
+BlockGraph make_grid(int width, int height, int depth, int size) {
+    const auto number = [&](int x, int y, int z) { return (z * height + y) * width + x; };
+    std::vector<BlockPair> pairs;
+    for (int z = 0; z < depth; ++z) {
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                if (x > 0) pairs.push_back({number(x, y, z), number(x - 1, y, z)});
+                if (y > 0) pairs.push_back({number(x, y, z), number(x, y - 1, z)});
+                if (z > 0) pairs.push_back({number(x, y, z), number(x, y, z - 1)});
+            }
+        }
+    }
+    return cspace::make_block_graph(std::vector<int>(std::size_t(width * height * depth), size), pairs);
+}
+BlockGraph random_graph(check::Random& random, int blocks, int pairs) {
+    std::vector<int> sizes;
+    std::vector<BlockPair> drawn;
+    for (int i = 0; i < blocks; ++i) sizes.push_back(1 + random.below(6));
+    for (int k = 0; k < pairs; ++k) drawn.push_back({random.below(blocks), random.below(blocks)});
+    return cspace::make_block_graph(std::move(sizes), drawn);
+}
+void check_order(std::vector<int> order) {
+    std::sort(order.begin(), order.end());
+    for (int k = 0; k < int(order.size()); ++k) CHECK(order[std::size_t(k)] == k);
+}
+cspace::WeightedGraph weigh_graph(const BlockGraph& graph) {
+    return {graph.sizes, graph.starts, graph.neighbours, std::vector<int>(graph.neighbours.size(), 1)};
+}
+
+}  // namespace
+
+TEST(separators_leave_no_edge_between_the_parts) {
+    check::Random random{21};
+    for (int trial = 0; trial < 60; ++trial) {
+        const int blocks = 1 + random.below(3000);
+        const BlockGraph graph = random_graph(random, blocks, random.below(3 * blocks));
+        const std::vector<cspace::Part> parts = cspace::find_separator(weigh_graph(graph));
+        CHECK(int(parts.size()) == blocks);
+        for (int i = 0; i < blocks; ++i) {
+            for (std::size_t k = graph.starts[std::size_t(i)]; k < graph.starts[std::size_t(i) + 1]; ++k) {
+                const cspace::Part a = parts[std::size_t(i)], b = parts[std::size_t(graph.neighbours[k])];
+                CHECK(a == b || a == cspace::Part::separator || b == cspace::Part::separator);
+            }
+        }
+    }
+}
+
+TEST(separators_of_grids_are_short) {
+    for (int side : {20, 60, 120}) {
+        const auto parts = cspace::find_separator(weigh_graph(make_grid(side, side, 1, 1)));
+        const auto count = std::count(parts.begin(), parts.end(), cspace::Part::separator);
+        CHECK(count >= side / 2 && count <= side + side / 5);
+    }
+}
+
+TEST(dissection_orders_every_block_once) {
+    check::Random random{22};
+    for (int trial = 0; trial < 40; ++trial) {
+        const int blocks = 1 + random.below(2000);
+        check_order(cspace::order_nested_dissection(random_graph(random, blocks, random.below(4 * blocks))));
+    }
+    std::vector<BlockPair> all;
+    for (int i = 0; i < 300; ++i) {
+        for (int j = 0; j < i; ++j) all.push_back({i, j});
+    }
+    check_order(cspace::order_nested_dissection(cspace::make_block_graph(std::vector<int>(300, 2), all)));
+    check_order(cspace::order_nested_dissection(cspace::make_block_graph(std::vector<int>(900, 1), {})));
+    CHECK(cspace::order_nested_dissection(cspace::make_block_graph({}, {})).empty());
+}
+
+TEST(dissection_fills_less_than_minimum_degree_on_large_grids) {
+    for (const BlockGraph& graph : {make_grid(22, 22, 22, 1), make_grid(150, 150, 1, 3)}) {
+        const double dissected = count_factor(graph, cspace::order_nested_dissection(graph));
+        CHECK(dissected < count_factor(graph, cspace::order_minimum_degree(graph)));
+    }
+}
+
+TEST(numbers_of_a_factor_are_counted_without_it) {
+    check::Random random{23};
+    for (int trial = 0; trial < 20; ++trial) {
+        const int blocks = 1 + random.below(200);
+        const BlockGraph graph = random_graph(random, blocks, random.below(3 * blocks));
+        const std::vector<int> order = cspace::order_minimum_degree(graph);
+        double stored = 0;
+        for (const cspace::Supernode& at :
+             cspace::analyze_pattern(graph, order, {0, 0, 0, 1e-9, 1e-9, 1e-9, 1 << 20}).supernodes)
+            stored += 0.5 * at.pivots * (at.pivots + 1) + double(at.pivots) * at.below;
+        CHECK(stored == count_factor(graph, order));
+    }
+}
+
+TEST(factors_of_dissected_graphs_solve) {
+    check::Random random{24};
+    const BlockGraph graph = make_grid(12, 12, 12, 2);
+    cspace::SparseCholesky<> solver(graph, cspace::order_nested_dissection(graph));
+    std::vector<double> values(solver.value_count(), 0.0);
+    for (int i = 0; i < graph.nodes(); ++i) {
+        const cspace::BlockSlot own = solver.slot_of(i, i);
+        values[own.at] = values[own.at + 3] = 7;
+        for (std::size_t k = graph.starts[std::size_t(i)]; k < graph.starts[std::size_t(i) + 1]; ++k) {
+            if (graph.neighbours[k] > i) continue;
+            for (std::size_t m = 0; m < 4; ++m)
+                values[solver.slot_of(i, graph.neighbours[k]).at + m] = random.uniform(-0.5, 0.5);
+        }
+    }
+    CHECK(solver.factor_matrix(values.data()));
+    std::vector<double> b(std::size_t(solver.rows()));
+    for (double& value : b) value = random.uniform(-1, 1);
+    std::vector<double> x = b, y(b.size());
+    solver.solve(x.data());
+    solver.multiply(values.data(), x.data(), y.data());
+    for (std::size_t k = 0; k < b.size(); ++k) CHECK_NEAR(y[k], b[k], 1e-10);
+}
+
+TEST(wide_supernodes_are_chains_of_narrow_ones) {
+    check::Random random{25};
+    check_problem(random_problem(random, 60, 4000, true), random);
 }

@@ -200,7 +200,7 @@ class FalseLoopSolver {
     std::ptrdiff_t find_pulling(const RobustAnswer<Space>& answer) {
         auto& equations = optimizer_.equations();
         equations.linearize(answer.state, options_.residual, {}, squares_);
-        if (!equations.solver().factor_matrix(equations.values().data())) return -1;
+        if (!equations.solver().factor_matrix(equations.values())) return -1;
         equations.solver().invert_pattern();
         std::ptrdiff_t worst = -1;
         double most = 1;  // of the limit

@@ -66,12 +66,12 @@ class NormalEquations {
         visit_factors([&](std::size_t factor, int a, int b) {
             if (a >= 0 && b >= 0) mixed_[factor] = solver_->slot_of(a, b);
         });
-        values_.resize(solver_->value_count());
+        values_.allocate(solver_->value_count());
         gradient_.resize(std::size_t(solver_->rows()));
     }
 
     Solver& solver() { return *solver_; }
-    const std::vector<double>& values() const { return values_; }
+    const double* values() const { return values_.data(); }
     const std::vector<double>& gradient() const { return gradient_; }
     const BlockNumbers& numbers() const { return numbers_; }
     bool is_used(std::size_t factor) const { return is_used_[factor] != 0; }
@@ -80,7 +80,7 @@ class NormalEquations {
     // of each measurement in use, by number.
     double linearize(const GraphState<Space>& state, ResidualKind kind, const FactorWeights& weights,
                      std::vector<double>& squares) {
-        std::fill(values_.begin(), values_.end(), 0.0);
+        clear_values();
         std::fill(gradient_.begin(), gradient_.end(), 0.0);
         squares.resize(graph_->factors());
         double cost = 0;
@@ -112,7 +112,8 @@ class NormalEquations {
         for (std::size_t block = 0; block < diagonal_.size(); ++block) {
             const auto size = std::size_t(numbers_.sizes[block]);
             double* const to = found.data() + solver_->row_of(int(block));
-            for (std::size_t k = 0; k < size; ++k) to[k] = values_[diagonal_[block] + k * (size + 1)];
+            const double* const from = values_.data() + diagonal_[block];
+            for (std::size_t k = 0; k < size; ++k) to[k] = from[k * (size + 1)];
         }
         return found;
     }
@@ -145,6 +146,15 @@ class NormalEquations {
             if (is_used_[factor])
                 visit(factor, numbers_.pose[std::size_t(graph_->sightings[k].pose)],
                       numbers_.landmark[std::size_t(graph_->sightings[k].landmark)]);
+        }
+    }
+
+    void clear_values() {
+        constexpr std::size_t chunk = 1 << 17;  // numbers between two looks at the clock
+        const std::size_t count = solver_->value_count();
+        for (std::size_t k = 0; k < count; k += chunk) {
+            poll_interrupts();
+            std::fill_n(values_.data() + k, std::min(chunk, count - k), 0.0);
         }
     }
 
@@ -205,7 +215,8 @@ class NormalEquations {
     std::unique_ptr<Solver> solver_;
     std::vector<std::size_t> diagonal_;  // value of each block's diagonal
     std::vector<BlockSlot> mixed_;       // of each measurement between two free variables
-    std::vector<double> values_, gradient_;
+    RawNumbers values_;
+    std::vector<double> gradient_;
 };
 
 }  // namespace cspace::localization

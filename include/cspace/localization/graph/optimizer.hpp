@@ -3,7 +3,8 @@
 //
 // Far from the optimum the cost may rise before it falls, by orders of magnitude, while monotone methods
 // crawl. Gauss–Newton therefore tolerates some rises, and keeps the state of least cost; where it does not
-// settle, Levenberg–Marquardt goes on from there.
+// settle, Levenberg–Marquardt goes on from there. Where errors are large it converges linearly; its last
+// steps are then mixed (Anderson 1965, "Iterative procedures for nonlinear integral equations").
 #pragma once
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 
 #include "cspace/localization/graph/normal_equations.hpp"
 #include "cspace/localization/graph/options.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::localization {
 
@@ -26,6 +28,9 @@ inline constexpr double first_damping = 1e-5;  // of the diagonal
 inline constexpr double least_damping = 1e-12, largest_damping = 1e12;
 inline constexpr double settled_damping = 1e-2;  // above it a small step says nothing
 inline constexpr double least_radius = 1e-12;    // of the first one
+inline constexpr double slow_ratio = 0.3;        // of two steps in a row, from which convergence is linear
+inline constexpr double near_decrease = 0.1;     // of the cost, that a step predicts near the optimum
+inline constexpr std::size_t most_mixed = 4;     // earlier steps that are mixed with one
 
 }  // namespace descent
 
@@ -113,7 +118,7 @@ class GraphOptimizer {
     bool solve_step(const double* added) {
         ++stats_.factorizations;
         auto& solver = equations_->solver();
-        if (!solver.factor_matrix(equations_->values().data(), added)) return false;
+        if (!solver.factor_matrix(equations_->values(), added)) return false;
         const auto& gradient = equations_->gradient();
         for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = -gradient[k];
         solver.solve(step_.data());
@@ -139,7 +144,11 @@ class GraphOptimizer {
     Outcome descend_newton(State& best) {
         State state = best;
         double least = INFINITY;
-        for (int rises = 0; iterations_left_-- > 0;) {
+        last_step_.clear(), differences_.clear();
+        // The other half is for Levenberg–Marquardt, where this goes round in a cycle.
+        const int kept = options_.most_iterations / 2;
+        for (int rises = 0; iterations_left_ > kept;) {
+            --iterations_left_;
             const double cost = linearize(state);
             if (!std::isfinite(cost)) return Outcome::unsettled;
             if (cost < least) {
@@ -150,7 +159,9 @@ class GraphOptimizer {
             if (!solve_step(nullptr)) return std::isfinite(least) ? Outcome::singular : Outcome::unsettled;
             const double decrease = -inner(step_, equations_->gradient());
             equations_->move_state(state, step_.data(), trial_);
-            if (is_last(decrease, cost)) {
+            if (!is_last(decrease, cost)) {
+                mix_steps(state, decrease <= descent::near_decrease * cost);
+            } else {
                 constexpr double same = 1e-6;  // relative: within it two costs are of one minimum
                 if (cost > least * (1 + same)) return Outcome::unsettled;
                 if (measure_cost(trial_) < least) best = trial_;
@@ -158,11 +169,61 @@ class GraphOptimizer {
             }
             std::swap(state, trial_);
         }
-        return Outcome::stopped;
+        return Outcome::unsettled;
+    }
+
+    // Replaces the state after a step by that after a mix of the last ones, where convergence is linear and
+    // its cost is less; whether it did.
+    bool mix_steps(const State& state, bool is_near) {
+        if (!last_step_.empty()) keep_difference();
+        const bool is_slow =
+            is_near && !differences_.empty() &&
+            inner(step_, step_) >= descent::slow_ratio * descent::slow_ratio * inner(last_step_, last_step_);
+        last_step_ = step_;
+        if (!is_near) return last_step_.clear(), differences_.clear(), false;
+        if (is_slow) {
+            find_mix();
+            equations_->move_state(state, mixed_.data(), other_);
+            if (measure_cost(other_) < measure_cost(trial_)) {
+                std::swap(trial_, other_);
+                last_move_ = mixed_;
+                return true;
+            }
+        }
+        last_move_ = step_;
+        return false;
+    }
+    // How the step has changed over the last move.
+    void keep_difference() {
+        if (differences_.size() == descent::most_mixed) differences_.erase(differences_.begin());
+        differences_.push_back({last_step_, last_move_});
+        Difference& last = differences_.back();
+        for (std::size_t k = 0; k < step_.size(); ++k) {
+            last.step[k] = step_[k] - last.step[k];
+            last.move[k] += last.step[k];
+        }
+    }
+    // The step, less the combination of earlier changes that leaves the least of it.
+    void find_mix() {
+        constexpr double dependent =
+            1e-14;  // of the largest square: changes of no direction of their own are left out
+        const std::size_t n = differences_.size();
+        double A[descent::most_mixed][descent::most_mixed] = {}, y[descent::most_mixed] = {}, largest = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t j = 0; j < n; ++j) A[i][j] = inner(differences_[i].step, differences_[j].step);
+            y[i] = inner(differences_[i].step, step_);
+            largest = std::max(largest, A[i][i]);
+        }
+        solve_positive(A, int(n), y, dependent * largest);
+        mixed_ = step_;
+        for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t k = 0; k < mixed_.size(); ++k) mixed_[k] -= y[i] * differences_[i].move[k];
+        }
     }
 
     GraphStatus descend_damped(State& best) {
         double damping = descent::first_damping, growth = 2;
+        last_step_.clear(), differences_.clear();
         while (iterations_left_-- > 0) {
             const double cost = linearize(best);
             const std::vector<double> diagonal = equations_->diagonal();
@@ -178,10 +239,12 @@ class GraphOptimizer {
                 double decrease = -inner(step_, equations_->gradient());
                 for (std::size_t k = 0; k < added.size(); ++k) decrease += added[k] * step_[k] * step_[k];
                 equations_->move_state(best, step_.data(), trial_);
-                const double trial_cost = measure_cost(trial_);
+                double trial_cost = measure_cost(trial_);
                 const bool ends = damping <= descent::settled_damping && is_last(decrease, cost);
                 is_better = trial_cost < cost;
                 if (is_better) {
+                    if (!ends && mix_steps(best, decrease <= descent::near_decrease * cost))
+                        trial_cost = measure_cost(trial_);
                     std::swap(best, trial_);
                     const double gain = 2 * (cost - trial_cost) / decrease - 1;
                     damping =
@@ -211,7 +274,7 @@ class GraphOptimizer {
                 if (radius < descent::least_radius * first_radius) return GraphStatus::stopped;
                 blend_steps(newton, steepest, diagonal, radius);
                 product_.resize(step_.size());
-                equations_->solver().multiply(equations_->values().data(), step_.data(), product_.data());
+                equations_->solver().multiply(equations_->values(), step_.data(), product_.data());
                 const double decrease = -2 * inner(step_, equations_->gradient()) - inner(step_, product_);
                 equations_->move_state(best, step_.data(), trial_);
                 const double trial_cost = measure_cost(trial_);
@@ -237,7 +300,7 @@ class GraphOptimizer {
         steepest.resize(gradient.size()), product_.resize(gradient.size());
         for (std::size_t k = 0; k < gradient.size(); ++k)
             steepest[k] = diagonal[k] > 0 ? -gradient[k] / diagonal[k] : 0;
-        equations_->solver().multiply(equations_->values().data(), steepest.data(), product_.data());
+        equations_->solver().multiply(equations_->values(), steepest.data(), product_.data());
         const double curvature = inner(steepest, product_);
         const double scale = curvature > 0 ? -inner(gradient, steepest) / curvature : 0;
         for (double& x : steepest) x *= scale;
@@ -268,8 +331,15 @@ class GraphOptimizer {
     FactorWeights weights_;
     GraphStats stats_;
     std::unique_ptr<Equations> equations_;
-    State trial_;
+    // Of two steps in a row; move: the move between them and that change together.
+    struct Difference {
+        std::vector<double> step, move;
+    };
+
+    State trial_, other_;
     std::vector<double> step_, squares_, product_;
+    std::vector<double> last_step_, last_move_, mixed_;
+    std::vector<Difference> differences_;
     int iterations_left_ = 0;
 };
 

@@ -10,11 +10,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "cspace/math/sparse/front.hpp"
-#include "cspace/math/sparse/minimum_degree.hpp"
+#include "cspace/math/sparse/nested_dissection.hpp"
 #include "cspace/math/sparse/symbolic.hpp"
 
 namespace cspace {
@@ -44,18 +45,35 @@ struct BlockSlot {
     bool is_transposed;
 };
 
+// Numbers that are undefined at first: zeros for all of a large factor would take long, with no look at the
+// clock.
+class RawNumbers {
+  public:
+    void allocate(std::size_t count) {
+        if (count == count_) return;
+        numbers_ = std::make_unique_for_overwrite<double[]>(count);
+        count_ = count;
+    }
+    double* data() { return numbers_.get(); }
+    const double* data() const { return numbers_.get(); }
+
+  private:
+    std::unique_ptr<double[]> numbers_;
+    std::size_t count_ = 0;
+};
+
 template <class Fronts = HeaderFronts>
 class SparseCholesky {
   public:
-    SparseCholesky(const BlockGraph& graph, std::vector<int> order)
-        : factor_(analyze_pattern(graph, std::move(order))) {
+    SparseCholesky(const BlockGraph& graph, std::vector<int> order, const Amalgamation& rule = {})
+        : factor_(analyze_pattern(graph, std::move(order), rule)) {
         place_values(graph);
         place_panels();
         place_rows();
         place_targets();
         for (std::size_t s = 0; s < nodes(); ++s) place_runs(s);
     }
-    explicit SparseCholesky(const BlockGraph& graph) : SparseCholesky(graph, order_minimum_degree(graph)) {}
+    explicit SparseCholesky(const BlockGraph& graph) : SparseCholesky(graph, order_blocks(graph)) {}
 
     const SymbolicFactor& pattern() const { return factor_; }
     int rows() const { return factor_.starts.back(); }
@@ -81,8 +99,8 @@ class SparseCholesky {
     // Factors the matrix of these values, with `added` on its diagonal unless null. False where it is not
     // positive definite; failed_block() then is near the reason.
     bool factor_matrix(const double* values, const double* added = nullptr) {
-        numbers_.resize(panels_.back());
-        stack_.resize(stack_peak_);
+        numbers_.allocate(panels_.back());
+        stack_.allocate(stack_peak_);
         InterruptPoll poll(1 << 4);
         for (std::size_t s = 0; s < nodes(); ++s) {
             poll.step();
@@ -130,7 +148,7 @@ class SparseCholesky {
 
     // Computes the entries of the inverse on the pattern of the factor.
     void invert_pattern() {
-        inverse_.resize(panels_.back());
+        inverse_.allocate(panels_.back());
         std::vector<int> local(std::size_t(factor_.columns()));
         for (std::size_t s = nodes(); s-- > 0;) {
             poll_interrupts();
@@ -168,6 +186,8 @@ class SparseCholesky {
     struct Run {
         int from, to, length;
     };
+    // Rows from which a strip or a column takes long enough for a look at the clock.
+    static constexpr std::size_t many_rows = 256;
     static int round_up(int count) { return (count + front_lanes - 1) / front_lanes * front_lanes; }
 
     std::size_t nodes() const { return factor_.supernodes.size(); }
@@ -295,7 +315,10 @@ class SparseCholesky {
         const Supernode& at = supernode(s);
         const auto step = std::size_t(stride(s)), size = std::size_t(round_up(at.below));
         std::fill_n(panel(s), step * std::size_t(at.pivots), 0.0);
-        std::fill_n(stack_.data() + scratch_[s], size * size, 0.0);
+        for (std::size_t column = 0; column < size; ++column) {
+            std::fill_n(stack_.data() + scratch_[s] + column * size, size, 0.0);
+            if (size > many_rows) poll_interrupts();
+        }
         for (int column = at.first; column < at.first + at.count; ++column) {
             const int width = factor_.size(column);
             for (std::size_t b = first_block_[std::size_t(column)]; b < first_block_[std::size_t(column) + 1];
@@ -330,6 +353,7 @@ class SparseCholesky {
                 add_numbers(source + across->from + c, target + column, across->length - c);
                 for (const Run* down = across + 1; down != end; ++down)
                     add_numbers(source + down->from, target + down->to, down->length);
+                if (child_size > many_rows) poll_interrupts();
             }
         }
     }
@@ -337,21 +361,23 @@ class SparseCholesky {
         for (int k = 0; k < count; ++k) to[k] += from[k];
     }
     bool factor_front(std::size_t s) {
-        constexpr int many = 256;  // rows from which a strip takes long enough for a look at the clock
         const Supernode& at = supernode(s);
         const int size = round_up(at.below), height = stride(s);
         for (int first = 0; first < at.pivots; first += front_lanes) {
             if (!Fronts::factor(panel(s), height, at.pivots, first)) return false;
-            if (height > many) poll_interrupts();
+            if (height > int(many_rows)) poll_interrupts();
         }
         double* const schur = stack_.data() + scratch_[s];
         for (int row = 0; row < size; row += front_lanes * front_strip_packs) {
             Fronts::update(schur, size, panel(s), height, at.pivots, row);
-            if (height > many) poll_interrupts();
+            if (height > int(many_rows)) poll_interrupts();
         }
-        if (scratch_[s] != complements_[s])
-            std::memmove(stack_.data() + complements_[s], schur,
-                         sizeof(double) * std::size_t(size) * std::size_t(size));
+        if (scratch_[s] == complements_[s]) return true;
+        double* const to = stack_.data() + complements_[s];
+        for (std::ptrdiff_t column = 0; column < size; ++column) {  // the first first: it moves down
+            std::memmove(to + column * size, schur + column * size, sizeof(double) * std::size_t(size));
+            if (size > int(many_rows)) poll_interrupts();
+        }
         return true;
     }
 
@@ -476,8 +502,8 @@ class SparseCholesky {
     std::vector<int> row_offsets_;  // of each block row below its supernode, in the front
     std::vector<std::size_t> run_starts_;
     std::vector<Run> runs_;
-    std::vector<double> numbers_, stack_, local_;
-    std::vector<double> inverse_, dense_, gain_;
+    RawNumbers numbers_, stack_, inverse_;
+    std::vector<double> local_, dense_, gain_;
     int failed_ = -1;
 };
 

@@ -5,12 +5,13 @@
 // variables leave.
 // A pivot absorbs the elements it touches; variables with the same neighbours are merged; the degree of a
 // variable is bounded by the sizes of its elements. Degrees count rows, so that blocks of several sizes are
-// compared fairly.
+// compared fairly. Blocks may be given stages: those of a stage are eliminated before those of later ones.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "cspace/math/sparse/block_graph.hpp"
@@ -19,7 +20,9 @@ namespace cspace {
 
 class MinimumDegree {
   public:
-    explicit MinimumDegree(const BlockGraph& graph) : n_(graph.nodes()), rows_(graph.sizes) {
+    // stages: of each block, from 0; empty: one for all.
+    explicit MinimumDegree(const BlockGraph& graph, std::vector<int> stages = {})
+        : n_(graph.nodes()), rows_(graph.sizes), stages_(std::move(stages)) {
         lists_.assign(graph.neighbours.begin(), graph.neighbours.end());
         nodes_.resize(std::size_t(n_));
         weight_.assign(std::size_t(n_), 0), stamp_.assign(std::size_t(n_), 0);
@@ -28,6 +31,7 @@ class MinimumDegree {
         left_ = total_;
         heads_.assign(std::size_t(total_) + 1, none);
         for (int i = 0; i < n_; ++i) add_variable(graph, i);
+        sort_stages();
     }
 
     // The blocks in the order of their elimination.
@@ -47,6 +51,8 @@ class MinimumDegree {
         }
         return order;
     }
+    // About how many multiplications a factorisation in the order found takes.
+    double operations() const { return operations_; }
 
   private:
     static constexpr int none = -1;
@@ -74,7 +80,25 @@ class MinimumDegree {
         for (int k = 0; k < added.variables; ++k) added.degree += rows(list(i)[k]);
         link_variable(i);
     }
+    // The blocks of later stages, which are linked when theirs begins.
+    void sort_stages() {
+        for (int i = 0; i < int(stages_.size()); ++i) {
+            if (!is_due(i)) later_.push_back(i);
+        }
+        std::stable_sort(later_.begin(), later_.end(),
+                         [&](int a, int b) { return stages_[std::size_t(a)] > stages_[std::size_t(b)]; });
+    }
+    bool is_due(int i) const { return stages_.empty() || stages_[std::size_t(i)] <= stage_; }
+    void begin_next_stage() {
+        stage_ = stages_[std::size_t(later_.back())];
+        least_ = 0;
+        for (; !later_.empty() && is_due(later_.back()); later_.pop_back()) {
+            if (is_variable(later_.back())) link_variable(later_.back());
+        }
+    }
     void link_variable(int i) {
+        if (!is_due(i)) return;
+        ++linked_;
         Node& linked = node(i);
         int& head = heads_[std::size_t(linked.degree)];
         linked.next = head, linked.last = none;
@@ -83,11 +107,14 @@ class MinimumDegree {
         least_ = std::min(least_, linked.degree);
     }
     void unlink_variable(int i) {
+        if (!is_due(i)) return;
+        --linked_;
         const Node& old = node(i);
         if (old.next != none) node(old.next).last = old.last;
         (old.last != none ? node(old.last).next : heads_[std::size_t(old.degree)]) = old.next;
     }
     int take_pivot() {
+        while (linked_ == 0) begin_next_stage();
         while (heads_[std::size_t(least_)] == none) ++least_;
         const int pivot = heads_[std::size_t(least_)];
         unlink_variable(pivot);
@@ -120,6 +147,8 @@ class MinimumDegree {
         node(pivot).kind = Kind::element;
         member_rows_ = 0;
         for (int i : members_) member_rows_ += rows(i);
+        const double pivots = rows(pivot), below = member_rows_;
+        operations_ += pivots * (pivots * pivots / 3 + pivots * below + below * below);
     }
     // The rows of each touched element outside the new one.
     void weigh_elements() {
@@ -187,13 +216,16 @@ class MinimumDegree {
             bool is_marked = false;
             for (std::size_t b = a + 1; b < keys_.size() && keys_[b].hash == keys_[a].hash; ++b) {
                 const int j = keys_[b].variable;
-                if (rows(j) == 0 || node(j).elements != node(i).elements ||
+                if (rows(j) == 0 || !share_stage(i, j) || node(j).elements != node(i).elements ||
                     node(j).variables != node(i).variables)
                     continue;
                 if (!is_marked) mark_list(i), is_marked = true;
                 if (has_marked_list(j)) absorb_variable(i, j);
             }
         }
+    }
+    bool share_stage(int i, int j) const {
+        return stages_.empty() || stages_[std::size_t(i)] == stages_[std::size_t(j)];
     }
     void mark_list(int i) {
         ++tag_;
@@ -253,8 +285,11 @@ class MinimumDegree {
     };
 
     int n_, total_ = 0, least_ = 0, member_rows_ = 0;
-    int left_ = 0;           // rows of the variables that are not eliminated yet
-    std::vector<int> rows_;  // of a variable with all that are merged into it; 0 once merged
+    int left_ = 0;                     // rows of the variables that are not eliminated yet
+    std::vector<int> rows_;            // of a variable with all that are merged into it; 0 once merged
+    std::vector<int> stages_, later_;  // later_: the next stage at its end
+    int stage_ = 0, linked_ = 0;       // linked_: variables in the lists of degrees
+    double operations_ = 0;
     std::vector<int> lists_;
     std::vector<Node> nodes_;
     std::vector<int> heads_;   // the first variable of each degree

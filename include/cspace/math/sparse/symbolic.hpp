@@ -39,8 +39,9 @@ struct SymbolicFactor {
 // How many zeros amalgamation may store, as a share of a supernode of so many columns (found by trial).
 struct Amalgamation {
     int always = 12;  // columns that are merged whatever they store
-    int narrow = 48, wide = 96;
-    double narrow_share = 0.5, wide_share = 0.15, share = 0.05;
+    int narrow = 24, wide = 48;
+    double narrow_share = 0.2, wide_share = 0.1, share = 0.02;
+    int most = 96;  // columns of a supernode
 
     bool accepts(int pivots, double zero_share) const {
         if (pivots <= always) return true;
@@ -184,6 +185,29 @@ inline std::vector<Supernode> merge_runs(const std::vector<Supernode>& runs, con
     return merged;
 }
 
+// Splits supernodes of too many columns into chains. A panel is stored as a rectangle, and the triangle above
+// its diagonal is lost.
+inline std::vector<Supernode> split_wide(const std::vector<Supernode>& runs, const std::vector<int>& sizes,
+                                         int most) {
+    std::vector<Supernode> split;
+    split.reserve(runs.size());
+    for (const Supernode& run : runs) {
+        const int parts = (run.pivots + most - 1) / most, wanted = (run.pivots + parts - 1) / parts;
+        int left = run.pivots + run.below;
+        Supernode next{run.first, 0};
+        for (int column = run.first; column < run.first + run.count; ++column) {
+            if (next.count > 0 && next.pivots + sizes[std::size_t(column)] > wanted) {
+                next.below = left;
+                split.push_back(std::exchange(next, Supernode{column, 0}));
+            }
+            ++next.count, next.pivots += sizes[std::size_t(column)], left -= sizes[std::size_t(column)];
+        }
+        next.below = left;
+        split.push_back(next);
+    }
+    return split;
+}
+
 // First the runs of columns with one pattern, then the amalgamated ones.
 inline std::vector<Supernode> find_supernodes(const std::vector<int>& parent, const std::vector<int>& count,
                                               const std::vector<int>& sizes, const Amalgamation& rule) {
@@ -194,8 +218,9 @@ inline std::vector<Supernode> find_supernodes(const std::vector<int>& parent, co
         runs.push_back({column, 1, size, count[std::size_t(column)] - size});
     }
     constexpr double least_share = std::numeric_limits<double>::min();
-    return merge_runs(merge_runs(runs, parent, {0, 0, 0, least_share, least_share, least_share}), parent,
-                      rule);
+    return split_wide(
+        merge_runs(merge_runs(runs, parent, {0, 0, 0, least_share, least_share, least_share}), parent, rule),
+        sizes, rule.most);
 }
 
 // The block rows below each supernode: those of its columns in the matrix, and those of its children.
@@ -233,6 +258,18 @@ inline void find_rows(SymbolicFactor& factor, const BlockGraph& graph) {
 }
 
 }  // namespace symbolic
+
+// The numbers of the sparse Cholesky factor of a matrix of blocks, eliminated in this order.
+inline double count_factor(const BlockGraph& graph, const std::vector<int>& order) {
+    using namespace symbolic;
+    const EarlierColumns earlier = find_earlier_columns(graph, order, invert_order(order));
+    const std::vector<int> sizes = permute(graph.sizes, order);
+    const std::vector<int> count = count_rows(earlier, find_tree(earlier), sizes);
+    double numbers = 0;
+    for (std::size_t k = 0; k < count.size(); ++k)
+        numbers += double(sizes[k]) * (count[k] - 0.5 * (sizes[k] - 1));
+    return numbers;
+}
 
 // The pattern of the sparse Cholesky factor of a matrix of blocks, eliminated in about this order.
 inline SymbolicFactor analyze_pattern(const BlockGraph& graph, std::vector<int> order,

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import InputError, LogError, check_known
@@ -20,13 +21,22 @@ from cspace.localization.graph.graph_arrays import Graph
 from cspace.localization.logs.lines import Lines, unpack_gzip
 from cspace.spatial import pose
 from cspace.tables import count_things
-from cspace.tolerances import LOG_BYTES, SINGULAR_INFORMATION
+from cspace.tolerances import LOG_BYTES, SINGULAR_INFORMATION, UNIFORM_ANGLE
 
 FORMATS: Final = ("g2o", "toro", "graph", "victoria")
 LARGEST_ID: Final = 2**63 - 1
 """Ids are kept as integers of 64 bits."""
-SCANS: Final = ("ROBOTLASER1", "RAWLASER1")
-"""Records of g2o that attach scans to poses; a graph has no place for them."""
+LEFT_OUT: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "g2o": ("ROBOTLASER1", "RAWLASER1", "LASER_ROBOT_DATA", "RGBD_DATA", "DATA_FEATURE_POINTXY"),
+        "toro": ("EQUIV",),
+        "victoria": (),
+    }
+)
+"""Records that relate no variables: what a pose saw before anything was recognised in it, and pairs of
+poses whose edge is listed too."""
+PARAMETERS: Final = "PARAMS_"
+"""Begins records of sensors: calibrations, which matter to the measurements that name them alone."""
 ZIP: Final = b"PK\x03\x04"
 GZIP: Final = b"\x1f\x8b"
 
@@ -60,6 +70,7 @@ class Seen(NamedTuple):
     information: Array
     ranged: bool
     line: int
+    sensor: int | None = None
 
 
 @dataclass
@@ -68,12 +79,15 @@ class Draft:
 
     lines: Lines
     covariances: bool = False
+    offsets: dict[int, Array] = field(default_factory=dict)
     poses: dict[int, Array] = field(default_factory=dict)
     landmarks: dict[int, Array] = field(default_factory=dict)
     fixed: dict[int, int] = field(default_factory=dict)
     edges: list[Edge] = field(default_factory=list)
     seen: list[Seen] = field(default_factory=list)
     skipped: dict[str, int] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    unweighted: int = 0
 
     def ids(self, line: int, words: list[str], count: int) -> list[int]:
         """The first words as ids."""
@@ -112,6 +126,13 @@ class Draft:
         for (i, j), value in zip(order, values, strict=True):
             found[i, j] = found[j, i] = value
         return found
+
+    def edge_matrix(self, values: list[float], order: tuple[tuple[int, int], ...]) -> Array:
+        """The matrix of an edge; the identity where TORO leaves it out."""
+        if values:
+            return self.matrix(values, order)
+        self.unweighted += 1
+        return np.eye(1 + max(j for _, j in order))
 
     def quaternion_pose(self, line: int, values: list[float]) -> Array:
         """The numbers t and the quaternion x, y, z, w of any length but zero."""
@@ -174,15 +195,18 @@ def read_plane_edge(draft: Draft, line: int, words: list[str]) -> None:
 
 
 def read_toro_edge(draft: Draft, line: int, words: list[str]) -> None:
-    """EDGE2 i j x y θ, matrix as xx xy yy θθ xθ yθ"""
-    add_plane_edge(draft, line, words, TORO_UPPER)
+    """EDGE2 i j x y θ, matrix as xx xy yy θθ xθ yθ, or none"""
+    add_plane_edge(draft, line, words, TORO_UPPER, may_lack=True)
 
 
-def add_plane_edge(draft: Draft, line: int, words: list[str], order: tuple[tuple[int, int], ...]) -> None:
-    """An edge of the plane whose matrix has this order."""
+def add_plane_edge(
+    draft: Draft, line: int, words: list[str], order: tuple[tuple[int, int], ...], may_lack: bool = False
+) -> None:
+    """An edge of the plane whose matrix has this order; may_lack: the matrix may be missing."""
     first, second = draft.pair(line, words)
-    values = draft.values(line, words[2:], 9, "an edge of the plane")
-    draft.edges.append(Edge(first, second, np.array(values[:3]), draft.matrix(values[3:], order), line))
+    count = 3 if may_lack and len(words) == 2 + 3 else 9
+    values = draft.values(line, words[2:], count, "an edge of the plane")
+    draft.edges.append(Edge(first, second, np.array(values[:3]), draft.edge_matrix(values[3:], order), line))
 
 
 def read_space_edge(draft: Draft, line: int, words: list[str]) -> None:
@@ -194,11 +218,11 @@ def read_space_edge(draft: Draft, line: int, words: list[str]) -> None:
 
 
 def read_angle_edge(draft: Draft, line: int, words: list[str]) -> None:
-    """EDGE3 i j x y z roll pitch yaw, information by rows; angles about fixed axes"""
+    """EDGE3 i j x y z roll pitch yaw, information by rows, or none; angles about fixed axes"""
     first, second = draft.pair(line, words)
-    values = draft.values(line, words[2:], 27, "an edge in space")
+    values = draft.values(line, words[2:], 6 if len(words) == 2 + 6 else 27, "an edge in space")
     motion = np.array(values[:6])
-    draft.edges.append(Edge(first, second, motion, draft.matrix(values[6:], SPACE_UPPER), line))
+    draft.edges.append(Edge(first, second, motion, draft.edge_matrix(values[6:], SPACE_UPPER), line))
 
 
 def read_point_edge(draft: Draft, line: int, words: list[str]) -> None:
@@ -218,23 +242,32 @@ def read_bearing_edge(draft: Draft, line: int, words: list[str]) -> None:
     draft.seen.append(Seen(first, second, np.array([np.nan, bearing]), np.diag([1.0, weight]), True, line))
 
 
+def read_range_edge(draft: Draft, line: int, words: list[str]) -> None:
+    """BR pose landmark bearing range, and the deviations of both"""
+    first, second = draft.pair(line, words)
+    bearing, distance, *deviations = draft.values(line, words[2:], 4, "a bearing and range")
+    if not min(deviations) > 0:
+        raise draft.lines.error(line, f"a deviation is {min(deviations):g}; both must be positive")
+    information = np.diag(np.array(deviations[::-1]) ** -2.0)
+    draft.seen.append(Seen(first, second, np.array([distance, bearing]), information, True, line))
+
+
 def read_space_point_edge(draft: Draft, line: int, words: list[str]) -> None:
     """EDGE_SE3_TRACKXYZ pose landmark sensor x y z, information by rows"""
     first, second = draft.pair(line, words)
+    (sensor,) = draft.ids(line, words[2:], 1)
     values = draft.values(line, words[3:], 9, "a sighting")
     information = draft.matrix(values[3:], SPACE_POINT_UPPER)
-    draft.seen.append(Seen(first, second, np.array(values[:3]), information, False, line))
+    draft.seen.append(Seen(first, second, np.array(values[:3]), information, False, line, sensor))
 
 
 def read_offset(draft: Draft, line: int, words: list[str]) -> None:
-    """PARAMS_SE3OFFSET id x y z qx qy qz qw: where a sensor is mounted; none but the base itself is known"""
+    """PARAMS_SE3OFFSET id x y z qx qy qz qw: where a sensor is mounted"""
+    (sensor,) = draft.ids(line, words, 1)
     values = draft.values(line, words[1:], 7, "an offset")
-    if not np.allclose(
-        make_poses([draft.quaternion_pose(line, values)])[0], np.eye(4), rtol=0.0, atol=SINGULAR_INFORMATION
-    ):
-        raise draft.lines.error(
-            line, "the sensor is not mounted at the base; transform its points into the base"
-        )
+    if sensor in draft.offsets:
+        raise draft.lines.error(line, f"sensor {sensor} is given for the second time; remove one")
+    draft.offsets[sensor] = make_poses([draft.quaternion_pose(line, values)])[0]
 
 
 RECORDS: Final[Mapping[str, Mapping[str, Reader]]] = MappingProxyType(
@@ -254,9 +287,12 @@ RECORDS: Final[Mapping[str, Mapping[str, Reader]]] = MappingProxyType(
         },
         "toro": {
             "VERTEX2": read_plane_vertex,
+            "VERTEX": read_plane_vertex,
             "VERTEX3": read_angle_vertex,
             "EDGE2": read_toro_edge,
+            "EDGE": read_toro_edge,
             "EDGE3": read_angle_edge,
+            "BR": read_range_edge,
         },
         "victoria": {"ODOMETRY": read_plane_edge, "LANDMARK": read_point_edge},
     }
@@ -275,18 +311,49 @@ def read_graph(cls: type[Graph], path: str | os.PathLike[str], format: str | Non
         raise LogError("the file has no lines", path=name)
     kind = format or find_format(lines, name, rows[0])
     draft = Draft(lines, covariances=kind in ("graph", "victoria"))
-    records = RECORDS["toro" if kind == "graph" else kind]
+    family = "toro" if kind == "graph" else kind
+    records = RECORDS[family]
     for line, words in rows:
         reader = records.get(words[0])
-        if words[0] in SCANS and kind == "g2o":
+        if reader is not None:
+            reader(draft, line, words[1:])
+        elif words[0] in LEFT_OUT[family] or words[0].startswith(PARAMETERS):
             draft.skipped[words[0]] = draft.skipped.get(words[0], 0) + 1
-            continue
-        if reader is None:
+        else:
             raise lines.error(
                 line, f"no record {words[0][:40]!r} of {kind} is known; records: {', '.join(records)}"
             )
-        reader(draft, line, words[1:])
+    if kind == "graph" and format is None:
+        choose_meaning(draft)
+    move_to_bases(draft)
     return finish_draft(cls, draft)
+
+
+def choose_meaning(draft: Draft) -> None:
+    """Files that end in .graph hold covariances or information. As covariances, angles cannot spread more
+    than over the whole circle.
+    """
+    spread = [np.diag(each.information)[(each.motion.size + 1) // 2 :].max() for each in draft.edges]
+    if spread and float(np.median(spread)) > UNIFORM_ANGLE:
+        draft.covariances = False
+        draft.notes.append(
+            "the matrices are read as information; as covariances their angles would exceed the circle"
+        )
+
+
+def move_to_bases(draft: Draft) -> None:
+    """Sightings in the frames of sensors, in those of the poses that carry them."""
+    if not draft.offsets:
+        return
+    for k, each in enumerate(draft.seen):
+        if each.sensor is None:
+            continue
+        T = draft.offsets.get(each.sensor)
+        if T is None:
+            raise draft.lines.error(each.line, f"there is no sensor {each.sensor}; add its PARAMS_SE3OFFSET")
+        R = T[:3, :3]
+        point, information = R @ each.point + T[:3, 3], R @ each.information @ R.T
+        draft.seen[k] = each._replace(point=point, information=information)
 
 
 def unpack_lines(name: str) -> Lines:
@@ -322,7 +389,7 @@ def find_format(lines: Lines, name: str, first: tuple[int, list[str]]) -> str:
     """The format by the first record, and TORO's with covariances by the ending of the file."""
     line, words = first
     for kind, records in RECORDS.items():
-        if words[0] in records:
+        if words[0] in records or (words[0].startswith(PARAMETERS) and kind == "g2o"):
             return "graph" if kind == "toro" and name.endswith((".graph", ".graph.gz")) else kind
     raise lines.error(
         line, f"{words[0][:40]!r} begins no pose graph; g2o, TORO, .graph and Victoria Park are known"
@@ -372,7 +439,7 @@ def finish_draft(cls: type[Graph], draft: Draft) -> Graph:
             ids=np.array(ids, np.int64),
             landmark_ids=np.array(landmark_ids, np.int64),
             start_given=start_given,
-            notes=tuple(f"{count_things(n, 'record')} {kind} left out" for kind, n in draft.skipped.items()),
+            notes=list_notes(draft),
         )
     except InputError as fault:
         raise LogError(str(fault), path=lines.path) from None
@@ -401,15 +468,30 @@ def normalize_rows(rows: Array) -> Array:
     return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
 
 
+def list_notes(draft: Draft) -> tuple[str, ...]:
+    """What was left out or mended."""
+    notes = [f"{count_things(n, 'record')} {kind} left out" for kind, n in draft.skipped.items()]
+    if draft.unweighted:
+        notes.append(f"{count_things(draft.unweighted, 'edge')} without a matrix: the identity is taken")
+    return (*notes, *draft.notes)
+
+
 def stack_information(draft: Draft, measured: Sequence[Edge | Seen], size: int) -> Array:
     """The information matrices of measurements (k, size, size); an error with the line of the first bad
     one.
     """
     given = np.array([each.information for each in measured]).reshape(-1, size, size)
-    values = np.linalg.eigvalsh(given)
-    bad = np.flatnonzero(~(values[:, 0] > SINGULAR_INFORMATION * values[:, -1]))
+    bad = find_indefinite(given)
+    if len(bad) and size == len(ANGLES):
+        turned = transpose_mixed_blocks(given)
+        if not len(find_indefinite(turned)):
+            draft.notes.append(
+                f"the blocks of positions and rotations are transposed: {len(bad)} of {len(given)} matrices"
+                " would not be positive definite as they are"
+            )
+            given, bad = turned, bad[:0]
     if len(bad):
-        least, largest = values[bad[0], [0, -1]]
+        least, largest = np.linalg.eigvalsh(given[bad[0]])[[0, -1]]
         what = "covariance" if draft.covariances else "information"
         kind = "singular" if least >= -SINGULAR_INFORMATION * abs(largest) else "negative"
         raise draft.lines.error(
@@ -417,7 +499,29 @@ def stack_information(draft: Draft, measured: Sequence[Edge | Seen], size: int) 
             f"the {what} matrix is {kind}, with the least eigenvalue {least:.3g}; it must be positive"
             " definite",
         )
-    return np.linalg.inv(given) if draft.covariances else given
+    if not draft.covariances:
+        return given
+    inverted = np.array([not (isinstance(each, Seen) and each.ranged) for each in measured], bool)
+    given[inverted] = np.linalg.inv(given[inverted])
+    return given
+
+
+def find_indefinite(matrices: Array) -> npt.NDArray[np.intp]:
+    """The rows of matrices (k, n, n) that are not clearly positive definite."""
+    values = np.linalg.eigvalsh(matrices)
+    return np.flatnonzero(~(values[:, 0] > SINGULAR_INFORMATION * values[:, -1]))
+
+
+def transpose_mixed_blocks(matrices: Array) -> Array:
+    """Matrices (k, 6, 6) with their blocks of positions and rotations transposed.
+
+    gtsam turns the two halves around without this, so that files written by way of it have these blocks
+    wrong.
+    """
+    turned = matrices.copy()
+    turned[:, :3, 3:] = matrices[:, 3:, :3]
+    turned[:, 3:, :3] = matrices[:, :3, 3:]
+    return turned
 
 
 def add_missing_variables(draft: Draft) -> None:
