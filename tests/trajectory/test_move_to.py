@@ -5,7 +5,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError, InputTypeError, UnknownNameError
-from cspace.trajectory.move_to import PROFILES
+from cspace.trajectory.point_to_point import PROFILES
 from cspace.trajectory.time_scaling import BOUNDARY_ORDERS, PEAKS, connect_states
 
 Q0 = np.array([0.0, -0.7, 0.0, -2.0, 0.0, 1.5, 0.7])

@@ -111,8 +111,15 @@ class LoopConstraints:
         rods = np.zeros(len(rows.loop))
         rods[rows.rods] = rows.lengths
         tied = np.column_stack([rows.loop, rows.P, rows.C.reshape(-1, 9), rods, self.scale])
-        numbers = [np.ascontiguousarray(each, dtype=np.float64) for each in (joints, loops, tied, sides)]
-        return _core.LoopTable(*numbers, self.unit, assembly.n_coordinates, float(self.length))
+        return _core.LoopTable(
+            np.ascontiguousarray(joints, dtype=np.float64),
+            np.ascontiguousarray(loops, dtype=np.float64),
+            np.ascontiguousarray(tied, dtype=np.float64),
+            np.ascontiguousarray(sides),
+            self.unit,
+            assembly.n_coordinates,
+            float(self.length),
+        )
 
     def _find_length(self) -> float:
         """The largest distance between consecutive axes, ends of loops, and the lengths of rods [m]."""

@@ -7,8 +7,8 @@ from cspace.trajectory.fit_path import fit_path
 from cspace.trajectory.jerk_timed_path import JerkTimedPath
 from cspace.trajectory.json_files import from_json, to_json
 from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violation
-from cspace.trajectory.move_to import move_to
 from cspace.trajectory.path import Path
+from cspace.trajectory.point_to_point import move_to
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.splines import b_spline, spline
 from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
