@@ -197,7 +197,7 @@ def make_task(
         step,
         max(1, math.ceil(length / step - WHOLE_STEP)),
         whole_number(every, "every", 1, MOST_STEPS),
-        check_flag(stop_at_limits, "stop_at_limits"),
+        stop_at_limits,
         positive_number(tolerance, "tolerance"),
         check_flag(dense, "dense"),
         late,
@@ -214,6 +214,7 @@ def check_start(
     stop_at_limits: bool,
 ) -> State:
     """The state at time zero; leading axes are broadcast."""
+    check_flag(stop_at_limits, "stop_at_limits")
     batch = dynamic_rows(robot, q, qd=qd, T_world_base=T_world_base, threads=threads)
     refuse_rows(batch)
     assert batch.qd is not None
