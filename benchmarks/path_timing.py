@@ -5,8 +5,8 @@ Usage: python benchmarks/path_timing.py [--paths 20] [--rounds 7] [--write]
 Random cubic splines of seven joints, |q̇| ≤ 2, |q̈| ≤ 8. For each contender the coarsest uniform grid whose
 duration is within 0.1 % of that of 20,000 intervals, then its automatic grid, then torque limits of
 the panda.
-Processor time of one thread per call from Python, medians over rounds in turns; the limits that each answer exceeds at ten
-places of every interval stand beside it.
+Processor time of one thread per call from Python, medians over rounds in turns; the limits that each
+answer exceeds at ten places of every interval stand beside it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from typing import Any
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # threads that wait would count as processor time
 
-import numpy as np  # noqa: E402
+import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.append(str(HERE.parent / "tests"))
