@@ -41,7 +41,7 @@ endif()
 target_compile_definitions(cspace_kernels PUBLIC ${kernel_copies})
 
 if("CSPACE_HAS_AVX2" IN_LIST kernel_copies AND NOT MSVC)
-  add_kernels(baseline -O2)  # for processors without AVX2, older than 2013: it compiles sooner than -O3
+  add_kernels(baseline -O1)  # for processors without AVX2, older than 2013: it compiles in half the time of -O3
 else()
   add_kernels(baseline)
 endif()

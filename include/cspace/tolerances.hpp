@@ -125,7 +125,7 @@ inline constexpr double collision_slack = 2e-6;
 inline constexpr double same_distance = 1e-12, same_gradient = 1e-9;
 
 // Inertia left to a joint, relative to that of the body which it turns or slides, that is none: what the
-// joints beyond take away leaves rounding of 1e-16.
+// joints beyond take away leaves rounding of 1e-16. Likewise of a motion that closed loops allow.
 inline constexpr double singular_inertia = 1e-13;
 // The same in floats, which leave rounding of 1e-7.
 inline constexpr float singular_inertia_of_floats = 1e-6f;
@@ -135,7 +135,5 @@ inline constexpr double loop_closed = 1e-12, loop_projected = 2e-14;
 // A row of K, relative to the largest, that depends on others; and by how much more for each unit of φ, since
 // the rows of open loops are not quite dependent.
 inline constexpr double loop_rank = 1e-9, loop_rank_slack = 100.0;
-// Kinetic energy of a unit motion, relative to the largest one, that is none: the rounding of M.
-inline constexpr double massless_motion = 1e-16;
 
 }  // namespace cspace::tolerance

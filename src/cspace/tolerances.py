@@ -35,6 +35,10 @@ MASSLESS_MOTION: Final = 1e-8
 """Root of the kinetic energy of a unit motion, relative to the largest one, up to which it is none: its
 square is the rounding of the mass matrix."""
 
+SINGULAR_INERTIA: Final = 1e-13
+"""Inertia left to a motion that closed loops allow, relative to its own, that is none: what the others take
+away leaves rounding of 1e-16."""
+
 WHOLE_STEP: Final = 1e-9
 """Part of a step by which a duration may exceed a whole number of steps: rounding of their quotient, also of
 millions of them."""

@@ -483,3 +483,25 @@ def test_bad_input():
         linkage.simulate(q, rest, control=lambda t, q, qd: np.zeros(2), duration=1, dt=0.1)
     with pytest.raises(UnknownNameError, match="rk4"):
         linkage.simulate(q, rest, duration=1, dt=0.1, method="variational")
+
+
+def test_a_base_that_moves_without_inertia_is_refused():
+    """A massless base that one joint carries turns about it, or slides along it, for nothing."""
+    found = 0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        description = random_tree(rng, 9, mimic=False)
+        if sum(joint.parent == "base" for joint in description.joints) != 1:
+            continue
+        found += 1
+        robot, plain = Robot(description, floating=True), Robot(description)
+        q = rng.uniform(-1, 1, 9)
+        constraints = LoopConstraints(
+            robot, [closing_loop(plain, q, "spherical", "link_1", "link_8", "ball", rng)]
+        )
+        rest = np.zeros(robot.dof)
+        with pytest.raises(InputError, match="moves no inertia"):
+            dynamics.constrained_forward_dynamics(constraints, q, rest, rest)
+        with pytest.raises(InputError, match="moves no inertia"):
+            dynamics.simulate_loops(constraints, q, rest, duration=1e-3, dt=1e-3)
+    assert found > 5

@@ -32,14 +32,14 @@ struct LoopMemory {
     LoopPlaces places;
     AllowedMotions motions;
     double *phi, *b, *K, *G, *MG, *H, *M;
-    double *x, *pull, *y, *q, *qd, *tried, *force;
+    double *x, *pull, *y, *own, *q, *qd, *tried, *force;
 };
 
 inline std::size_t loop_memory_bytes(const ClosedLoops& loops) {
     const std::size_t n = std::size_t(loops.n_joints), r = std::size_t(loops.n_rows);
     const std::size_t dof = std::size_t(loops.dof);
     return sizeof(Posed) * (n + 2 * std::size_t(loops.n_loops)) + sizeof(kinematics::LoopMotion) * n +
-           sizeof(double) * (2 * r * dof + 5 * r + 4 * dof * dof + 7 * dof) + sizeof(double) * r;
+           sizeof(double) * (2 * r * dof + 5 * r + 4 * dof * dof + 8 * dof) + sizeof(double) * r;
 }
 
 }  // namespace cspace::dynamics
@@ -63,8 +63,8 @@ inline LoopMemory make_loop_memory(const ClosedLoops& loops, void* bytes) {
     memory.K = numbers(r * dof);
     for (double** each : {&memory.phi, &memory.b}) *each = numbers(r);
     for (double** each : {&memory.G, &memory.MG, &memory.H, &memory.M}) *each = numbers(dof * dof);
-    for (double** each :
-         {&memory.x, &memory.pull, &memory.y, &memory.q, &memory.qd, &memory.tried, &memory.force})
+    for (double** each : {&memory.x, &memory.pull, &memory.y, &memory.own, &memory.q, &memory.qd,
+                          &memory.tried, &memory.force})
         *each = numbers(dof);
     memory.motions.order = take(static_cast<int*>(nullptr), r);
     return memory;
@@ -160,13 +160,10 @@ inline bool solve_least_energy(const ClosedLoops& loops, const double* M, const 
             H[f][g] = sum;
         }
     }
+    for (int f = 0; f < free; ++f) memory.own[f] = H[f][f];
     bool is_regular = factor_ldl(H, free);
-    double least = H[0][0], most = H[0][0];  // inverse pivots
-    for (int f = 1; f < free; ++f) {
-        least = std::min(least, H[f][f]);
-        most = std::max(most, H[f][f]);
-    }
-    is_regular = is_regular && tolerance::massless_motion * most < least;
+    for (int f = 0; f < free; ++f)  // the inverse pivots stand on the diagonal
+        is_regular = is_regular && tolerance::singular_inertia * memory.own[f] * H[f][f] < 1.0;
     solve_ldl(H, free, y);
     for (int f = 0; f < free; ++f)
         for (int j = 0; j < dof; ++j) x[j] += memory.G[f * dof + j] * y[f];

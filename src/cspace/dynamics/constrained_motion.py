@@ -18,7 +18,7 @@ from cspace.errors import InputError
 from cspace.kinematics import LoopConstraints
 from cspace.kinematics.loop_constraints import Placement
 from cspace.kinematics.loop_freedom import find_rank_tolerance, find_scaled_jacobian
-from cspace.tolerances import MASSLESS_MOTION
+from cspace.tolerances import SINGULAR_INERTIA
 
 Flags = NDArray[np.bool_]
 
@@ -98,8 +98,8 @@ def solve_least_energy(allowed: AllowedMotions, M: Array, b: Array, p: Array, na
     H[..., diagonal, diagonal] += np.where(allowed.free, 0.0, np.where(largest > 0.0, largest, 1.0))
     try:
         L = np.linalg.cholesky(H)
-        pivots = L[..., diagonal, diagonal]
-        is_regular = bool((pivots > MASSLESS_MOTION * pivots.max(axis=-1, initial=0.0)[..., None]).all())
+        left = L[..., diagonal, diagonal] ** 2
+        is_regular = bool((left > SINGULAR_INERTIA * H[..., diagonal, diagonal]).all())
     except np.linalg.LinAlgError:
         is_regular = False
     if not is_regular:
