@@ -75,3 +75,14 @@ def test_rows_of_a_batch_are_those_alone(robot):
         assert many.rank[i] == one.rank == 6 - len(one.lost)
         assert not many.lost[i][len(one.lost) :].any()
         assert many.effective_mass(d)[i] == pytest.approx(one.effective_mass(d[i]), rel=1e-9)
+
+
+def test_the_inertia_is_written_where_it_is_wanted():
+    panda = cs.load_robot("panda")
+    q = panda.random_configuration(4, rng=0)
+    out = np.empty((4, 6, 6))
+    felt = panda.operational_space(q, out=out)
+    assert felt.inertia is out
+    np.testing.assert_array_equal(out, panda.operational_space(q).inertia)
+    with pytest.raises(InputError, match=r"^out has shape"):
+        panda.operational_space(q, out=np.empty((3, 6, 6)))

@@ -13,7 +13,7 @@ from cspace.dynamics.forward import forward_dynamics
 from cspace.dynamics.rows import dynamic_rows, refuse_rows
 from cspace.errors import InputError
 from cspace.kinematics import jacobian
-from cspace.kinematics.batch import check_robot, frame_number
+from cspace.kinematics.batch import check_output, check_robot, frame_number
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 from cspace.tables import count_things, one_line
@@ -69,6 +69,7 @@ def operational_space(
     frame: str | None = None,
     *,
     T_world_base: PoseLike | None = None,
+    out: Array | None = None,
     threads: int | None = None,
 ) -> OperationalSpace:
     """The inertia of a robot as it is felt at a frame.
@@ -77,7 +78,7 @@ def operational_space(
     named in the answer, and Λ is zero there.
 
     q (..., n) [rad or m]. frame: its name; without it the tip. T_world_base (..., 4, 4): where the base is.
-    threads: as in fk.
+    out (..., 6, 6): float64 array for the inertia of the answer. threads: as in fk.
     Raises InputError for a wrong shape or NaN and where a joint moves no inertia, UnknownNameError for an
     unknown frame.
     """
@@ -112,7 +113,9 @@ def operational_space(
     rank, lost = keeps.sum(axis=-1), np.zeros_like(mobility)
     for row in np.flatnonzero(rank < 6):
         lost[row, : 6 - rank[row]] = np.linalg.qr(axes[row][:, ~keeps[row]])[0].T
+    felt = check_output(out, (*batch.shape, 6, 6))
+    felt[...] = inertia.reshape(felt.shape)
     if not batch.shape:
-        return OperationalSpace(name, mobility[0], inertia[0], rank[0], lost[0, : 6 - rank[0]], J[0])
-    parts: list[Any] = [x.reshape(*batch.shape, *x.shape[1:]) for x in (mobility, inertia, rank, lost, J)]
-    return OperationalSpace(name, *parts)
+        return OperationalSpace(name, mobility[0], felt, rank[0], lost[0, : 6 - rank[0]], J[0])
+    parts: list[Any] = [x.reshape(*batch.shape, *x.shape[1:]) for x in (mobility, rank, lost, J)]
+    return OperationalSpace(name, parts[0], felt, *parts[1:])
