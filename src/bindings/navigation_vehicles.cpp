@@ -81,6 +81,24 @@ PyMethodDef methods[] = {{"_car_distance", as_method(find_distance), METH_FASTCA
                          {"_car_shortest", as_method(find_shortest), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
+std::pair<int, cspace::Table<FollowRow>> follow(
+    std::span<const cspace::Point> points, const std::vector<FollowRun>& runs,
+    const std::array<double, 6>& vehicle, const std::array<double, 5>& start,
+    const std::array<double, 6>& settings, int controller, const std::array<double, 7>& numbers,
+    const GridWorld* world, const std::array<double, 4>& footprint, const nb::object& belief) {
+    Belief believe;
+    if (!belief.is_none())
+        believe = [&](double time, const CarPose& pose) {
+            const nb::gil_scoped_acquire held;
+            const auto [x, y, theta] =
+                nb::cast<std::tuple<double, double, double>>(belief(time, pose.x, pose.y, pose.theta));
+            return CarPose{x, y, theta};
+        };
+    const nb::gil_scoped_release release;
+    return follow_path(points, runs, vehicle, start, settings, controller, numbers, world, footprint,
+                       believe);
+}
+
 }  // namespace
 
 void bind_navigation_vehicles(nb::module_& m) {
@@ -93,7 +111,9 @@ void bind_navigation_vehicles(nb::module_& m) {
           "Whether a vehicle touches no blocked cell.");
     m.def("_hybrid_a_star", find_car_route, "grid"_a, "footprint"_a, "start"_a, "goal"_a, "reverses"_a,
           "settings"_a, WithoutLock(), "Status, reason, pieces (turn, signed length), nodes and edges.");
-    m.def("_follow", follow_path, "points"_a, "runs"_a, "vehicle"_a, "start"_a, "settings"_a, "controller"_a,
-          "numbers"_a, "world"_a.none(), "footprint"_a, WithoutLock(),
-          "Lets a vehicle follow a path; the outcome and a row per step.");
+    m.def("_follow", follow, "points"_a, "runs"_a, "vehicle"_a, "start"_a, "settings"_a, "controller"_a,
+          "numbers"_a, "world"_a.none(), "footprint"_a, "belief"_a.none(),
+          "Lets a vehicle follow a path; the outcome and a row per step. belief(t, x, y, theta): where it "
+          "takes "
+          "itself to be, three numbers.");
 }

@@ -33,10 +33,13 @@ std::pair<Piece, double> arc_of(double speed, double rate, double time) {
 
 }  // namespace
 
-std::pair<int, Table<FollowRow>> follow_path(
-    std::span<const Point> points, const std::vector<FollowRun>& runs, const std::array<double, 6>& vehicle,
-    const std::array<double, 5>& start, const std::array<double, 6>& settings, int controller,
-    const std::array<double, 7>& n, const maps::GridWorld* world, const std::array<double, 4>& footprint) {
+std::pair<int, Table<FollowRow>> follow_path(std::span<const Point> points,
+                                             const std::vector<FollowRun>& runs,
+                                             const std::array<double, 6>& vehicle,
+                                             const std::array<double, 5>& start,
+                                             const std::array<double, 6>& settings, int controller,
+                                             const std::array<double, 7>& n, const maps::GridWorld* world,
+                                             const std::array<double, 4>& footprint, const Belief& belief) {
     const Track track = track_of(points, runs);
     const maps::BitGrid* grid = world ? &world->state().bits : nullptr;
     const maps::GridFrame frame = world ? world->state().frame : maps::GridFrame{};
@@ -46,8 +49,11 @@ std::pair<int, Table<FollowRow>> follow_path(
                !CarWorld(*grid, frame).is_way_clear(std::bit_cast<Footprint>(footprint), from, piece, radius);
     };
     const auto run = [&](auto steering) {
+        const auto believe = [&](double time, const CarPose& pose) {
+            return belief ? belief(time, pose) : pose;
+        };
         return follow_track(std::bit_cast<Vehicle>(vehicle), std::bit_cast<Motion>(start), track, steering,
-                            std::bit_cast<FollowSettings>(settings), touches);
+                            std::bit_cast<FollowSettings>(settings), touches, believe);
     };
     FollowRecord record;
     if (controller == 0) record = run(PurePursuit{n[0], n[1]});

@@ -159,3 +159,66 @@ def test_what_cannot_be_followed_is_refused():
         nav.Car(wheelbase=0)
     with pytest.raises(InputTypeError, match="vehicle"):
         nav.follow(LINE, vehicle="car")
+
+
+@pytest.mark.parametrize(("controller", "vehicle"), CASES)
+def test_a_vehicle_that_believes_the_truth_drives_as_one_that_knows_it(controller, vehicle):
+    known = nav.follow(circle(12.0), controller, vehicle=vehicle)
+    believed = nav.follow(circle(12.0), controller, vehicle=vehicle, estimate=lambda t, pose: pose)
+    np.testing.assert_array_equal(known.poses, believed.poses)
+    np.testing.assert_array_equal(believed.believed, believed.poses)
+    np.testing.assert_array_equal(known.believed, known.poses)
+
+
+@pytest.mark.parametrize(("controller", "vehicle"), CASES)
+def test_a_vehicle_with_a_wrong_place_drives_beside_its_path(controller, vehicle):
+    """The run is that of the path moved the other way, and ends beside the goal."""
+    shift = np.array([0.3, -0.8, 0.0])
+    start = np.array([0.0, 0.0, 0.0])
+    run = nav.follow(
+        LINE, controller, vehicle=vehicle, start=start - shift, estimate=lambda t, pose: pose + shift
+    )
+    plain = nav.follow(LINE, controller, vehicle=vehicle, start=start)
+    assert run.status == "missed"
+    np.testing.assert_allclose(run.believed, plain.poses, atol=1e-9)
+    np.testing.assert_allclose(run.poses, plain.poses - shift, atol=1e-9)
+    check_limits(run)
+
+
+def test_a_vehicle_with_a_noisy_place_arrives_within_its_limits():
+    rng = np.random.default_rng(2)
+    run = nav.follow(
+        LINE,
+        vehicle=ROBOT,
+        tolerance=0.1,
+        estimate=lambda t, pose: pose + rng.normal(size=3) * [0.01, 0.01, 0.005],
+    )
+    assert run
+    check_limits(run)
+    assert np.abs(run.poses[:, 1]).max() < 0.1
+    assert np.abs(run.believed - run.poses)[:, :2].max() < 0.06
+
+
+def test_a_vehicle_touches_things_where_it_is():
+    blocked = np.zeros((40, 200), dtype=bool)
+    blocked[:, 150] = True
+    grid = cs.OccupancyGrid(blocked, 0.1)
+    way = [(1.0, 2.0), (10.0, 2.0)]
+    run = nav.follow(way, vehicle=ROBOT, world=grid, estimate=lambda t, pose: pose - [6.0, 0.0, 0.0])
+    assert run.status == "collision"
+    assert 14.0 < run.poses[-1, 0] < 15.0
+
+
+@pytest.mark.parametrize("told", [None, "here", np.zeros(2), np.full(3, np.nan), 1.0])
+def test_an_estimate_that_is_no_pose_is_named(told):
+    with pytest.raises((InputError, InputTypeError), match=r"^the estimate at t = 0 s "):
+        nav.follow(LINE, estimate=lambda t, pose: told)
+
+
+def test_bad_estimates():
+    with pytest.raises(InputTypeError, match=r"^estimate is a float"):
+        nav.follow(LINE, estimate=1.0)
+    with pytest.raises(InputTypeError, match="dynamic_window"):
+        nav.follow(LINE, "dynamic_window", estimate=lambda t, pose: pose)
+    with pytest.raises(ZeroDivisionError):
+        nav.follow(LINE, estimate=lambda t, pose: pose / (1 // 0))

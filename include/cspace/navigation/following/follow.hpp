@@ -57,16 +57,20 @@ struct Follower {
 };
 
 // contact(from, speed, turn rate, time) returns whether the vehicle touches something on that arc; controller
-// as in controllers.hpp.
-template <class Controller, class Contact>
+// as in controllers.hpp. believe(time, pose) returns where the vehicle takes itself to be when it is at a
+// pose: there it is steered from, while it moves and touches things where it is.
+template <class Controller, class Contact, class Belief>
 FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Track& track,
-                          Controller& controller, const FollowSettings& settings, const Contact& contact) {
+                          Controller& controller, const FollowSettings& settings, const Contact& contact,
+                          const Belief& believe) {
     constexpr double rest = 1e-3;     // [m/s], as good as standing
     constexpr double advance = 1e-4;  // [m] less than this is creeping on the spot
     constexpr double settled = 0.5;   // [s] without getting ahead, after which being there is enough
     const double dt = settings.time_step;
     FollowRecord record;
+    Motion truth = start;
     Follower at{track, start};
+    at.now.pose = believe(0.0, truth.pose);
     at.look(vehicle, controller, 0, track[0].length());
     double farthest = -1, farthest_time = 0;
     bool touched = contact(start.pose, 0.0, 0.0, 0.0);
@@ -78,13 +82,13 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
     for (std::int64_t step = 0;; ++step) {
         poll.step();
         const double time = double(step) * dt;
-        record.steps.push_back({at.now, at.guided.offset, at.progress()});
+        record.steps.push_back({truth, at.guided.offset, at.progress()});
         if (touched) return finish(Outcome::collision);
         const bool across = controller.leaves_path(vehicle);
         double left = at.left(across);
         if (left <= settings.tolerance && std::fabs(at.now.speed) <= rest) {
             if (at.on_last_run()) {
-                const double missing = distance(place(at.now.pose), track[at.run].end());
+                const double missing = distance(place(truth.pose), track[at.run].end());
                 return finish(missing <= settings.tolerance ? Outcome::arrived : Outcome::missed);
             }
             at.before += track[at.run++].length();
@@ -98,11 +102,19 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
         const double fast =
             rests ? 0 : std::min(settings.speed, speed_to_stop(left, vehicle.acceleration, dt));
         const Command command = controller(vehicle, at.now, track[at.run], at.guided, fast, dt);
-        const Motion next = step_vehicle(vehicle, at.now, command, dt);
-        touched = contact(at.now.pose, next.speed, turn_rate(vehicle, next.speed, next.turn), dt);
-        at.now = next;
+        const Motion next = step_vehicle(vehicle, truth, command, dt);
+        touched = contact(truth.pose, next.speed, turn_rate(vehicle, next.speed, next.turn), dt);
+        at.now = truth = next;
+        at.now.pose = believe(time + dt, truth.pose);
         at.look(vehicle, controller, at.own.s, at.own.s + settings.window);
     }
+}
+// The same for a vehicle that knows where it is.
+template <class Controller, class Contact>
+FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Track& track,
+                          Controller& controller, const FollowSettings& settings, const Contact& contact) {
+    const auto know = [](double, const CarPose& pose) { return pose; };
+    return follow_track(vehicle, start, track, controller, settings, contact, know);
 }
 
 }  // namespace cspace::navigation

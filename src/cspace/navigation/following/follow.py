@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, positive_number
+from cspace.arrays import Array, as_floats, one_array, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile import Car, Unicycle
@@ -29,6 +31,9 @@ OPTIONS: Final[dict[str, dict[str, Any]]] = {
 CONTROLLERS: Final = tuple(OPTIONS)
 """The controllers, in the order of the compiled core."""
 
+Estimate = Callable[[float, Array], ArrayLike]
+"""(t, true pose) → the pose (3,) that the vehicle believes in."""
+
 Runs = list[tuple[int, int]]
 """The row at which each run begins, and whether it is driven forwards (1) or backwards (−1)."""
 
@@ -45,6 +50,7 @@ def follow(
     patience: float = 10.0,
     time_step: float = 0.05,
     time_limit: float | None = None,
+    estimate: Estimate | None = None,
     **options: Any,
 ) -> Run:
     """Lets a vehicle follow a path in a simulator, within the vehicle's limits, and stops it at the end.
@@ -55,7 +61,10 @@ def follow(
     [m], theta [rad], or (5,) with speed [m/s] and turn as in Run.controls; the beginning of the path unless
     given. speed [m/s]: the fastest, that of the vehicle unless given; it brakes in time for the end.
     tolerance [m]: what counts as the end. patience [s]: how long it may come no farther. time_step [s] of the
-    simulator, within which speed and turn are constant. time_limit [s].
+    simulator, within which speed and turn are constant. time_limit [s]. estimate: where the vehicle takes
+    itself to be, as a function of the time [s] and its true pose (3,), from which it makes what sensors
+    measure; it is asked at the beginning and after each step. The vehicle is steered from there, and moves
+    and touches things where it is. Unless given, the vehicle knows where it is.
 
     Controllers and their options:
       "pure_pursuit" steers along the arc that meets the path `lookahead` [m] away: unless given, half a
@@ -75,7 +84,7 @@ def follow(
 
     Returns a Run, truthy if it arrived. Raises InputError for a path of fewer than two points or with none
     to follow, or a number outside its range; UnknownNameError for an unknown controller; InputTypeError for
-    an option that it does not have, or a vehicle that it cannot drive.
+    an option that it does not have, a vehicle that it cannot drive, or an estimate that is no function.
     """
     body = Unicycle() if vehicle is None else vehicle
     rows, runs = read_track(path, body.wheelbase if isinstance(body, Car) else 0.0)
@@ -83,24 +92,57 @@ def follow(
     fast = body.max_speed if speed is None else min(positive_number(speed, "speed"), body.max_speed)
     if world is not None:
         need_grid(world, "world")
+    belief = None if estimate is None else Belief(estimate, controller)
     steering, far = tune_controller(controller, body, fast, options)
-    step = positive_number(time_step, "time_step")
-    length = float(np.hypot(*np.diff(rows[:, :2], axis=0).T).sum())
-    limit = 10 * length / fast + 60 if time_limit is None else positive_number(time_limit, "time_limit")
-    if limit > SIMULATION_STEPS * step:
-        rule = f"give numbers for at most {SIMULATION_STEPS:g} steps"
-        raise InputError(f"time_step is {step:g} s, time_limit {limit:g} s; {rule}")
+    given = {"time_step": time_step, "tolerance": tolerance, "patience": patience}
+    step, *ends = (positive_number(value, name) for name, value in given.items())
+    limit = choose_limit(rows, fast, step, time_limit)
     window = 2 * far + 4 * fast * step
-    ends = positive_number(tolerance, "tolerance"), positive_number(patience, "patience")
     settings = np.array([step, limit, fast, window, *ends])
     points = np.ascontiguousarray(rows[:, :2])
     outcome, table = _core._follow(
         *(points, runs, np.array(body._limits), read_start(start, rows, runs), settings),
-        *(CONTROLLERS.index(controller), steering, world, np.array(body._footprint)),
+        *(CONTROLLERS.index(controller), steering, world, np.array(body._footprint), belief),
     )
     times: Array = step * np.arange(len(table), dtype=np.float64)
     parts = (table[:, :3], table[:, 3:5], table[:, 5], table[:, 6])
-    return Run(body, controller, times, *parts, OUTCOMES[outcome], points[-1], tightest_bend(points))
+    beliefs = parts[0] if belief is None else np.array(belief.poses)
+    return Run(body, controller, times, *parts, OUTCOMES[outcome], beliefs, points[-1], tightest_bend(points))
+
+
+def choose_limit(rows: Array, speed: float, step: float, given: float | None) -> float:
+    """How long a run may take [s]. Raises InputError for more steps than a simulation may have."""
+    length = float(np.hypot(*np.diff(rows[:, :2], axis=0).T).sum())
+    limit = 10 * length / speed + 60 if given is None else positive_number(given, "time_limit")
+    if limit > SIMULATION_STEPS * step:
+        rule = f"give numbers for at most {SIMULATION_STEPS:g} steps"
+        raise InputError(f"time_step is {step:g} s, time_limit {limit:g} s; {rule}")
+    return limit
+
+
+class Belief:
+    """Where a vehicle takes itself to be, and every pose (3,) that it did."""
+
+    def __init__(self, estimate: Estimate, controller: str) -> None:
+        if not callable(estimate):
+            raise InputTypeError(
+                f"estimate is a {type(estimate).__name__}, expected a function of the time and the true pose"
+                " that returns a pose (3,)"
+            )
+        if controller == "dynamic_window":
+            raise InputTypeError(
+                "dynamic_window sees the world from where it takes itself to be; use pure_pursuit or stanley"
+                " with estimate="
+            )
+        self.estimate = estimate
+        self.poses: list[Array] = []
+
+    def __call__(self, t: float, *pose: float) -> tuple[float, ...]:
+        """The pose at a time, with the vehicle at another one. InputError for anything but a pose."""
+        told = self.estimate(t, np.array(pose))
+        found = one_array(told, f"the estimate at t = {t:g} s", (3,), largest=LARGEST_NUMBER)
+        self.poses.append(found)
+        return tuple(found.tolist())
 
 
 def tune_controller(

@@ -24,7 +24,9 @@ class Run:
     (n,) [m]: distance from the path, above zero to its left, of the point that the controller guides: the
     front axle for Stanley, else the place of the vehicle. progress (n,) [m]: how far along the path. status:
     "arrived"; "stuck", where it came no farther along the path for too long; "collision", at whose first
-    touch the run ends; "timeout"; "missed", where it stopped at the end of the path but beside it.
+    touch the run ends; "timeout"; "missed", where it stopped at the end of the path but beside it. believed
+    (n, 3): where the vehicle took itself to be, at its poses unless `estimate` said otherwise; cross_track
+    and progress are those of these poses.
     """
 
     vehicle: Any
@@ -35,6 +37,7 @@ class Run:
     cross_track: Array
     progress: Array
     status: str
+    believed: Array
     _goal: Array
     _tightest: float = np.inf  # the least radius of a bend of the path [m]
 
