@@ -76,12 +76,12 @@ def regressor(
     """
     refuse_missing(qd=qd, qdd=qdd)
     batch = rows_of(robot, q, qd=qd, qdd=qdd, T_world_base=T_world_base, threads=threads)
-    refuse_rows(batch)
     shape = (robot.dof, count_parameters(robot._assembly, friction))
     entries = len(batch.q) * shape[0] * shape[1]
     with guard_memory("q", f"an array of {len(batch.q)} rows", entries, "pass fewer"):
         Y = check_output(out, (*batch.shape, *shape))
-    run_rows(robot, "regressor", batch, batch.qdd, Y, check_gravity(gravity), friction)
+    if not run_rows(robot, "regressor", batch, batch.qdd, Y, check_gravity(gravity), friction):
+        refuse_rows(batch)
     return Y
 
 
