@@ -1,40 +1,14 @@
-"""A robot localises itself on its own map: from anywhere, after it was carried away, and to steer by it."""
+"""A robot follows a path and localises itself on its own map, from anywhere and after it was carried away."""
 
 from __future__ import annotations
 
 import sys
 import tempfile
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 
 import cspace as cs
-
-
-class OwnEstimate:
-    """Where the robot takes itself to be: its odometry at each step, a scan every half a second."""
-
-    def __init__(self, grid: cs.OccupancyGrid, scanner: cs.LaserScanner, start: np.ndarray) -> None:
-        self.grid, self.scanner = grid, scanner
-        self.filter = cs.ParticleFilter(grid, sensor=scanner, start=start, rng=7)
-        self.rng = np.random.default_rng(3)
-        self.times, self.poses = [0.0], [start]
-
-    def __call__(self, t: float, pose: np.ndarray) -> np.ndarray:
-        if t > 0:
-            step = SimpleNamespace(
-                times=np.array([self.times[-1], t]), poses=np.array([self.poses[-1], pose])
-            )
-            log = cs.localization.simulate(step, self.grid, self.scanner, rng=self.rng)
-            assert log.odometry is not None
-            assert log.scans is not None
-            self.filter.predict(log.odometry.dead_reckoning().poses[-1], t - self.times[-1])
-            if len(self.times) % 10 == 0:
-                self.filter.update(log.scans[len(log.scans) - 1])
-            self.times.append(t)
-            self.poses.append(pose)
-        return self.filter.pose
 
 
 def main(folder: Path) -> None:
@@ -75,19 +49,6 @@ def main(folder: Path) -> None:
             pf.predict(steps.poses[-1])
     assert pf.status == "localised"
     assert any(event.kind == "search" for event in pf.events)
-
-    # By its own estimate: the robot is steered from where its filter takes it to be.
-    own = cs.navigation.follow(
-        way,
-        vehicle=cs.Unicycle(),
-        world=grid,
-        tolerance=0.1,
-        estimate=OwnEstimate(grid, scanner, run.poses[0]),
-    )
-    off = np.hypot(*(own.believed - own.poses)[:, :2].T)
-    print(f"{own.reason}; the estimate was up to {off.max():.2f} m off")
-    assert own.status in ("arrived", "missed")
-    assert np.hypot(*(own.poses[-1, :2] - way[-1])) < 0.2
 
     cs.plot.save(cs.plot.particles(pf), folder / "particles.png")
 
