@@ -30,15 +30,20 @@ void require_size(bool fits) {
     if (!fits) throw nb::value_error("arrays of matching sizes are needed");
 }
 
-TimingPath read_path(const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops) {
-    require_size(controls.ndim() == 3 && controls.shape(0) == lengths.size &&
-                 stops.size == lengths.size + 1 && 2 <= controls.shape(1) && controls.shape(1) <= 6 &&
-                 lengths.size > 0);
+TimingPath read_pieces(const ConstDoubles& controls, const ConstDoubles& lengths) {
+    require_size(controls.ndim() == 3 && controls.shape(0) == lengths.size && 2 <= controls.shape(1) &&
+                 controls.shape(1) <= 6 && lengths.size > 0);
     return {int(controls.shape(1)) - 1,
             int(controls.shape(2)),
             {controls.data, std::size_t(controls.size)},
             {lengths.data, std::size_t(lengths.size)},
-            {reinterpret_cast<const signed char*>(stops.data), std::size_t(stops.size)}};
+            {}};
+}
+TimingPath read_path(const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops) {
+    TimingPath path = read_pieces(controls, lengths);
+    require_size(stops.size == lengths.size + 1);
+    path.stops = {reinterpret_cast<const signed char*>(stops.data), std::size_t(stops.size)};
+    return path;
 }
 TimingLimits read_limits(const TimingPath& path, const ConstDoubles& velocity,
                          const ConstDoubles& acceleration) {
@@ -141,6 +146,18 @@ void bind_trajectory_timing(nb::module_& m) {
         "tolerance"_a, "grid"_a.none(), "sample"_a.none(),
         "Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether "
         "converged.");
+    m.def(
+        "examine_path",
+        [](const ConstDoubles& controls, const ConstDoubles& lengths, double gap, double jump, double slope) {
+            const TimingPath path = read_pieces(controls, lengths);
+            const PathShape shape = examine_path(path, {gap, jump, slope});
+            return std::make_tuple(shape.gap, shape.width,
+                                   Plain<std::int8_t>({lengths.size + 1}, shape.events.data()),
+                                   Plain<std::int8_t>({lengths.size, path.joints}, shape.moving.data()));
+        },
+        "controls"_a, "lengths"_a, "gap"_a, "jump"_a, "slope"_a,
+        "The first break with a gap (0: none) and its width; flags (k + 1,) of breaks: bit 0 where slopes "
+        "vanish, bit k where derivative k jumps; which joints move (k, dof).");
     m.def(
         "evaluate_path",
         [](const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops,

@@ -1026,6 +1026,11 @@ def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typi
     Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether converged.
     """
 
+def examine_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], gap: float, jump: float, slope: float) -> tuple[int, float, numpy.typing.NDArray[numpy.int8], numpy.typing.NDArray[numpy.int8]]:
+    """
+    The first break with a gap (0: none) and its width; flags (k + 1,) of breaks: bit 0 where slopes vanish, bit k where derivative k jumps; which joints move (k, dof).
+    """
+
 def evaluate_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], piece: numpy.typing.NDArray[numpy.int32], local: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     """
     Configurations (m, dof) and their first two derivatives at places (m,) within pieces (m,).

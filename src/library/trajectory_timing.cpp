@@ -337,48 +337,4 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
     }
 }
 
-namespace {
-
-constexpr int most_degree = 5;
-
-// Bernstein polynomials of a degree at t.
-void weigh(int degree, double t, double (&weights)[most_degree + 1]) {
-    weights[0] = 1.0;
-    for (int i = 1; i <= degree; ++i) {  // from those of degree i − 1 to those of degree i
-        weights[i] = t * weights[i - 1];
-        for (int k = i - 1; k > 0; --k) weights[k] = (1.0 - t) * weights[k] + t * weights[k - 1];
-        weights[0] *= 1.0 - t;
-    }
-}
-
-}  // namespace
-
-void evaluate_path(const TimingPath& path, const PathPlaces& places) {
-    const int n = path.joints, degree = path.degree;
-    std::vector<double> first(path.controls.size()), second(path.controls.size());
-    const size_t size = size_t((degree + 1) * n);
-    for (size_t piece = 0; piece < path.lengths.size(); ++piece) {
-        const double *q = path.controls.data() + piece * size, h = path.lengths[piece];
-        double *d = first.data() + piece * size, *e = second.data() + piece * size;
-        for (int k = 0; k < degree * n; ++k) d[k] = (q[k + n] - q[k]) * (degree / h);
-        for (int k = 0; k < (degree - 1) * n; ++k) e[k] = (d[k + n] - d[k]) * ((degree - 1) / h);
-    }
-    const auto sum = [&](const double* controls, int own, double t, double* out) {
-        double weights[most_degree + 1];
-        weigh(std::max(own, 0), t, weights);
-        for (int j = 0; j < n; ++j) {
-            double total = 0.0;
-            for (int k = 0; k <= own; ++k) total += weights[k] * controls[k * n + j];
-            out[j] = total;
-        }
-    };
-    for (size_t i = 0; i < places.local.size(); ++i) {
-        const size_t at = size_t(places.piece[i]) * size, out = i * size_t(n);
-        const double t = places.local[i];
-        sum(path.controls.data() + at, degree, t, places.q + out);
-        sum(first.data() + at, degree - 1, t, places.slope + out);
-        sum(second.data() + at, degree - 2, t, places.bend + out);
-    }
-}
-
 }  // namespace cspace::trajectory

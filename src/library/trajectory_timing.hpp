@@ -2,20 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
-namespace cspace::trajectory {
+#include "library/trajectory_path.hpp"
 
-// Pieces of polynomials of one degree, 1 to 5: controls (pieces, degree + 1, joints), their Bernstein
-// coefficients. stops (pieces + 1,): 1 where the motion has to stand.
-struct TimingPath {
-    int degree, joints;
-    std::span<const double> controls, lengths;
-    std::span<const signed char> stops;
-};
+namespace cspace::trajectory {
 
 // Largest magnitudes (joints,), inf where absent; a limit of 0 is one of a joint that does not move.
 struct TimingLimits {
@@ -65,14 +58,5 @@ Timing time_on_grid(const TimingPath& path, const TimingLimits& limits, const Ti
 // The same on a grid that is halved where this changes the duration.
 Timing time_path(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options,
                  const Sampler& sample);
-
-// The configurations of a path and their first two derivatives by the parameter, (places, joints) each, at
-// places within pieces.
-struct PathPlaces {
-    std::span<const std::int32_t> piece;
-    std::span<const double> local;  // in [0, 1]
-    double *q, *slope, *bend;
-};
-void evaluate_path(const TimingPath& path, const PathPlaces& places);
 
 }  // namespace cspace::trajectory

@@ -60,9 +60,9 @@ class SectionLaw(NamedTuple):
 
 def refuse_jumps(path: Path) -> None:
     """InputError where the second derivative of a path jumps at other places than its stops."""
-    jumps = np.logical_and(path._jumps(2), np.equal(path.stop_flags[1:-1], 0))
+    jumps = path.jumps(2) & ~path.jumps(1)
     if jumps.any():
-        s = float(path.breaks[1:-1][jumps][0])
+        s = float(path.breaks[jumps][0])
         raise InputError(
             f"the second derivative of the path jumps at s = {s:.6g}, so that jerks are unbounded there;"
             " use spline, or blend with quintic blends"

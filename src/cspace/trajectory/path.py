@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from math import comb, perm
+from math import comb
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from cspace._core import evaluate_path
+from cspace._core import evaluate_path, examine_path
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
@@ -24,6 +24,9 @@ HIGHEST_DEGREE: Final = 5
 
 HIGHEST_ORDER: Final = 3
 """Of the derivatives of a path: a trajectory along it has jerks."""
+
+TURNS: Final = 1 | 1 << 2
+"""Of the flags of a break: the slopes beside it vanish and the second derivative jumps."""
 
 
 class Path:
@@ -49,17 +52,16 @@ class Path:
         self.breaks = freeze_array(np.array(b))
         self.control_points = freeze_array(np.array(c, order="C"))
         self.remarks = tuple(remarks)
-        self._check_joints()
-
-    def _check_joints(self) -> None:
-        gaps = np.abs(self.control_points[1:, 0] - self.control_points[:-1, -1]).max(axis=1, initial=0.0)
-        size = max(1.0, float(np.abs(self.control_points).max()))
-        apart = np.flatnonzero(gaps > SAME_WAYPOINT * size)
-        if apart.size:
+        gap, width, self._events, moving = examine_path(
+            self.control_points, self.lengths, SAME_WAYPOINT, PATH_CORNER, STILL_JOINT
+        )
+        if gap:
             raise InputError(
-                f"the path jumps by {gaps[apart[0]]:.3g} at s = {self.breaks[1 + apart[0]]:.6g};"
+                f"the path jumps by {width:.3g} at s = {b[gap]:.6g};"
                 " each piece must begin where the last one ends"
             )
+        self.moving: npt.NDArray[np.bool_] = moving.view(np.bool_)
+        """Which joints move on which piece (k, dof)."""
 
     @classmethod
     def from_coefficients(cls, breaks: ArrayLike, coefficients: ArrayLike) -> Path:
@@ -136,46 +138,24 @@ class Path:
     @cached_property
     def stop_flags(self) -> npt.NDArray[np.int8]:
         """1 at the breaks (k + 1,) that are stops, else 0, as the core reads them."""
-        flags = np.zeros(len(self.breaks), dtype=np.int8)
-        flags[1:-1] = self._jumps(1)
+        flags = self._events >> 1 & 1
         flags.flags.writeable = False
         return flags
 
     @cached_property
-    def moving(self) -> npt.NDArray[np.bool_]:
-        """Which joints move on which piece (k, dof)."""
-        slopes = np.abs(self._derivatives[1]).max(axis=1)
-        return np.asarray(slopes > STILL_JOINT * slopes.max(axis=1, keepdims=True))
-
-    @cached_property
     def turning_places(self) -> Array:
         """Breaks (m,) inside at which the slope of all joints vanishes and the second derivative jumps."""
-        slopes = self._derivatives[1]
-        squares = np.einsum("kij,kij->ki", slopes, slopes)
-        small = SAME_WAYPOINT**2 * np.maximum(squares[:-1].max(axis=1), squares[1:].max(axis=1))
-        vanish = (squares[:-1, -1] <= small) & (squares[1:, 0] <= small)
-        inside = self.breaks[1:-1]
-        return freeze_array(inside[vanish & self._jumps(2)] if vanish.any() else inside[:0].copy())
+        return freeze_array(self.breaks[(self._events & TURNS) == TURNS])
 
     @cached_property
     def continuity(self) -> int:
         """The highest order up to which no derivative jumps: 0 if slopes do, 1 if second derivatives do."""
-        return next((order - 1 for order in range(1, HIGHEST_ORDER + 1) if self._jumps(order).any()), 3)
+        found = int(np.bitwise_or.reduce(self._events))
+        return next((order - 1 for order in range(1, HIGHEST_ORDER + 1) if found >> order & 1), 3)
 
-    def _jumps(self, order: int) -> Array:
-        """At which breaks inside a derivative jumps, as booleans (k − 1,)."""
-        control = self._derivatives[order]
-        before, after = control[:-1, -1], control[1:, 0]
-        scale = np.maximum(np.linalg.norm(before, axis=1), np.linalg.norm(after, axis=1))
-        # Rounding of a derivative grows as the pieces beside it get shorter.
-        rough = np.finfo(float).eps * np.abs(self.control_points).max() / self._shorter**order
-        jump = np.linalg.norm(after - before, axis=1)
-        flags: Array = jump > PATH_CORNER * scale + 100.0 * perm(self.degree, order) * rough
-        return flags
-
-    @property
-    def _shorter(self) -> Array:
-        return np.minimum(self.lengths[:-1], self.lengths[1:])
+    def jumps(self, order: int) -> npt.NDArray[np.bool_]:
+        """At which breaks (k + 1,) derivative `order` jumps."""
+        return (self._events & 1 << order) > 0
 
     def __call__(self, s: ArrayLike, order: int = 0) -> Array:
         """The configurations or a derivative by s (..., dof) at parameters s (...).
