@@ -1041,6 +1041,12 @@ def time_path_with_jerk(controls: numpy.typing.NDArray[numpy.float64], lengths: 
     Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, seconds, steps.
     """
 
+def cartesian_poses(pieces: tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], piece: numpy.typing.NDArray[numpy.int64], u: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    """Poses (n, 4, 4) of a Cartesian path at places u (n,) of pieces (n,)."""
+
+def cartesian_twists(pieces: tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]], piece: numpy.typing.NDArray[numpy.int64], u: numpy.typing.NDArray[numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """The first two derivatives (n, 6) of the pose there."""
+
 class GraphSolver:
     """A pose graph and the state of least cost found so far."""
 

@@ -13,9 +13,13 @@ namespace cspace::spatial::inline CSPACE_ISA {
 // there, and six terms are exact to rounding.
 inline constexpr double small_rotation_square = 0.1;
 
-// J(u) a = a + (1 − cos θ)/θ² u × a + (θ − sin θ)/θ³ u × (u × a), θ = |u|.
+// f = (1 − cos θ)/θ² and g = (θ − sin θ)/θ³, θ = |u|.
 template <class V>
-CSPACE_INLINE Vec3<V> left_jacobian_times(const Vec3<V>& u, const Vec3<V>& a) {
+struct LeftJacobianFactors {
+    V f, g;
+};
+template <class V>
+CSPACE_INLINE LeftJacobianFactors<V> left_jacobian_factors(const Vec3<V>& u) {
     constexpr double first[] = {1.0 / 2, -1.0 / 24, 1.0 / 720, -1.0 / 40320, 1.0 / 3628800, -1.0 / 479001600};
     constexpr double second[] = {1.0 / 6,       -1.0 / 120,     1.0 / 5040,
                                  -1.0 / 362880, 1.0 / 39916800, -1.0 / 6227020800};
@@ -25,10 +29,15 @@ CSPACE_INLINE Vec3<V> left_jacobian_times(const Vec3<V>& u, const Vec3<V>& a) {
     V s, c;
     sincos(0.5 * theta, s, c);
     const V near = select(is_small, square, fill<V>(0.0));
-    const V f = select(is_small, trig::polynomial(first, near), 2.0 * (s * s) / safe);
-    const V g = select(is_small, trig::polynomial(second, near), (1.0 - 2.0 * (s * c) / theta) / safe);
+    return {select(is_small, trig::polynomial(first, near), 2.0 * (s * s) / safe),
+            select(is_small, trig::polynomial(second, near), (1.0 - 2.0 * (s * c) / theta) / safe)};
+}
+// J(u) a = a + f u × a + g u × (u × a).
+template <class V>
+CSPACE_INLINE Vec3<V> left_jacobian_times(const Vec3<V>& u, const Vec3<V>& a) {
+    const LeftJacobianFactors<V> factors = left_jacobian_factors(u);
     const Vec3<V> ua = cross(u, a);
-    return a + f * ua + g * cross(u, ua);
+    return a + factors.f * ua + factors.g * cross(u, ua);
 }
 // J⁻¹(u) a = a − ½ u × a + (1 − (θ/2) cot(θ/2))/θ² u × (u × a), for less than a full turn.
 template <class V>
@@ -44,6 +53,28 @@ CSPACE_INLINE Vec3<V> left_jacobian_inverse_times(const Vec3<V>& u, const Vec3<V
     const V f = select(is_small, trig::polynomial(series, near), (1.0 - half * c / s) / safe);
     const Vec3<V> ua = cross(u, a);
     return a - 0.5 * ua + f * cross(u, ua);
+}
+
+// The angular velocity ω = J(u) u' of exp([u]) R in fixed axes, and its derivative ω'.
+template <class V>
+struct AngularRates {
+    Vec3<V> velocity, acceleration;
+};
+template <class V>
+CSPACE_INLINE AngularRates<V> angular_rates(const Vec3<V>& u, const Vec3<V>& slope, const Vec3<V>& bend) {
+    const auto [f, g] = left_jacobian_factors(u);
+    const V square = dot(u, u);
+    const mask_of<V> is_small = square < small_rotation_square;
+    const V near = select(is_small, square, fill<V>(0.0)), safe = select(is_small, fill<V>(1.0), square);
+    // The derivatives of f and g by θ²; ½ sin θ / θ = ½ (1 − g θ²).
+    constexpr double first[] = {-1.0 / 24, 2.0 / 720, -3.0 / 40320, 4.0 / 3628800, -5.0 / 479001600};
+    constexpr double second[] = {-1.0 / 120, 2.0 / 5040, -3.0 / 362880, 4.0 / 39916800, -5.0 / 6227020800};
+    const V df = select(is_small, trig::polynomial(first, near), (0.5 * (1.0 - g * safe) - f) / safe);
+    const V dg = select(is_small, trig::polynomial(second, near), (0.5 * f - 1.5 * g) / safe);
+    const Vec3<V> once = cross(u, slope), twice = cross(u, once), once_rate = cross(u, bend);
+    const Vec3<V> twice_rate = cross(slope, once) + cross(u, once_rate);
+    return {slope + f * once + g * twice,
+            bend + f * once_rate + g * twice_rate + (2.0 * dot(u, slope)) * (df * once + dg * twice)};
 }
 
 }  // namespace cspace::spatial::inline CSPACE_ISA

@@ -9,16 +9,17 @@ from typing import Final, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from cspace._core import cartesian_poses, cartesian_twists
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
-from cspace.spatial import exp_so3
-from cspace.spatial.vectors import cross
 from cspace.tables import count_things, one_line
 from cspace.tolerances import TIME_ROUNDING
-from cspace.trajectory.rotation_rates import angular_rates
 
 DEGREE: Final = 5
 """Of the polynomials of a piece."""
+
+PIECE_FIELDS: Final = ("point", "turn", "R", "axis", "rate", "arm")
+"""Of a piece, as the core reads them."""
 
 Indices: TypeAlias = NDArray[np.intp]
 
@@ -55,12 +56,9 @@ class CartesianPath:
         self.lengths: Array = np.array([piece.length for piece in pieces])
         self.breaks: Array = np.concatenate([[0.0], np.cumsum(self.lengths)])
         self.stops: Array = np.array(stops, dtype=float)
-        self._point = _derivatives(np.array([piece.point for piece in pieces]))
-        self._turn = _derivatives(np.array([piece.turn for piece in pieces]))
-        self._R = np.array([piece.R for piece in pieces])
-        self._axis = np.array([piece.axis for piece in pieces])
-        self._rate = np.array([piece.rate for piece in pieces])
-        self._arm = np.array([piece.arm for piece in pieces])
+        self._pieces: tuple[Array, ...] = tuple(
+            np.array([getattr(piece, name) for piece in pieces], dtype=float) for name in PIECE_FIELDS
+        )
 
     @property
     def length(self) -> float:
@@ -78,10 +76,7 @@ class CartesianPath:
         made.lengths[last] = end - self.breaks[last]
         made.breaks = np.append(self.breaks[: last + 1], end)
         made.stops = self.stops[self.stops < end]
-        made._point, made._turn = ([row[:, : last + 1] for row in rows] for rows in (self._point, self._turn))
-        made._R, made._axis, made._rate, made._arm = (
-            row[: last + 1] for row in (self._R, self._axis, self._rate, self._arm)
-        )
+        made._pieces = tuple(rows[: last + 1] for rows in self._pieces)
         return made
 
     def __repr__(self) -> str:
@@ -106,22 +101,11 @@ class CartesianPath:
 
     def poses_on(self, piece: Indices, u: Array) -> Array:
         """The poses (n, 4, 4) of pieces (n,) at u (n,) from their begin."""
-        T = np.zeros((len(u), 4, 4))
-        T[:, :3, :3] = exp_so3(_evaluate(self._turn[0], piece, u)) @ self._R[piece]
-        T[:, :3, 3] = _evaluate(self._point[0], piece, u) + self._rotated_arm(piece, u)
-        T[:, 3, 3] = 1.0
-        return T
+        return cartesian_poses(self._pieces, np.ascontiguousarray(piece, dtype=np.int64), u)
 
     def twists_on(self, piece: Indices, u: Array) -> tuple[Array, Array]:
         """As twists, of pieces (n,) at u (n,) from their begin: two arrays (n, 6)."""
-        first, second = np.empty((2, len(u), 6))
-        spin = self._rate[piece, None] * self._axis[piece]
-        around = cross(spin, self._rotated_arm(piece, u))
-        first[:, :3] = _evaluate(self._point[1], piece, u) + around
-        second[:, :3] = _evaluate(self._point[2], piece, u) + cross(spin, around)
-        turn = [_evaluate(turn, piece, u) for turn in self._turn]
-        first[:, 3:], second[:, 3:] = angular_rates(*turn)
-        return first, second
+        return cartesian_twists(self._pieces, np.ascontiguousarray(piece, dtype=np.int64), u)
 
     def _locate(self, s: ArrayLike) -> tuple[Indices, Array, tuple[int, ...]]:
         """The piece of each parameter, how far into it, and the shape of s."""
@@ -136,9 +120,6 @@ class CartesianPath:
         piece = np.clip(np.searchsorted(self.breaks, flat, side="right") - 1, 0, len(self.lengths) - 1)
         return piece, flat - self.breaks[piece], values.shape
 
-    def _rotated_arm(self, piece: Indices, u: Array) -> Array:
-        return _rotate(self._axis[piece], self._rate[piece] * u, self._arm[piece])
-
 
 def stay_at(T: Array) -> CartesianPath:
     """A path of no length at a pose (4, 4)."""
@@ -147,33 +128,6 @@ def stay_at(T: Array) -> CartesianPath:
     zero = np.zeros(3)
     axis = np.array([0.0, 0.0, 1.0])
     return CartesianPath([CartesianPiece(0.0, point, 0.0 * point, T[:3, :3], axis, 0.0, zero)])
-
-
-def _rotate(axis: Array, angle: Array, arm: Array) -> Array:
-    """Arms (n, 3) turned about unit axes (n, 3) by angles (n,): Rodrigues' formula."""
-    across = cross(axis, arm)
-    along = np.sum(axis * arm, axis=1, keepdims=True) * axis
-    c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    return np.asarray(c * (arm - along) + s * across + along)
-
-
-def _derivatives(coefficients: Array) -> list[Array]:
-    """The coefficients (degree + 1, n, 3) of polynomials (n, 6, 3) and of their first two derivatives."""
-    used = np.flatnonzero(coefficients.any(axis=(0, 2)))
-    rows = [coefficients.transpose(1, 0, 2)[: used[-1] + 1 if len(used) else 1]]
-    for _ in range(2):
-        last = rows[-1]
-        powers = np.arange(1.0, len(last))[:, None, None]
-        rows.append(powers * last[1:] if len(last) > 1 else np.zeros_like(last))
-    return [np.ascontiguousarray(row) for row in rows]
-
-
-def _evaluate(coefficients: Array, piece: Indices, u: Array) -> Array:
-    """Polynomials (degree + 1, n, 3) of pieces (m,) at u (m,), by Horner's rule (m, 3)."""
-    value: Array = coefficients[-1][piece]
-    for row in coefficients[-2::-1]:
-        value = value * u[:, None] + row[piece]
-    return value
 
 
 def check_cartesian_path(path: object) -> None:
