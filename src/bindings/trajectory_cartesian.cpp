@@ -1,11 +1,13 @@
 // A Cartesian path for cspace.trajectory.CartesianPath: its pieces and places on them.
-#include <cstdint>
+#include "library/trajectory_cartesian.hpp"
+
 #include <nanobind/stl/tuple.h>
+
+#include <cstdint>
 #include <tuple>
 
 #include "arrays_in_place.hpp"
 #include "bindings.hpp"
-#include "library/trajectory_cartesian.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

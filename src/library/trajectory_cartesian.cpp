@@ -37,8 +37,8 @@ void evaluate_poses(const CartesianPieces& path, const CartesianPlaces& places, 
     for (std::size_t i = 0; i < places.u.size(); ++i, T += 16) {
         const std::size_t piece = std::size_t(places.piece[i]);
         const double u = places.u[i], *R = path.R.data() + 9 * piece;
-        const Mat3d turn = spatial::rotation_of_rotvec(
-            evaluate_polynomial(path.turn.data() + 18 * piece, u).value);
+        const Mat3d turn =
+            spatial::rotation_of_rotvec(evaluate_polynomial(path.turn.data() + 18 * piece, u).value);
         const Vec3d p =
             evaluate_polynomial(path.point.data() + 18 * piece, u).value + rotate_arm(path, piece, u);
         for (int r = 0; r < 3; ++r)
@@ -49,7 +49,8 @@ void evaluate_poses(const CartesianPieces& path, const CartesianPlaces& places, 
     }
 }
 
-void evaluate_twists(const CartesianPieces& path, const CartesianPlaces& places, double* first, double* second) {
+void evaluate_twists(const CartesianPieces& path, const CartesianPlaces& places, double* first,
+                     double* second) {
     for (std::size_t i = 0; i < places.u.size(); ++i, first += 6, second += 6) {
         const std::size_t piece = std::size_t(places.piece[i]);
         const double u = places.u[i];
@@ -57,8 +58,7 @@ void evaluate_twists(const CartesianPieces& path, const CartesianPlaces& places,
         const Polynomial turn = evaluate_polynomial(path.turn.data() + 18 * piece, u);
         const Vec3d spin = path.rate[piece] * read_vector(path.axis.data() + 3 * piece);
         const Vec3d around = cross(spin, rotate_arm(path, piece, u));
-        const spatial::AngularRates<double> omega =
-            spatial::angular_rates(turn.value, turn.slope, turn.bend);
+        const spatial::AngularRates<double> omega = spatial::angular_rates(turn.value, turn.slope, turn.bend);
         write_vector(point.slope + around, first);
         write_vector(point.bend + cross(spin, around), second);
         write_vector(omega.velocity, first + 3);

@@ -58,7 +58,7 @@ constexpr int highest_order = 3;
 
 // The derivatives of orders 1 to 3 of every piece at its ends.
 class EndDerivatives {
-public:
+  public:
     explicit EndDerivatives(const TimingPath& path) : path_(path), row_(size_t(path.joints)) {
         const size_t pieces = path.lengths.size();
         values_.resize(pieces * 2 * highest_order * row_);
@@ -71,14 +71,15 @@ public:
         return values_.data() + place(piece, at_end, order);
     }
 
-private:
+  private:
     size_t place(size_t piece, bool at_end, int order) const {
         return ((2 * piece + size_t(at_end)) * highest_order + size_t(order - 1)) * row_;
     }
     void differentiate(size_t piece, bool at_end, std::vector<double>& points) {
         const int degree = path_.degree, used = std::min(degree, highest_order);
         const double* all = path_.controls.data() + piece * size_t(degree + 1) * row_;
-        std::copy_n(all + (at_end ? size_t(degree - used) * row_ : 0), size_t(used + 1) * row_, points.begin());
+        std::copy_n(all + (at_end ? size_t(degree - used) * row_ : 0), size_t(used + 1) * row_,
+                    points.begin());
         for (int order = 1; order <= used; ++order) {
             const double scale = (degree - order + 1) / path_.lengths[piece];
             for (size_t k = 0; k < size_t(used - order + 1) * row_; ++k)
@@ -153,8 +154,7 @@ PathShape examine_path(const TimingPath& path, const ShapeTolerances& tolerances
         const double small = tolerances.gap * std::max(slope[k], slope[k + 1]);
         const bool vanish = measure_norm(ends.at(k, true, 1), path.joints) <= small &&
                             measure_norm(ends.at(k + 1, false, 1), path.joints) <= small;
-        shape.events[k + 1] =
-            std::int8_t(int(vanish) | find_jumps(path, ends, k, size, tolerances.jump));
+        shape.events[k + 1] = std::int8_t(int(vanish) | find_jumps(path, ends, k, size, tolerances.jump));
     }
     return shape;
 }
