@@ -1,9 +1,12 @@
 """Paths: splines, B-splines, blends, and curves fitted by pieces."""
 
+from math import factorial
+
 import numpy as np
 import pytest
 
 import cspace as cs
+from cspace.errors import InputError
 from cspace.trajectory import Path, b_spline, fit_path
 from trajectory.path_cases import MAKERS, random_waypoints
 
@@ -142,6 +145,53 @@ def test_coefficients_and_control_points_are_the_same_path():
         path = cs.spline(RNG.uniform(-1, 1, (6, 3)), degree)
         again = Path.from_coefficients(path.breaks, path.coefficients)
         assert np.allclose(again.control_points, path.control_points, atol=1e-13)
+
+
+@pytest.mark.parametrize("degree", range(1, 6))
+@pytest.mark.parametrize("seed", range(4))
+def test_derivatives_jump_where_they_were_made_to(degree, seed):
+    """Each piece continues the last one up to an order, where a jump is added; SciPy has the derivatives."""
+    interpolate = pytest.importorskip("scipy.interpolate")
+    rng = np.random.default_rng(10 * degree + seed)
+    count, dof = 12, int(rng.integers(1, 8))
+    h = 10.0 ** rng.uniform(-1, 0.3, count)
+    smooth = rng.integers(0, 4, count - 1)  # the highest order that does not jump; 3: none within reach does
+    c = np.zeros((count, degree + 1, dof))
+    c[0] = rng.standard_normal((degree + 1, dof))
+    for k in range(1, count):
+        before = interpolate.PPoly(c[k - 1][::-1, None], [0.0, h[k - 1]])
+        for order in range(degree + 1):
+            c[k, order] = before(h[k - 1], nu=order) / factorial(order)
+            if order > smooth[k - 1]:
+                c[k, order] += (1.0 + np.abs(c[k, order]).max()) * rng.choice([-1.0, 1.0], dof)
+    breaks = np.concatenate([[0.0], np.cumsum(h)])
+    path = Path.from_coefficients(breaks, c)
+    for order in (1, 2, 3):
+        wanted = (order == smooth + 1) if order <= degree else np.zeros(count - 1, dtype=bool)
+        found = path.jumps(order)
+        assert not found[[0, -1]].any()
+        np.testing.assert_array_equal(found[1:-1] & (smooth + 1 >= order), wanted)
+    np.testing.assert_array_equal(path.stop_flags[1:-1] == 1, smooth == 0)
+    np.testing.assert_array_equal(path.stops, breaks[1:-1][smooth == 0])
+    assert path.continuity == min(3, smooth.min() if smooth.min() < degree else 3)
+
+
+def test_joints_that_stand_and_gaps_are_found():
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        count, dof = rng.integers(1, 9), rng.integers(1, 8)
+        points = rng.standard_normal((count, 4, dof)).cumsum(axis=1)
+        still = rng.random((count, dof)) < 0.4
+        points[:, 1:] = np.where(still[:, None], points[:, :1], points[:, 1:])
+        for k in range(1, count):
+            points[k] += points[k - 1, -1] - points[k, 0]
+        path = Path(np.arange(count + 1.0), points)
+        np.testing.assert_array_equal(path.moving, ~still)
+        if count > 1:
+            k, j = rng.integers(1, count), rng.integers(dof)
+            points[k:, :, j] += 0.25
+            with pytest.raises(InputError, match=rf"jumps by 0\.25 at s = {k}"):
+                Path(np.arange(count + 1.0), points)
 
 
 def test_ten_thousand_waypoints():
