@@ -1,9 +1,9 @@
 """Laser SLAM on the public logs, and the time of a scan match.
 
-Usage: python benchmarks/laser_slam.py [--save FILE]. Prints a row per log: the error of each stage against
-the corrected poses of the log (RMSE after alignment, `cs.ate`) and the wall time on one core; from the raw
-odometry of the log. The corrected poses are those of another program, not a truth. The data are found
-through $CSPACE_DATA.
+Usage: python benchmarks/laser_slam.py [--save FILE] [--write]. Prints a row per log: the error of each stage
+against the corrected poses of the log (RMSE after alignment, `cs.ate`) and the wall time on one core; from
+the raw odometry of the log. The corrected poses are those of another program, not a truth. --write leaves
+the rows in benchmarks/results/laser_slam.json. The data are found through $CSPACE_DATA.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import cspace as cs
 DATA = Path(os.environ.get("CSPACE_DATA", "../shared/data")) / "localization/carmen"
 LOGS = ("intel", "freiburg-079")
 MATCHES = 200
+RESULTS = Path(__file__).resolve().parent / "results/laser_slam.json"
 
 
 def measure_log(name: str) -> dict[str, Any]:
@@ -66,12 +67,14 @@ def measure_matches() -> dict[str, Any]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--save", type=Path)
-    save = parser.parse_args().save
+    parser.add_argument("--write", action="store_true")
+    given = parser.parse_args()
     rows = [measure_log(name) for name in LOGS] + [measure_matches()]
     for row in rows:
         print("  ".join(f"{k} {v:.4g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items()))
-    if save:
-        save.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+    for path in [given.save, RESULTS if given.write else None]:
+        if path:
+            path.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
