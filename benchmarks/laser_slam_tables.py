@@ -40,12 +40,12 @@ def log_table(logs: dict[str, Results]) -> str:
             *(f"{entry[stage]:.3f}" if stage in entry else "—" for stage in STAGES),
             f"{entry['rpe_1']:.3f} / {entry['rpe_10']:.3f}",
             f"{entry['accepted']} / {entry['rejected']}",
-            f"{entry['seconds']:.1f}",
+            f"{entry['processor_seconds']:.1f} / {entry['seconds']:.1f}",
         ]
         for name, entry in logs.items()
     ]
     heading = ["RMSE to the corrected poses [m]", "scans", "odometry", "calibrated", "matched", "loops closed"]
-    heading += ["relative, over 1 / 10 m", "loops accepted / rejected", "wall time [s]"]
+    heading += ["relative, over 1 / 10 m", "loops accepted / rejected", "processor / wall time [s]"]
     return table(heading, body)
 
 
@@ -89,12 +89,12 @@ def error_row(results: Results) -> Row:
 
 
 def wall_row(results: Results) -> Row:
-    what = "the same, wall time on one core"
+    what = "the same, time on one core (wall time as the machine was busy)"
     logs = logs_of(results)
     if not set(SECONDS) <= set(logs):
         return row(what, "≤ 10 / 40 s", "4 / 20 s", "", None)
-    found = {name: logs[name]["seconds"] for name in SECONDS}
-    text = " / ".join(f"{seconds:.1f} s" for seconds in found.values())
+    found = {name: logs[name]["processor_seconds"] for name in SECONDS}
+    text = " / ".join(f"{seconds:.1f} s ({logs[name]['seconds']:.1f} s)" for name, seconds in found.items())
     holds, aimed = (all(found[name] <= SECONDS[name][k] for name in found) for k in (0, 1))
     return row(what, "≤ 10 / 40 s", "4 / 20 s", text, holds, aimed)
 
