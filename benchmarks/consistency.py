@@ -1,11 +1,11 @@
 """Consistency of filters: NEES in simulation, the mean over many runs at every time step.
 
 Usage: python benchmarks/consistency.py [--runs 100] [--only ekf iekf …] [--save FILE] [--write]. A robot
-drives an eight among 25 landmarks. The true starts have exactly the covariance that the filter is given, odometry and
-readings have the noise of the models. NEES of a consistent filter is χ² with 3 degrees of freedom, and the
-mean over 100 runs lies in [2.54, 3.50] for 95 % of the time steps (Bar-Shalom et al. 2001). Printed: the
-share of steps inside, the least and the largest mean, and whether 90 % are inside and all in [2.14, 4.05];
---write leaves them in benchmarks/results/consistency.json.
+drives an eight among 25 landmarks. The true starts have exactly the covariance that the filter is given,
+odometry and readings have the noise of the models. NEES of a consistent filter is χ² with 3 degrees of
+freedom, and the mean over 100 runs lies in [2.54, 3.50] for 95 % of the time steps (Bar-Shalom et al. 2001).
+Printed: the share of steps inside, the least and the largest mean, and whether 90 % are inside and all in
+[2.14, 4.05]; --write leaves them in benchmarks/results/consistency.json.
 
 Runs are seeded; gates are open, as a rejected reading is no sample of its model.
 """

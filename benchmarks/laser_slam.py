@@ -1,9 +1,10 @@
 """Laser SLAM on the public logs, and the time of a scan match.
 
 Usage: python benchmarks/laser_slam.py [--save FILE] [--write]. Prints a row per log: the error of each stage
-against the corrected poses of the log (RMSE after alignment, `cs.ate`) with the wall time and the processor
-time of its one thread; from the raw odometry of the log. The corrected poses are those of another program, not a truth. --write leaves
-the rows in benchmarks/results/laser_slam.json. The data are found through $CSPACE_DATA.
+against the corrected poses of the log (RMSE after alignment, `cs.ate`), with the wall time and the processor
+time of its one thread; from the raw odometry of the log. The corrected poses are those of another program,
+not a truth. --write leaves the rows in benchmarks/results/laser_slam.json. The data are found through
+$CSPACE_DATA.
 """
 
 from __future__ import annotations
@@ -38,7 +39,8 @@ def measure_log(name: str) -> dict[str, Any]:
 
 
 def measure_matches() -> dict[str, Any]:
-    """Processor milliseconds of a match within ±0.8 m and ±15° on the map of other scans, and how many are right."""
+    """Processor milliseconds of a match within ±0.8 m and ±15° on the map of other scans, and how many are
+    right."""
     log = cs.read_log(DATA / "intel-corrected.log.gz")
     poses = log.truth.at(log.scans.times)
     known = np.isfinite(poses[:, 0])

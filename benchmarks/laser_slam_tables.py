@@ -44,7 +44,14 @@ def log_table(logs: dict[str, Results]) -> str:
         ]
         for name, entry in logs.items()
     ]
-    heading = ["RMSE to the corrected poses [m]", "scans", "odometry", "calibrated", "matched", "loops closed"]
+    heading = [
+        "RMSE to the corrected poses [m]",
+        "scans",
+        "odometry",
+        "calibrated",
+        "matched",
+        "loops closed",
+    ]
     heading += ["relative, over 1 / 10 m", "loops accepted / rejected", "processor / wall time [s]"]
     return table(heading, body)
 

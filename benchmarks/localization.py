@@ -1,8 +1,8 @@
 """Localisation on the public logs: position errors of filters and smoothers, and of dead reckoning.
 
-Usage: python benchmarks/localization.py [--filters ekf iekf ukf information] [--save FILE] [--write]. Prints a
-row per log, RMSE [m] over the times of the odometry for which there is a truth. Odometry is calibrated on the
-first half of each log, everything else is a default. --write leaves the rows in
+Usage: python benchmarks/localization.py [--filters ekf iekf ukf information] [--save FILE] [--write].
+Prints a row per log, RMSE [m] over the times of the odometry for which there is a truth. Odometry is
+calibrated on the first half of each log, everything else is a default. --write leaves the rows in
 benchmarks/results/localization.json. The data are found through $CSPACE_DATA.
 """
 

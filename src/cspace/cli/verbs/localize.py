@@ -38,7 +38,7 @@ FILTERS: Final = ("ekf", "iekf", "ukf", "information", "mcl", "histogram")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    text = "log: CARMEN, MRCLAM (a folder), Victoria Park, TUM or KITTI"
+    text = "log: CARMEN, MRCLAM (a folder), Victoria Park, TUM, KITTI or CSV"
     parser.add_argument("log", metavar="LOG", type=Path, help=text)
     add_option(parser, "--robot N", "which robot of an MRCLAM folder", int)
     text = "a grid (.yaml, .map, .png, .pgm), or a text of landmarks NAME X Y (default: the map of the log)"

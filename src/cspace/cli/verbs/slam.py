@@ -161,7 +161,7 @@ def run_log(args: argparse.Namespace, out: Output) -> int:
     with show_progress(f"reading {args.file}"):
         log = read_log(args.file, robot=args.robot)
     check_method(args.method, log)
-    more = {} if args.start is None else {"start": read_start(args.start, args.deg)}
+    more: dict[str, Any] = {} if args.start is None else {"start": read_start(args.start, args.deg)}
     with show_progress(f"SLAM by {args.method}"):
         answer: Any = slam(log, method=args.method, rng=args.seed, **more)
     error = measure_error(answer, log.truth, "se2")
