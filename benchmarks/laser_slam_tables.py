@@ -96,7 +96,7 @@ def error_row(results: Results) -> Row:
 
 
 def wall_row(results: Results) -> Row:
-    what = "the same, time on one core (wall time as the machine was busy)"
+    what = "the same, processor time of its one thread (wall time)"
     logs = logs_of(results)
     if not set(SECONDS) <= set(logs):
         return row(what, "≤ 10 / 40 s", "4 / 20 s", "", None)

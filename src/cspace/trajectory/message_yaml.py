@@ -9,22 +9,20 @@ from dataclasses import dataclass
 from typing import Any, Final, NoReturn
 
 from cspace.errors import DescriptionError, shorten
+from cspace.files import YAML_CONTENT, YAML_MARKS, YAML_QUOTED
 
 MOST_DEPTH: Final = 40
 """Levels of lists and mappings within each other; messages have six."""
 
-QUOTED: Final = r'"(?:[^"\\]|\\.)*"|' + r"'(?:[^']|'')*'"
-CONTENT: Final = re.compile(rf"(?:(?<![^\s\[{{,:])(?:{QUOTED})|[^#]|(?<=\S)#)*")
-"""The content of a line before its comment: a # that follows a blank and is outside quotes."""
-NAME: Final = rf"({QUOTED}|[^\s\[\]{{}},\"'&*!|>%@`?][^:]*?)\s*:"
+NAME: Final = rf"({YAML_QUOTED}|[^\s\[\]{{}},\"'&*!|>%@`?][^:]*?)\s*:"
 KEY: Final = re.compile(rf"{NAME}(?:\s+(.*))?")
 """A key and what follows it on its line."""
 PLAIN: Final = re.compile(r"(?:[^\[\]{},:]|:(?=[^\s\[\]{},]))+")
 """A scalar without quotes within brackets."""
-STRING: Final = re.compile(QUOTED)
+STRING: Final = re.compile(YAML_QUOTED)
 NUMBERS: Final = re.compile(r"\[[-+0-9.eE,\s]+\]")
 """A list of numbers on one line."""
-TOKEN: Final = re.compile(rf"\s+|{QUOTED}|[\[\]{{}},]|{PLAIN.pattern}|.")
+TOKEN: Final = re.compile(rf"\s+|{YAML_QUOTED}|[\[\]{{}},]|{PLAIN.pattern}|.")
 """A part of a value in brackets: quotes count where a value begins."""
 BEFORE: Final = re.compile(rf"(?:-\s+)*(?:{NAME}\s+)?")
 """What stands before a value on its line."""
@@ -71,12 +69,12 @@ def split_documents(text: str, path: str) -> list[list[Row]]:
     parts: list[str] = []
     first, indent, depth = 0, 0, 0
     for number, line in enumerate(text.splitlines(), 1):
-        found = CONTENT.match(line)
+        found = YAML_CONTENT.match(line)
         content = found.group().rstrip() if found else ""
         body = content.strip()
-        if not depth and body in ("---", "..."):
+        if not depth and body in YAML_MARKS:
             documents.append([])
-        if not body or (not depth and (body in ("---", "...") or content.startswith("%"))):
+        if not body or (not depth and (body in YAML_MARKS or content.startswith("%"))):
             continue
         if not depth:
             first, indent, parts = number, len(content) - len(content.lstrip(" ")), []
