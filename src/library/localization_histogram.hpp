@@ -1,0 +1,51 @@
+// The histogram filter: what the bindings call.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <tuple>
+
+#include "cspace/math/plane.hpp"
+#include "maps_grid.hpp"
+#include "table.hpp"
+
+namespace cspace::localization {
+
+// The scores of all cells x, y, θ whose centres lie on a lattice of whole cells of a field.
+class LatticeScores {
+  public:
+    // step: cells of the field from a centre to the next; first: the centre of row 0, column 0, in cells from
+    // the corner of the field. headings: cos θ, sin θ of each sector.
+    LatticeScores(maps::CellBytes scores, int outside, int step, Point first, int rows, int columns,
+                  std::span<const Point> headings);
+    ~LatticeScores();
+    // The sums of the bytes at the ends of at most 257 beams, given in base [cells of the field], by sector,
+    // row and column. Throws std::invalid_argument for more.
+    Table<std::int32_t> sum(std::span<const Point> ends, int threads) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// Numbers by sector, row and column.
+struct CellShape {
+    int sectors, rows, columns;
+};
+
+// The belief moved: each sector by its shift (y, x) and blurred by its deviations (y, x), then turned and
+// blurred over the sectors, which close; all in cells. Nothing comes in at the border.
+Table<double> move_belief(std::span<const double> belief, const CellShape& shape,
+                          std::span<const std::array<double, 4>> steps, double turn, double turn_sigma,
+                          int threads);
+
+// The belief mixed with a share that is spread over the free cells (of a plane), times exp(unit · sum), and
+// times the share where it is not free, of sum 1; and the largest sum of a free cell.
+std::tuple<Table<double>, std::int32_t> weigh_belief(std::span<const double> belief, const CellShape& shape,
+                                                     std::span<const std::int32_t> sums,
+                                                     std::span<const std::uint8_t> free, double unit,
+                                                     double share, int threads);
+
+}  // namespace cspace::localization
