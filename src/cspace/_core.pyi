@@ -1134,9 +1134,9 @@ class LatticeScores:
 
     def __init__(self, scores: numpy.typing.NDArray[numpy.uint8], outside: int, step: int, first: numpy.typing.ArrayLike, rows: int, columns: int, headings: numpy.typing.NDArray[numpy.float64]) -> None: ...
 
-    def sum(self, ends: numpy.typing.NDArray[numpy.float64], threads: int) -> numpy.typing.NDArray[numpy.int32]:
+    def sum(self, ends: numpy.typing.NDArray[numpy.float64], threads: int, sums: numpy.typing.NDArray[numpy.int32]) -> None:
         """
-        The sums of the bytes at the ends of beams (m, 2) in base [cells], flat.
+        Writes the sums of the bytes at the ends of beams (m, 2) in base [cells], flat.
         """
 
 def match_points(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float, turn: float, refines: bool) -> tuple[bool, bool, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float, float]:

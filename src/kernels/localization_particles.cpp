@@ -21,4 +21,13 @@ void mix_rows(const double* const* rows, const double* weights, int taps, double
     mix_number_rows(rows, weights, taps, to, count);
 }
 
+double weigh_cells(const CellWeights& weights, const double* from, const std::int32_t* sums, double* to,
+                   std::ptrdiff_t count) {
+    return weigh_number_row(weights, from, sums, to, count);
+}
+
+void scale_cells(double factor, double least, double* numbers, std::ptrdiff_t count) {
+    scale_number_row(factor, least, numbers, count);
+}
+
 }  // namespace cspace::localization::inline CSPACE_ISA

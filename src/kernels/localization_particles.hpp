@@ -17,3 +17,8 @@ CSPACE_NARROW_KERNEL(cspace::localization, void, add_bytes,
 CSPACE_NARROW_KERNEL(cspace::localization, void, mix_rows,
                      (const double* const* rows, const double* weights, int taps, double* to,
                       std::ptrdiff_t count))
+CSPACE_NARROW_KERNEL(cspace::localization, double, weigh_cells,
+                     (const CellWeights& weights, const double* from, const std::int32_t* sums, double* to,
+                      std::ptrdiff_t count))
+CSPACE_NARROW_KERNEL(cspace::localization, void, scale_cells,
+                     (double factor, double least, double* numbers, std::ptrdiff_t count))

@@ -56,32 +56,39 @@ Span find_span(const double* row, int columns) {
     return span;
 }
 
-// A row along itself. `padded` holds zeros, as far as the taps reach on both sides of a row.
-void filter_along(const Taps& taps, int columns, int margin, std::vector<double>& padded, double* row) {
-    if (taps.weights.empty()) return;
+// What one thread keeps from row to row.
+struct Scratch {
+    std::vector<double> padded, weights, first, second;
+    std::vector<const double*> rows;
+    std::vector<Span> spans;
+};
+
+// A row along itself. Zeros lie in `padded`, as far as the taps reach on both sides of a row.
+void filter_along(const Taps& taps, int columns, int margin, Scratch& scratch, double* row) {
     const Span span = find_span(row, columns);
     if (span.first == span.last) return;
-    double* middle = &padded[std::size_t(margin)];
+    double* middle = &scratch.padded[std::size_t(margin)];
     std::copy(row + span.first, row + span.last, middle + span.first);
     const int count = int(taps.weights.size());
     const int first = std::clamp(span.first + taps.first, 0, columns),
               last = std::clamp(span.last + taps.first + count - 1, 0, columns);
-    std::vector<const double*> rows;
-    for (int t = 0; t < count; ++t) rows.push_back(middle + first - taps.first - t);
-    std::fill(row, row + columns, 0.0);
-    if (last > first) kernels::mix_rows(rows.data(), taps.weights.data(), count, row + first, last - first);
+    scratch.rows.clear();
+    for (int t = 0; t < count; ++t) scratch.rows.push_back(middle + first - taps.first - t);
+    std::fill(row + span.first, row + span.last, 0.0);
+    if (last > first)
+        kernels::mix_rows(scratch.rows.data(), taps.weights.data(), count, row + first, last - first);
     std::fill(middle + span.first, middle + span.last, 0.0);
 }
 
-// Rows `stride` apart, each mixed of its neighbours, into `to`; closed: the last is next to the first.
-void filter_across(const Taps& taps, const double* from, int count, std::size_t stride, int columns,
-                   bool closed, double* to) {
-    std::vector<const double*> rows;
-    std::vector<double> weights;
-    std::vector<Span> spans;
+// Rows `stride` apart, each mixed of its neighbours, into rows `to_stride` apart; closed: the last is next to
+// the first.
+void filter_across(const Taps& taps, const double* from, std::size_t stride, int count, int columns,
+                   bool closed, Scratch& scratch, double* to, std::size_t to_stride) {
+    auto& [padded, weights, first, second, rows, spans] = scratch;
+    spans.clear();
     for (int i = 0; i < count; ++i) spans.push_back(find_span(from + std::size_t(i) * stride, columns));
     for (int i = 0; i < count; ++i) {
-        double* out = to + std::size_t(i) * stride;
+        double* out = to + std::size_t(i) * to_stride;
         rows.clear(), weights.clear();
         Span span{columns, 0};
         for (int t = 0; t < int(taps.weights.size()); ++t) {
@@ -94,12 +101,51 @@ void filter_across(const Taps& taps, const double* from, int count, std::size_t 
             rows.push_back(from + std::size_t(at) * stride);
             weights.push_back(taps.weights[std::size_t(t)]);
         }
-        std::fill(out, out + columns, 0.0);
-        if (rows.empty()) continue;
+        if (rows.empty()) {
+            std::fill(out, out + columns, 0.0);
+            continue;
+        }
         for (const double*& row : rows) row += span.first;
+        std::fill(out, out + span.first, 0.0);
         kernels::mix_rows(rows.data(), weights.data(), int(rows.size()), out + span.first,
                           span.last - span.first);
+        std::fill(out + span.last, out + columns, 0.0);
     }
+}
+
+// A plane by its shift (y, x) and its blur (y, x) in turn.
+void move_plane(const std::array<double, 4>& step, double most, int rows, int columns, Scratch& scratch,
+                const double* from, double* to) {
+    const auto bound = [&](double cells) { return std::clamp(cells, -most, most); };
+    const Taps shift = taps_of_shift(bound(step[1])), blur = taps_of_blur(std::min(step[3], most)),
+               blur_y = taps_of_blur(std::min(step[2], most));
+    const int margin = std::max(std::abs(shift.first) + 2, int(blur.weights.size())) + cell_chunk;
+    const std::size_t width = std::size_t(columns), count = std::size_t(rows) * width;
+    scratch.padded.assign(width + 2 * std::size_t(margin), 0.0);
+    scratch.first.resize(count);
+    const bool blurs = !blur_y.weights.empty();
+    double* made = blurs ? scratch.first.data() : to;
+    filter_across(taps_of_shift(bound(step[0])), from, width, rows, columns, false, scratch, made, width);
+    for (std::size_t row = 0; row < count; row += width)
+        filter_along(shift, columns, margin, scratch, made + row);
+    if (blurs) filter_across(blur_y, made, width, rows, columns, false, scratch, to, width);
+    if (blur.weights.empty()) return;
+    for (std::size_t row = 0; row < count; row += width)
+        filter_along(blur, columns, margin, scratch, to + row);
+}
+
+// One row of all planes, turned and blurred over the sectors.
+void turn_sectors(const Taps& shift, const Taps& blur, int sectors, int columns, std::size_t plane,
+                  Scratch& scratch, double* rows) {
+    const std::size_t width = std::size_t(columns), count = std::size_t(sectors) * width;
+    scratch.first.resize(count), scratch.second.resize(count);
+    double *old = scratch.first.data(), *made = scratch.second.data();
+    for (std::size_t k = 0; k < std::size_t(sectors); ++k)
+        std::copy_n(rows + k * plane, width, old + k * width);
+    if (blur.weights.empty())
+        return filter_across(shift, old, width, sectors, columns, true, scratch, rows, plane);
+    filter_across(shift, old, width, sectors, columns, true, scratch, made, width);
+    filter_across(blur, made, width, sectors, columns, true, scratch, rows, plane);
 }
 
 }  // namespace
@@ -154,7 +200,7 @@ LatticeScores::LatticeScores(maps::CellBytes scores, int outside, int step, Poin
 }
 LatticeScores::~LatticeScores() = default;
 
-Table<std::int32_t> LatticeScores::sum(std::span<const Point> ends, int threads) const {
+void LatticeScores::sum(std::span<const Point> ends, int threads, std::span<std::int32_t> sums) const {
     const State& s = *state_;
     if (int(ends.size()) > most_beams) throw std::invalid_argument("more beams than a sum can hold");
     constexpr double farthest = 1e8;  // cells: whole numbers of 32 bits hold it
@@ -162,7 +208,8 @@ Table<std::int32_t> LatticeScores::sum(std::span<const Point> ends, int threads)
         if (!(std::hypot(end.x, end.y) < farthest)) throw std::invalid_argument("a beam ends too far away");
     const std::size_t width = std::size_t(s.chunks * cell_chunk), rows = std::size_t(s.rows),
                       columns = std::size_t(s.columns);
-    Table<std::int32_t> sums{std::vector<std::int32_t>(s.headings.size() * rows * columns), 0};
+    if (sums.size() != s.headings.size() * rows * columns)
+        throw std::invalid_argument("the sums must have a number per cell");
     over_rows(s.headings.size(), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint16_t> part(rows * width);
         for (std::size_t k = begin; k < end; ++k) {
@@ -171,107 +218,85 @@ Table<std::int32_t> LatticeScores::sum(std::span<const Point> ends, int threads)
             const double c = s.headings[k].x, v = s.headings[k].y;
             for (const Point& p : ends) s.add({c * p.x - v * p.y, v * p.x + c * p.y}, part.data());
             for (std::size_t row = 0; row < rows; ++row)
-                std::copy_n(&part[row * width], columns, &sums.values[(k * rows + row) * columns]);
+                std::copy_n(&part[row * width], columns, &sums[(k * rows + row) * columns]);
         }
         return true;
     });
-    return sums;
 }
 
-Table<double> move_belief(std::span<const double> belief, const CellShape& shape,
-                          std::span<const std::array<double, 4>> steps, double turn, double turn_sigma,
-                          int threads) {
+void move_belief(std::span<const double> belief, const CellShape& shape,
+                 std::span<const std::array<double, 4>> steps, double turn, double turn_sigma, int threads,
+                 std::span<double> moved) {
     const std::size_t columns = std::size_t(shape.columns), plane = std::size_t(shape.rows) * columns;
-    if (belief.size() != plane * std::size_t(shape.sectors) || steps.size() != std::size_t(shape.sectors))
+    if (belief.size() != plane * std::size_t(shape.sectors) || moved.size() != belief.size() ||
+        steps.size() != std::size_t(shape.sectors))
         throw std::invalid_argument("the belief and its steps must have a number per cell and sector");
     const double most = shape.rows + shape.columns + shape.sectors;  // cells, beyond which nothing is left
-    const auto bound = [&](double cells) { return std::clamp(cells, -most, most); };
-    Table<double> moved{std::vector<double>(belief.begin(), belief.end()), 0};
     over_rows(steps.size(), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> spare(plane);
+        Scratch scratch;
         for (std::size_t k = begin; k < end; ++k) {
             poll_interrupts();
-            double* here = &moved.values[k * plane];
-            const auto& [dy, dx, sigma_y, sigma_x] = steps[k];
-            const auto across = [&](const Taps& taps) {
-                if (taps.weights.empty()) return;
-                filter_across(taps, here, shape.rows, columns, shape.columns, false, spare.data());
-                std::copy(spare.begin(), spare.end(), here);
-            };
-            const Taps shift = taps_of_shift(bound(dx)), blur = taps_of_blur(std::min(sigma_x, most));
-            const int margin =
-                std::max({std::abs(shift.first) + 2, int(blur.weights.size()), 1}) + cell_chunk;
-            std::vector<double> padded(columns + 2 * std::size_t(margin));
-            across(taps_of_shift(bound(dy)));
-            for (int row = 0; row < shape.rows; ++row)
-                filter_along(shift, shape.columns, margin, padded, here + std::size_t(row) * columns);
-            across(taps_of_blur(std::min(sigma_y, most)));
-            for (int row = 0; row < shape.rows; ++row)
-                filter_along(blur, shape.columns, margin, padded, here + std::size_t(row) * columns);
+            move_plane(steps[k], most, shape.rows, shape.columns, scratch, &belief[k * plane],
+                       &moved[k * plane]);
         }
         return true;
     });
-    for (const Taps& taps : {taps_of_shift(turn), taps_of_blur(std::min(turn_sigma, most))}) {
-        if (taps.weights.empty()) continue;
-        Table<double> turned{std::vector<double>(belief.size()), 0};
-        over_rows(std::size_t(shape.rows), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t row = begin; row < end; ++row) {
-                poll_interrupts();
-                filter_across(taps, &moved.values[row * columns], shape.sectors, plane, shape.columns, true,
-                              &turned.values[row * columns]);
-            }
-            return true;
-        });
-        moved = std::move(turned);
-    }
-    return moved;
+    const Taps shift = taps_of_shift(turn), blur = taps_of_blur(std::min(turn_sigma, most));
+    over_rows(std::size_t(shape.rows), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
+        Scratch scratch;
+        for (std::size_t row = begin; row < end; ++row) {
+            poll_interrupts();
+            turn_sectors(shift, blur, shape.sectors, shape.columns, plane, scratch, &moved[row * columns]);
+        }
+        return true;
+    });
 }
 
-std::tuple<Table<double>, std::int32_t> weigh_belief(std::span<const double> belief, const CellShape& shape,
-                                                     std::span<const std::int32_t> sums,
-                                                     std::span<const std::uint8_t> free, double unit,
-                                                     double share, int threads) {
+std::int32_t weigh_belief(std::span<const double> belief, const CellShape& shape,
+                          std::span<const std::int32_t> sums, std::span<const std::uint8_t> free, double unit,
+                          double share, int threads, std::span<double> weighed) {
     const std::size_t plane = std::size_t(shape.rows) * std::size_t(shape.columns);
     const std::size_t sectors = std::size_t(shape.sectors);
-    if (belief.size() != plane * sectors || sums.size() != belief.size() || free.size() != plane ||
-        sums.empty())
+    if (belief.size() != plane * sectors || weighed.size() != belief.size() || sums.size() != belief.size() ||
+        free.size() != plane || sums.empty())
         throw std::invalid_argument("belief, sums and free must have a number per cell");
-    std::vector<std::int32_t> most(sectors), most_free(sectors, -1);
-    const auto [low, high] = std::minmax_element(sums.begin(), sums.end());
-    const std::int32_t least = *low, top = *high;
-    std::vector<double> factors;
+    std::int32_t least = sums[0], top = sums[0];
+    for (const std::int32_t sum : sums) least = std::min(least, sum), top = std::max(top, sum);
+    std::vector<double> factors, added(plane), scale(plane);
     for (std::int32_t sum = least; sum <= top; ++sum) factors.push_back(std::exp(unit * double(sum - top)));
+    std::vector<std::int32_t> kept(plane);  // all bits of the sums of free cells
     std::size_t count = 0;
     for (const std::uint8_t each : free) count += each != 0;
-    const double uniform = share / (double(count) * double(sectors));
-    Table<double> weighed{std::vector<double>(belief.size()), 0};
+    for (std::size_t i = 0; i < plane; ++i) {
+        added[i] = free[i] ? share / (double(count) * double(sectors)) : 0.0;
+        scale[i] = free[i] ? 1.0 : share;
+        kept[i] = free[i] ? -1 : 0;
+    }
+    const CellWeights weights{factors.data(), least, 1 - share, added.data(), scale.data()};
     std::vector<double> totals(sectors);
+    std::vector<std::int32_t> most_free(sectors);
     over_rows(sectors, threads, 1, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             poll_interrupts();
-            const double* old = &belief[k * plane];
             const std::int32_t* sum = &sums[k * plane];
-            double* made = &weighed.values[k * plane];
-            for (std::size_t i = 0; i < plane; ++i) {
-                const double prior = (1 - share) * old[i];
-                const double factor = factors[std::size_t(sum[i] - least)];
-                made[i] = free[i] ? (prior + uniform) * factor : prior == 0 ? 0.0 : prior * factor * share;
-                if (free[i]) most_free[k] = std::max(most_free[k], sum[i]);
-                totals[k] += made[i];
-            }
+            std::int32_t best = 0;
+            for (std::size_t i = 0; i < plane; ++i) best = std::max(best, sum[i] & kept[i]);
+            most_free[k] = best;
+            totals[k] = kernels::weigh_cells(weights, &belief[k * plane], sum, &weighed[k * plane],
+                                             std::ptrdiff_t(plane));
         }
         return true;
     });
     double total = 0;
     for (const double each : totals) total += each;
     over_rows(sectors, threads, 1, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin * plane; i < end * plane; ++i) {
-            const double value = weighed.values[i] / total;
-            weighed.values[i] = value < least_share ? 0.0 : value;
+        for (std::size_t k = begin; k < end; ++k) {
+            poll_interrupts();
+            kernels::scale_cells(1 / total, least_share, &weighed[k * plane], std::ptrdiff_t(plane));
         }
         return true;
     });
-    return {std::move(weighed), *std::max_element(most_free.begin(), most_free.end())};
+    return *std::max_element(most_free.begin(), most_free.end());
 }
 
 }  // namespace cspace::localization

@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <tuple>
 
 #include "cspace/math/plane.hpp"
 #include "maps_grid.hpp"
-#include "table.hpp"
 
 namespace cspace::localization {
 
@@ -22,8 +20,8 @@ class LatticeScores {
                   std::span<const Point> headings);
     ~LatticeScores();
     // The sums of the bytes at the ends of at most 257 beams, given in base [cells of the field], by sector,
-    // row and column. Throws std::invalid_argument for more.
-    Table<std::int32_t> sum(std::span<const Point> ends, int threads) const;
+    // row and column, into `sums`. Throws std::invalid_argument for more.
+    void sum(std::span<const Point> ends, int threads, std::span<std::int32_t> sums) const;
 
   private:
     struct State;
@@ -37,15 +35,14 @@ struct CellShape {
 
 // The belief moved: each sector by its shift (y, x) and blurred by its deviations (y, x), then turned and
 // blurred over the sectors, which close; all in cells. Nothing comes in at the border.
-Table<double> move_belief(std::span<const double> belief, const CellShape& shape,
-                          std::span<const std::array<double, 4>> steps, double turn, double turn_sigma,
-                          int threads);
+void move_belief(std::span<const double> belief, const CellShape& shape,
+                 std::span<const std::array<double, 4>> steps, double turn, double turn_sigma, int threads,
+                 std::span<double> moved);
 
 // The belief mixed with a share that is spread over the free cells (of a plane), times exp(unit · sum), and
-// times the share where it is not free, of sum 1; and the largest sum of a free cell.
-std::tuple<Table<double>, std::int32_t> weigh_belief(std::span<const double> belief, const CellShape& shape,
-                                                     std::span<const std::int32_t> sums,
-                                                     std::span<const std::uint8_t> free, double unit,
-                                                     double share, int threads);
+// times the share where it is not free, of sum 1. Returns the largest sum of a free cell.
+std::int32_t weigh_belief(std::span<const double> belief, const CellShape& shape,
+                          std::span<const std::int32_t> sums, std::span<const std::uint8_t> free, double unit,
+                          double share, int threads, std::span<double> weighed);
 
 }  // namespace cspace::localization

@@ -62,7 +62,8 @@ def test_steps_move_and_blur_as_in_numpy(seed, threads):
         [rng.normal(size=(sectors, 2)) * [[3], [60]][seed % 2], rng.exponential(1.0, (sectors, 2))], axis=1
     )
     turn, turn_sigma = rng.normal() * 8, rng.exponential(2.0)
-    found = _core._move_belief(belief.ravel(), sectors, rows, columns, steps, turn, turn_sigma, threads)
+    found = np.full(belief.size, np.nan)
+    _core._move_belief(belief.ravel(), sectors, rows, columns, steps, turn, turn_sigma, threads, found)
     expected = move_slowly(belief, steps, turn, turn_sigma)
     assert np.allclose(found.reshape(belief.shape), expected, rtol=1e-14, atol=1e-300)
 
@@ -78,7 +79,8 @@ def test_scores_of_a_lattice_are_those_of_its_cells(seed, threads):
     angles = rng.uniform(-np.pi, np.pi, 9)
     headings = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     lattice = _core.LatticeScores(field, outside, step, first, rows, columns, headings)
-    found = lattice.sum(ends, threads).reshape(9, rows, columns)
+    found = np.full((9, rows, columns), -1, np.int32)
+    lattice.sum(ends, threads, found.ravel())
     i, j = np.mgrid[:rows, :columns]
     for k, (c, s) in enumerate(headings):
         x = np.floor(first[0] + c * ends[:, 0] - s * ends[:, 1]).astype(int) + step * j[..., None]
@@ -103,7 +105,8 @@ def test_weights_are_those_of_bayes(seed):
     free = (rng.random(shape[1:]) < 0.6).astype(np.uint8)
     free[0, 0] = 1
     sums = rng.integers(0, 15300, shape, dtype=np.int32)
-    found, best = _core._weigh_belief(belief.ravel(), *shape, sums.ravel(), free.ravel(), 2e-3, 1e-4, 2)
+    found = np.full(belief.size, np.nan)
+    best = _core._weigh_belief(belief.ravel(), *shape, sums.ravel(), free.ravel(), 2e-3, 1e-4, 2, found)
     expected, most = weigh_slowly(belief, sums, free, 2e-3, 1e-4)
     assert np.allclose(found.reshape(shape), expected, rtol=1e-12, atol=1e-29)
     assert best == most
@@ -116,15 +119,16 @@ class SlowCore:
 
     @staticmethod
     def _move_belief(belief, *rest):
-        *shape, steps, turn, turn_sigma, _ = rest
-        return move_slowly(belief.reshape(shape), steps, turn, turn_sigma).ravel()
+        *shape, steps, turn, turn_sigma, _, out = rest
+        out[:] = move_slowly(belief.reshape(shape), steps, turn, turn_sigma).ravel()
 
     @staticmethod
     def _weigh_belief(belief, *rest):
-        *shape, sums, free, unit, share, _ = rest
+        *shape, sums, free, unit, share, _, out = rest
         free, sums = free.reshape(shape[1:]), sums.reshape(shape)
         found, best = weigh_slowly(belief.reshape(shape), sums, free, unit, share)
-        return found.ravel(), int(best)
+        out[:] = found.ravel()
+        return int(best)
 
 
 @pytest.mark.parametrize("start", [None, (2.0, 2.0, 0.0)])
@@ -149,7 +153,7 @@ def test_cells_that_are_no_whole_cells_of_the_map_are_scored_one_by_one():
     assert whole._lattice is not None
     assert broken._lattice is None
     ends, _ = whole.model.choose_ends(whole.model.read_ends(log.scans[3]))
-    fast = whole._sum_scores(ends)
+    fast = whole._sum_scores(ends).copy()
     whole._lattice = None
     slow = whole._sum_scores(ends)
     assert (fast != slow).mean() < 0.01
@@ -160,11 +164,15 @@ def test_cells_that_are_no_whole_cells_of_the_map_are_scored_one_by_one():
 
 def test_wrong_sizes_are_refused():
     with pytest.raises(ValueError, match="a number per cell"):
-        _core._move_belief(np.ones(5), 2, 2, 2, np.zeros((2, 4)), 0.0, 0.0, 1)
+        _core._move_belief(np.ones(5), 2, 2, 2, np.zeros((2, 4)), 0.0, 0.0, 1, np.ones(5))
     with pytest.raises(ValueError, match="a number per cell"):
-        _core._weigh_belief(np.ones(8), 2, 2, 2, np.zeros(8, np.int32), np.ones(3, np.uint8), 1.0, 0.1, 1)
+        _core._weigh_belief(
+            np.ones(8), 2, 2, 2, np.zeros(8, np.int32), np.ones(3, np.uint8), 1.0, 0.1, 1, np.ones(8)
+        )
     lattice = _core.LatticeScores(np.zeros((3, 3), np.uint8), 0, 1, (0.0, 0.0), 2, 2, np.ones((1, 2)))
     with pytest.raises(ValueError, match="more beams"):
-        lattice.sum(np.zeros((258, 2)), 1)
+        lattice.sum(np.zeros((258, 2)), 1, np.zeros(4, np.int32))
     with pytest.raises(ValueError, match="too far"):
-        lattice.sum(np.array([[1e300, 0.0]]), 1)
+        lattice.sum(np.array([[1e300, 0.0]]), 1, np.zeros(4, np.int32))
+    with pytest.raises(ValueError, match="a number per cell"):
+        lattice.sum(np.zeros((1, 2)), 1, np.zeros(3, np.int32))

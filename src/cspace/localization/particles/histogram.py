@@ -90,6 +90,7 @@ class HistogramFilter(Running):
         self.belief = np.tile(self._free / (self.sectors * self._free.sum()), (self.sectors, 1, 1))
         if start is not None:
             self._put_start(start, start_covariance)
+        self._spare, self._sums = np.empty_like(self.belief), np.empty(self.belief.size, np.int32)
 
     def _lay_cells(self, sensor: LaserScanner) -> None:
         """The centres of the cells, which of them are free, and the field for their size."""
@@ -163,10 +164,9 @@ class HistogramFilter(Running):
         deviations = np.sqrt(np.einsum("kij,jl,kil->ki", R, Q[:2, :2], R).clip(0.0))
         steps = np.concatenate([shifts[:, ::-1], deviations[:, ::-1]], axis=1) / self.side
         turn, turn_sigma = self._pending[2] / sector, float(np.sqrt(Q[2, 2])) / sector
-        moved = _core._move_belief(
-            self.belief.ravel(), *self.belief.shape, steps, turn, turn_sigma, self.threads
-        )
-        self.belief = moved.reshape(self.belief.shape)
+        old, new = self.belief.ravel(), self._spare.ravel()
+        _core._move_belief(old, *self.belief.shape, steps, turn, turn_sigma, self.threads, new)
+        self.belief, self._spare = self._spare, self.belief
         if not self.belief.sum() > 0:  # it drove off the map
             self.belief[:] = self._free
             self._is_known, self.updates = False, 0
@@ -187,7 +187,7 @@ class HistogramFilter(Running):
             best = int(sums.reshape(self.sectors, -1)[:, self._free.ravel() > 0].max())
         else:
             self._since = np.zeros(3)
-            weighed, best = _core._weigh_belief(
+            best = _core._weigh_belief(
                 self.belief.ravel(),
                 *self.belief.shape,
                 sums,
@@ -195,14 +195,16 @@ class HistogramFilter(Running):
                 share * exponent * self.model.nats,
                 UNIFORM_SHARE,
                 self.threads,
+                self._spare.ravel(),
             )
-            self.belief = weighed.reshape(self.belief.shape)
+            self.belief, self._spare = self._spare, self.belief
         self.score = best / (255.0 * len(used))
 
     def _sum_scores(self, ends: Array) -> npt.NDArray[np.int32]:
         """The sums of the scores (0 … 255) of all ends of beams (m, 2), for every cell, flat."""
         if self._lattice is not None and len(ends) <= MOST_BEAMS:
-            return self._lattice.sum(ends / self.model.field.resolution, self.threads)
+            self._lattice.sum(ends / self.model.field.resolution, self.threads, self._sums)
+            return self._sums
         if self._cloud is None:
             self._cloud = _core.ParticleCloud(len(self._centers), 0)
             self._cloud.place(self._centers)
