@@ -12,9 +12,9 @@ namespace {
 
 using Doubles = std::span<const double>;
 
-void move(Doubles belief, int sectors, int rows, int columns, std::span<const std::array<double, 4>> steps,
+bool move(Doubles belief, int sectors, int rows, int columns, std::span<const std::array<double, 4>> steps,
           double turn, double turn_sigma, int threads, std::span<double> moved) {
-    move_belief(belief, {sectors, rows, columns}, steps, turn, turn_sigma, threads, moved);
+    return move_belief(belief, {sectors, rows, columns}, steps, turn, turn_sigma, threads, moved);
 }
 
 std::int32_t weigh(Doubles belief, int sectors, int rows, int columns, std::span<const std::int32_t> sums,
@@ -33,7 +33,7 @@ void bind_localization_histogram(nb::module_& m) {
              "Writes the sums of the bytes at the ends of beams (m, 2) in base [cells], flat.");
     m.def("_move_belief", &move, "belief"_a, "sectors"_a, "rows"_a, "columns"_a, "steps"_a, "turn"_a,
           "turn_sigma"_a, "threads"_a, "moved"_a, WithoutLock(),
-          "Writes the belief moved and blurred, flat.");
+          "Writes the belief moved and blurred, flat; returns whether any is left.");
     m.def("_weigh_belief", &weigh, "belief"_a, "sectors"_a, "rows"_a, "columns"_a, "sums"_a, "free"_a,
           "unit"_a, "share"_a, "threads"_a, "weighed"_a, WithoutLock(),
           "Writes the belief times the likelihoods, flat; returns the largest sum of a free cell.");

@@ -30,4 +30,6 @@ void scale_cells(double factor, double least, double* numbers, std::ptrdiff_t co
     scale_number_row(factor, least, numbers, count);
 }
 
+double sum_cells(const double* numbers, std::ptrdiff_t count) { return sum_number_row(numbers, count); }
+
 }  // namespace cspace::localization::inline CSPACE_ISA

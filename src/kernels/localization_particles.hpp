@@ -22,3 +22,4 @@ CSPACE_NARROW_KERNEL(cspace::localization, double, weigh_cells,
                       std::ptrdiff_t count))
 CSPACE_NARROW_KERNEL(cspace::localization, void, scale_cells,
                      (double factor, double least, double* numbers, std::ptrdiff_t count))
+CSPACE_NARROW_KERNEL(cspace::localization, double, sum_cells, (const double* numbers, std::ptrdiff_t count))

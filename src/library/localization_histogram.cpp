@@ -224,7 +224,7 @@ void LatticeScores::sum(std::span<const Point> ends, int threads, std::span<std:
     });
 }
 
-void move_belief(std::span<const double> belief, const CellShape& shape,
+bool move_belief(std::span<const double> belief, const CellShape& shape,
                  std::span<const std::array<double, 4>> steps, double turn, double turn_sigma, int threads,
                  std::span<double> moved) {
     const std::size_t columns = std::size_t(shape.columns), plane = std::size_t(shape.rows) * columns;
@@ -242,14 +242,26 @@ void move_belief(std::span<const double> belief, const CellShape& shape,
         return true;
     });
     const Taps shift = taps_of_shift(turn), blur = taps_of_blur(std::min(turn_sigma, most));
+    std::vector<double> totals(static_cast<std::size_t>(shape.rows));
     over_rows(std::size_t(shape.rows), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
         Scratch scratch;
         for (std::size_t row = begin; row < end; ++row) {
             poll_interrupts();
             turn_sectors(shift, blur, shape.sectors, shape.columns, plane, scratch, &moved[row * columns]);
+            for (std::size_t k = 0; k < steps.size(); ++k)
+                totals[row] += kernels::sum_cells(&moved[row * columns + k * plane], shape.columns);
         }
         return true;
     });
+    double total = 0;
+    for (const double each : totals) total += each;
+    if (!(total > 0)) return false;
+    over_rows(steps.size(), threads, 1, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+            kernels::scale_cells(1 / total, 0.0, &moved[k * plane], std::ptrdiff_t(plane));
+        return true;
+    });
+    return true;
 }
 
 std::int32_t weigh_belief(std::span<const double> belief, const CellShape& shape,

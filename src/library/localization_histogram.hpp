@@ -35,7 +35,8 @@ struct CellShape {
 
 // The belief moved: each sector by its shift (y, x) and blurred by its deviations (y, x), then turned and
 // blurred over the sectors, which close; all in cells. Nothing comes in at the border.
-void move_belief(std::span<const double> belief, const CellShape& shape,
+// The result has the sum 1, unless nothing is left; returns whether something is.
+bool move_belief(std::span<const double> belief, const CellShape& shape,
                  std::span<const std::array<double, 4>> steps, double turn, double turn_sigma, int threads,
                  std::span<double> moved);
 

@@ -64,6 +64,11 @@ CSPACE_INLINE void mix_number_rows(const double* const* rows, const double* weig
         store_four(to + i, a), store_four(to + i + n, b);
         store_four(to + i + 2 * n, c), store_four(to + i + 3 * n, d);
     }
+    for (; i + n <= count; i += n) {
+        FourNumbers a = weights[0] * load_four(rows[0] + i);
+        for (int t = 1; t < taps; ++t) a = a + weights[t] * load_four(rows[t] + i);
+        store_four(to + i, a);
+    }
     for (; i < count; ++i) {
         double sum = weights[0] * rows[0][i];
         for (int t = 1; t < taps; ++t) sum += weights[t] * rows[t][i];
@@ -93,6 +98,17 @@ CSPACE_INLINE double weigh_number_row(const CellWeights& weights, const double* 
                 weights.scale[i];
         sum += to[i];
     }
+    return sum;
+}
+
+CSPACE_INLINE double sum_number_row(const double* numbers, std::ptrdiff_t count) {
+    FourNumbers total = fill<FourNumbers>(0.0);
+    std::ptrdiff_t i = 0;
+    for (; i + number_chunk <= count; i += number_chunk) total = total + load_four(numbers + i);
+    double parts[number_chunk];
+    store_four(parts, total);
+    double sum = (parts[0] + parts[1]) + (parts[2] + parts[3]);
+    for (; i < count; ++i) sum += numbers[i];
     return sum;
 }
 

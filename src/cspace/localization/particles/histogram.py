@@ -165,12 +165,11 @@ class HistogramFilter(Running):
         steps = np.concatenate([shifts[:, ::-1], deviations[:, ::-1]], axis=1) / self.side
         turn, turn_sigma = self._pending[2] / sector, float(np.sqrt(Q[2, 2])) / sector
         old, new = self.belief.ravel(), self._spare.ravel()
-        _core._move_belief(old, *self.belief.shape, steps, turn, turn_sigma, self.threads, new)
+        is_left = _core._move_belief(old, *self.belief.shape, steps, turn, turn_sigma, self.threads, new)
         self.belief, self._spare = self._spare, self.belief
-        if not self.belief.sum() > 0:  # it drove off the map
-            self.belief[:] = self._free
+        if not is_left:  # it drove off the map
+            self.belief[:] = self._free / (self.sectors * self._free.sum())
             self._is_known, self.updates = False, 0
-        self.belief /= self.belief.sum()
         self._pending, self._seconds, self._given = np.zeros(3), 0.0, None
 
     def update(self, scan: Any) -> None:
