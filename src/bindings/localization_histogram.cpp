@@ -31,10 +31,10 @@ void bind_localization_histogram(nb::module_& m) {
              "scores"_a, "outside"_a, "step"_a, "first"_a, "rows"_a, "columns"_a, "headings"_a)
         .def("sum", &LatticeScores::sum, "ends"_a, "threads"_a, "sums"_a, WithoutLock(),
              "Writes the sums of the bytes at the ends of beams (m, 2) in base [cells], flat.");
-    m.def("_move_belief", &move, "belief"_a, "sectors"_a, "rows"_a, "columns"_a, "steps"_a, "turn"_a,
+    m.def("move_belief", &move, "belief"_a, "sectors"_a, "rows"_a, "columns"_a, "steps"_a, "turn"_a,
           "turn_sigma"_a, "threads"_a, "moved"_a, WithoutLock(),
           "Writes the belief moved and blurred, flat; returns whether any is left.");
-    m.def("_weigh_belief", &weigh, "belief"_a, "sectors"_a, "rows"_a, "columns"_a, "sums"_a, "free"_a,
+    m.def("weigh_belief", &weigh, "belief"_a, "sectors"_a, "rows"_a, "columns"_a, "sums"_a, "free"_a,
           "unit"_a, "share"_a, "threads"_a, "weighed"_a, WithoutLock(),
           "Writes the belief times the likelihoods, flat; returns the largest sum of a free cell.");
 }

@@ -63,7 +63,7 @@ def test_steps_move_and_blur_as_in_numpy(seed, threads):
     )
     turn, turn_sigma = rng.normal() * 8, rng.exponential(2.0)
     found = np.full(belief.size, np.nan)
-    is_left = _core._move_belief(
+    is_left = _core.move_belief(
         belief.ravel(), sectors, rows, columns, steps, turn, turn_sigma, threads, found
     )
     expected = move_slowly(belief, steps, turn, turn_sigma)
@@ -110,7 +110,7 @@ def test_weights_are_those_of_bayes(seed):
     free[0, 0] = 1
     sums = rng.integers(0, 15300, shape, dtype=np.int32)
     found = np.full(belief.size, np.nan)
-    best = _core._weigh_belief(belief.ravel(), *shape, sums.ravel(), free.ravel(), 2e-3, 1e-4, 2, found)
+    best = _core.weigh_belief(belief.ravel(), *shape, sums.ravel(), free.ravel(), 2e-3, 1e-4, 2, found)
     expected, most = weigh_slowly(belief, sums, free, 2e-3, 1e-4)
     assert np.allclose(found.reshape(shape), expected, rtol=1e-12, atol=1e-29)
     assert best == most
@@ -122,14 +122,14 @@ class SlowCore:
     LatticeScores, ParticleCloud, ScoreMap = _core.LatticeScores, _core.ParticleCloud, _core.ScoreMap
 
     @staticmethod
-    def _move_belief(belief, *rest):
+    def move_belief(belief, *rest):
         *shape, steps, turn, turn_sigma, _, out = rest
         moved = move_slowly(belief.reshape(shape), steps, turn, turn_sigma)
         out[:] = moved.ravel() / (moved.sum() or 1.0)
         return moved.sum() > 0
 
     @staticmethod
-    def _weigh_belief(belief, *rest):
+    def weigh_belief(belief, *rest):
         *shape, sums, free, unit, share, _, out = rest
         free, sums = free.reshape(shape[1:]), sums.reshape(shape)
         found, best = weigh_slowly(belief.reshape(shape), sums, free, unit, share)
@@ -170,9 +170,9 @@ def test_cells_that_are_no_whole_cells_of_the_map_are_scored_one_by_one():
 
 def test_wrong_sizes_are_refused():
     with pytest.raises(ValueError, match="a number per cell"):
-        _core._move_belief(np.ones(5), 2, 2, 2, np.zeros((2, 4)), 0.0, 0.0, 1, np.ones(5))
+        _core.move_belief(np.ones(5), 2, 2, 2, np.zeros((2, 4)), 0.0, 0.0, 1, np.ones(5))
     with pytest.raises(ValueError, match="a number per cell"):
-        _core._weigh_belief(
+        _core.weigh_belief(
             np.ones(8), 2, 2, 2, np.zeros(8, np.int32), np.ones(3, np.uint8), 1.0, 0.1, 1, np.ones(8)
         )
     lattice = _core.LatticeScores(np.zeros((3, 3), np.uint8), 0, 1, (0.0, 0.0), 2, 2, np.ones((1, 2)))
