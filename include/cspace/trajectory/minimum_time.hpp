@@ -271,46 +271,23 @@ inline mask_of<V> attain_in(const AxisTaskOf<V>& x, V T, CombinationOf<V>& made)
 
 namespace crossing {
 
-// A moment of a motion, by the time since its start and the time left. The shorter one says when it is, so
-// that short phases at the end of a long motion keep their digits.
-struct Moment {
-    double since, left;
-    bool is_late() const { return since > left; }
-};
-
-inline bool is_before(const Moment& p, const Moment& q) {
-    if (p.is_late() != q.is_late()) return q.is_late();
-    return p.is_late() ? p.left > q.left : p.since < q.since;
-}
-
-// The time from p to q in a motion of T seconds.
-inline double time_between(const Moment& p, const Moment& q, double T) {
-    if (p.is_late()) return p.left - q.left;
-    return q.is_late() ? T - p.since - q.left : q.since - p.since;
-}
-
-// A motion of seven phases as its part of a convex combination: the phase at a moment, and when each ends.
+// A motion of seven phases as its part of a convex combination: the phase at a time, and when it ends.
 struct Walk {
     const SevenPhases& f;
-    double a0, jerk, sign, T;
-    Moment begin, ends[7];
-    int i = 0;
-
-    Walk(const SevenPhases& phases, double a, double j, double way, double time)
-        : f(phases), a0(a), jerk(j), sign(way), T(time), begin{0, time} {
-        double since = 0, left = 0;
-        for (int k = 0; k < 7; ++k) ends[k].since = since += f.t[k];
-        for (int k = 6; k >= 0; --k) ends[k].left = left, left += f.t[k];
-        ends[6] = {T, 0};
+    double a0, jerk, sign;
+    int i = -1;
+    double begin = 0, end = 0;
+    void advance_to(double t) {
+        while (i < 6 && (i < 0 || t >= end)) {
+            ++i;
+            begin = end;
+            end += f.t[i];
+        }
     }
-    void advance_to(const Moment& t) {
-        while (i < 6 && !is_before(t, ends[i])) begin = ends[i++];
-    }
-    // From t to the next moment.
-    Phase at(const Moment& t, const Moment& next) const {
+    Phase at(double t) const {
         const Phase p = phase_of(f, i, a0, jerk);
         const double j = std::isfinite(p.j) ? p.j : 0;
-        return {time_between(t, next, T), sign * (p.a + j * time_between(begin, t, T)), sign * j};
+        return {end - t, sign * (p.a + j * (t - begin)), sign * j};
     }
 };
 
@@ -339,16 +316,14 @@ inline void append_motion(const AxisTask& x, double T, const Combination& combin
     const SevenPhases up = restore_phases(x.up, combination.up),
                       down = restore_phases(x.down, combination.down);
     const double jerk = x.up.limits.jerk, theta = combination.theta, other = 1 - theta;
-    Walk a(up, x.up.a0, jerk, 1, T), b(down, x.down.a0, jerk, -1, T);
-    Moment now = {0, T};
-    for (bool is_last = false; !is_last;) {
-        a.advance_to(now);
-        b.advance_to(now);
-        is_last = a.i == 6 && b.i == 6;
-        const Moment next = is_before(a.ends[a.i], b.ends[b.i]) ? a.ends[a.i] : b.ends[b.i];
-        const Phase f = a.at(now, next), g = b.at(now, next);
-        out.append({f.h, theta * f.a + other * g.a, theta * f.j + other * g.j});
-        now = next;
+    Walk a{up, x.up.a0, jerk, 1}, b{down, x.down.a0, jerk, -1};
+    for (double t = 0; t < T;) {
+        a.advance_to(t);
+        b.advance_to(t);
+        const Phase f = a.at(t), g = b.at(t);
+        const double next = std::min(std::min(a.i == 6 ? T : a.end, b.i == 6 ? T : b.end), T);
+        out.append({next - t, theta * f.a + other * g.a, theta * f.j + other * g.j});
+        t = next;
     }
 }
 
