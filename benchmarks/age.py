@@ -72,6 +72,24 @@ SOURCES = {
         *("src/cspace/localization/particles", "src/cspace/localization/scans/search.py"),
         *("src/kernels/localization_particles.cpp", "src/library/localization_particles.cpp"),
     ],
+    "laser_slam": [
+        *("include/cspace/localization/scans", "include/cspace/localization/graph", "include/cspace/maps"),
+        *("src/cspace/localization/laser_slam", "src/cspace/localization/scans", "src/cspace/mobile"),
+        "src/kernels/localization_correlation.cpp",
+    ],
+    "map_search": [
+        *("include/cspace/localization/scans", "include/cspace/maps", "src/cspace/localization/scans"),
+        "src/kernels/localization_search.cpp",
+    ],
+    "landmark_slam": [
+        *("include/cspace/localization/landmarks", "src/cspace/localization/landmark_slam"),
+        *("src/kernels/localization_landmarks.cpp", "src/cspace/mobile"),
+    ],
+    "consistency": [
+        *("include/cspace/localization/landmarks", "src/cspace/localization/landmark_slam"),
+        *("src/cspace/localization/filters", "src/kernels/localization_landmarks.cpp", "src/cspace/mobile"),
+    ],
+    "localization": ["src/cspace/localization/filters", "src/cspace/mobile"],
     "": [
         *("include/cspace/math", "include/cspace/kinematics", "include/cspace/ik", "src/kernels"),
         *("src/library", "src/bindings", "src/cspace/ik", "src/cspace/kinematics"),

@@ -1,8 +1,9 @@
 """Landmark SLAM: time of a step beside the Robotics Toolbox and PythonRobotics, errors on public logs.
 
 Usage: python benchmarks/landmark_slam.py [--toolbox PYTHON] [--pythonrobotics FOLDER] [--rounds 3] [--save
-FILE]. PYTHON is an interpreter with roboticstoolbox-python, FOLDER a checkout of PythonRobotics. A step is
-what a user calls from Python: a prediction and an update.
+FILE] [--write]. PYTHON is an interpreter with roboticstoolbox-python, FOLDER a checkout of PythonRobotics. A
+step is what a user calls from Python: a prediction and an update. --write leaves the rows in
+benchmarks/results/landmark_slam.json.
 
 - EKF-SLAM, one reading per step, all landmarks on the map before. The step of the toolbox also simulates the
   robot and its sensor; the time of that alone is printed beside it.
@@ -32,6 +33,7 @@ import numpy as np
 DATA = Path(os.environ.get("CSPACE_DATA", "../shared/data")) / "localization"
 SIZES: Final = (100, 300)
 STEPS: Final = 200
+RESULTS: Final = Path(__file__).resolve().parent / "results/landmark_slam.json"
 ONE_THREAD: Final = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 BEACONS: Final = [[10, -2], [15, 10], [15, 15], [10, 20], [3, 15], [-5, 20], [-5, 5], [-10, 15]]
 BEACON_STEPS: Final = 150
@@ -255,6 +257,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--no-logs", action="store_true")
     parser.add_argument("--save", type=Path)
+    parser.add_argument("--write", action="store_true")
     parser.add_argument("--contender", nargs=3, metavar=("NAME", "NUMBER", "FILE"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.contender:
@@ -278,8 +281,9 @@ def main() -> None:
     for row in [] if options.no_logs else measure_logs():
         rows.append(row)
         show(row)
-    if options.save:
-        options.save.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    for path in [options.save, RESULTS if options.write else None]:
+        if path:
+            path.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 """Localisation on the public logs: position errors of filters and smoothers, and of dead reckoning.
 
-Usage: python benchmarks/localization.py [--filters ekf iekf ukf information] [--save FILE]. Prints a row per
-log, RMSE [m] over the times of the odometry for which there is a truth. Odometry is calibrated on the first
-half of each log, everything else is a default. The data are found through $CSPACE_DATA.
+Usage: python benchmarks/localization.py [--filters ekf iekf ukf information] [--save FILE] [--write].
+Prints a row per log, RMSE [m] over the times of the odometry for which there is a truth. Odometry is
+calibrated on the first half of each log, everything else is a default. --write leaves the rows in
+benchmarks/results/localization.json. The data are found through $CSPACE_DATA.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import cspace as cs
 
 DATA = Path(os.environ.get("CSPACE_DATA", "../shared/data")) / "localization"
 LAG = 5.0
+RESULTS = Path(__file__).resolve().parent / "results/localization.json"
 
 
 def rmse(answer: Any, log: Any) -> float:
@@ -66,6 +68,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--filters", nargs="+", default=["ekf", "iekf", "ukf", "information"])
     parser.add_argument("--save", type=Path)
+    parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     rows = [measure_calibration(name) for name in ("intel", "freiburg-079")]
     for robot in (1, 2, 3):
@@ -80,8 +83,9 @@ def main() -> None:
         key: np.mean([row[key] for row in rows if "smoothed" in row]) for key in ("calibrated", "smoothed")
     }
     print(f"mean of the robots: filter {means['calibrated']:.3f} m, smoother {means['smoothed']:.3f} m")
-    if options.save:
-        options.save.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    for path in [options.save, RESULTS if options.write else None]:
+        if path:
+            path.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

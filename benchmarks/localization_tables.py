@@ -11,7 +11,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-TOPICS = ("pose_graph", "monte_carlo", "laser_slam", "landmark_slam", "consistency")
+TOPICS = ("pose_graph", "filters", "monte_carlo", "laser_slam", "landmark_slam", "consistency")
 
 
 def modules() -> list[ModuleType]:

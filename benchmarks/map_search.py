@@ -1,9 +1,9 @@
 """Maps and searches of them on the public laser logs: where a scan fits the whole map, and how long it takes.
 
-Usage: python benchmarks/map_search.py [--every N] [--beams N] [--save FILE]. Every tenth scan is held out of
-the map, which is made at the corrected poses with 5 cm cells; every Nth of those is searched on it. Prints
-how often the right pose (0.5 m, 10°) is the first and among three, and processor times on one core. The data
-are found through $CSPACE_DATA.
+Usage: python benchmarks/map_search.py [--every N] [--beams N] [--save FILE] [--write]. Every tenth scan is
+held out of the map, which is made at the corrected poses with 5 cm cells; every Nth of those is searched on
+it. Prints how often the right pose (0.5 m, 10°) is the first and among three, and processor times on one
+core; --write leaves them in benchmarks/results/map_search.json. The data are found through $CSPACE_DATA.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from cspace.localization import search_pose
 
 DATA = Path(os.environ.get("CSPACE_DATA", "../shared/data")) / "localization/carmen"
 LOGS = ("intel", "freiburg-079")
+RESULTS = Path(__file__).resolve().parent / "results/map_search.json"
 NEAR, FAR = 0.1, 20.0
 """Ranges [m] that are used."""
 LONGEST_GAP = 0.5
@@ -87,12 +88,14 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--beams", type=int, default=180)
     parser.add_argument("--save", type=Path)
+    parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     rows = [measure(name, given.every, given.beams) for name in LOGS]
     for row in rows:
         print({key: round(value, 3) if isinstance(value, float) else value for key, value in row.items()})
-    if given.save:
-        given.save.write_text(json.dumps(rows, indent=1, default=float) + "\n", encoding="utf-8")
+    for path in [given.save, RESULTS if given.write else None]:
+        if path:
+            path.write_text(json.dumps(rows, indent=1, default=float) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

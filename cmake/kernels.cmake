@@ -90,7 +90,7 @@ endif()
 # decisions about points, whose signs rest on every rounding as written; x86-64 has no such instruction in its baseline.
 if(NOT MSVC)
   set(exact_files ${library_files})
-  list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation|collision|planning|shapes|localization_particles)[_.]")
+  list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation|collision|planning|shapes|localization_particles|localization_histogram)[_.]")
   set_property(SOURCE ${exact_files} APPEND PROPERTY COMPILE_OPTIONS -ffp-contract=off)
 endif()
 # GCC stops inlining in a file that has grown by two fifths, and a file of several searches soon has.

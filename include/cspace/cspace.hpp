@@ -35,6 +35,7 @@
 #include "cspace/localization/graph/spatial_space.hpp"
 #include "cspace/localization/landmarks/fast_slam.hpp"
 #include "cspace/localization/particles/beam_scores.hpp"
+#include "cspace/localization/particles/cell_rows.hpp"
 #include "cspace/localization/particles/integer_weights.hpp"
 #include "cspace/localization/particles/modes.hpp"
 #include "cspace/localization/particles/move.hpp"

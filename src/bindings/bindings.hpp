@@ -10,8 +10,9 @@
     bind(ik_numeric) bind(ik_redundancy) bind(ik_tracking) bind(ik_description) bind(maps) bind(shapes)    \
     bind(collision) bind(collision_solids) bind(planning_arm) bind(navigation_route) bind(navigation_grid) \
     bind(navigation_polygons) bind(navigation_vehicles) bind(planning_two_joints) bind(planning_fields)     \
-    bind(dynamics_simulation) bind(trajectory) bind(trajectory_timing) bind(trajectory_cartesian) bind(localization_graph) \
-    bind(maps_sensing) bind(localization_search) bind(localization_particles)    \
+    bind(dynamics_simulation) bind(trajectory) bind(trajectory_timing) bind(trajectory_cartesian)           \
+    bind(localization_graph) bind(maps_sensing) bind(localization_search) bind(localization_particles)      \
+    bind(localization_histogram)                                                                            \
     bind(localization_scans) bind(localization_landmarks) bind(localization_incremental)
 // clang-format on
 

@@ -1140,6 +1140,26 @@ class ParticleCloud:
     def draw_normals(self, count: int) -> numpy.typing.NDArray[numpy.float64]:
         """Standard normal numbers (count, 3) of a step of their own."""
 
+class LatticeScores:
+    """The scores of all cells of x, y and θ."""
+
+    def __init__(self, scores: numpy.typing.NDArray[numpy.uint8], outside: int, step: int, first: numpy.typing.ArrayLike, rows: int, columns: int, headings: numpy.typing.NDArray[numpy.float64]) -> None: ...
+
+    def sum(self, ends: numpy.typing.NDArray[numpy.float64], threads: int, sums: numpy.typing.NDArray[numpy.int32]) -> None:
+        """
+        Writes the sums of the bytes at the ends of beams (m, 2) in base [cells], flat.
+        """
+
+def move_belief(belief: numpy.typing.NDArray[numpy.float64], sectors: int, rows: int, columns: int, steps: numpy.typing.NDArray[numpy.float64], turn: float, turn_sigma: float, threads: int, moved: numpy.typing.NDArray[numpy.float64]) -> bool:
+    """
+    Writes the belief moved and blurred, flat; returns whether any is left.
+    """
+
+def weigh_belief(belief: numpy.typing.NDArray[numpy.float64], sectors: int, rows: int, columns: int, sums: numpy.typing.NDArray[numpy.int32], free: numpy.typing.NDArray[numpy.uint8], unit: float, share: float, threads: int, weighed: numpy.typing.NDArray[numpy.float64]) -> int:
+    """
+    Writes the belief times the likelihoods, flat; returns the largest sum of a free cell.
+    """
+
 def match_points(scores: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike, outside: int, points: numpy.typing.NDArray[numpy.float64], guess: numpy.typing.ArrayLike, reach: float, turn: float, refines: bool) -> tuple[bool, bool, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], float, float]:
     """
     Found, ambiguous, pose, covariance, score and second score of a correlative match.

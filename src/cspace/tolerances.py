@@ -789,6 +789,10 @@ FALSE_READINGS: Final = 1e-3
 """Likelihood of a reading of a landmark that no landmark explains, over that of a perfect one: beyond 3.7
 standard deviations a reading is more likely false."""
 
+WHOLE_CELLS: Final = 1e-6
+"""Cells of a field by which the farthest cell of a histogram filter may miss a whole number of them: rounding
+of sides such as 0.25 m over 0.05 m."""
+
 STANDING: Final = 1e-3
 """A distance [m] or turn [rad] below which a robot stands: the jitter of odometry at rest."""
 

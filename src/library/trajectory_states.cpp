@@ -453,6 +453,8 @@ StatePieces make_pieces(const StateMotion& motion) {
 bool can_be_asked(const double* states, const double* limits, std::size_t dof, double farthest) {
     for (std::size_t k = 0; k < 6 * dof; ++k)
         if (!(std::fabs(states[k]) <= farthest)) return false;
+    for (std::size_t k = 0; k < 5 * dof; ++k)
+        if (std::isfinite(limits[k]) && std::fabs(limits[k]) > farthest) return false;
     const Task task{dof, states, limits};
     for (std::size_t i = 0; i < dof; ++i) {
         const AxisLimits l = task.limits(i);

@@ -167,6 +167,12 @@ def test_slam_of_landmarks(tmp_path):
     assert cs.ate(saved, DRIVE).rmse < 0.1
 
 
+def test_slam_begins_at_the_pose_that_is_given():
+    result = cspace(f"slam {DRIVE} --method ekf --json --start 3 -2 90 --deg")
+    assert result.code == Exit.DONE
+    assert result.json["poses"][0] == pytest.approx([3, -2, np.pi / 2], abs=0.05)
+
+
 @pytest.mark.parametrize(
     ("line", "code", "part"),
     [
@@ -184,6 +190,7 @@ def test_slam_of_landmarks(tmp_path):
         (f"slam {GRAPH} --save-map x.yaml", Exit.USAGE, "are for logs"),
         (f"localize {DRIVE} --map x.png --filter mcl", Exit.USAGE, "--resolution 0.05"),
         (f"localize {DRIVE} --map x.yaml --resolution 1", Exit.USAGE, "--resolution is for images"),
+        (f"slam {GRAPH} --start 0 0 0", Exit.USAGE, "are for logs"),
         (f"slam {GRAPH} --method ekf", Exit.USAGE, "are for logs"),
         (f"slam {DRIVE} --robust dcs", Exit.USAGE, "is for pose graphs"),
         (f"slam {DRIVE} --method ekf --save x.g2o", Exit.USAGE, "has no pose graph"),

@@ -5,6 +5,7 @@
 
 #include "check.hpp"
 #include "cspace/localization/particles/beam_scores.hpp"
+#include "cspace/localization/particles/cell_rows.hpp"
 #include "cspace/localization/particles/integer_weights.hpp"
 #include "cspace/localization/particles/modes.hpp"
 #include "cspace/localization/particles/move.hpp"
@@ -34,6 +35,42 @@ TEST(words_of_draws) {
         CHECK(u > 0 && u < 1);
         CHECK(std::fabs(log_float(u) - std::log(u)) <= 2e-7 * std::fabs(std::log(u)) + 1e-7);
     }
+}
+
+TEST(rows_of_cells) {
+    Random random(5);
+    for (int count = 1; count < 60; ++count) {
+        std::vector<std::vector<double>> given(3);
+        for (auto& row : given)
+            for (int i = 0; i < count; ++i) row.push_back(random.uniform(0, 1));
+        const double* rows[] = {given[0].data(), given[1].data(), given[2].data()};
+        const double weights[] = {0.2, 0.5, 0.3};
+        std::vector<double> mixed(static_cast<std::size_t>(count));
+        mix_number_rows(rows, weights, 3, mixed.data(), count);
+        std::vector<std::int32_t> sums;
+        std::vector<double> made(mixed.size());
+        const double factors[] = {1, 0.5, 0.25};
+        double expected = 0;
+        for (std::size_t i = 0; i < mixed.size(); ++i) {
+            sums.push_back(7 + std::int32_t(i) % 3);
+            const double x = 0.2 * given[0][i] + 0.5 * given[1][i] + 0.3 * given[2][i];
+            CHECK(std::fabs(mixed[i] - x) < 1e-15);
+            expected += (0.9 * given[0][i] + given[1][i]) * factors[i % 3] * given[2][i];
+        }
+        const CellWeights cells{factors, 7, 0.9, given[1].data(), given[2].data()};
+        const double total = weigh_number_row(cells, given[0].data(), sums.data(), made.data(), count);
+        CHECK(std::fabs(total - expected) < 1e-13 * (1 + expected));
+        CHECK(std::fabs(sum_number_row(made.data(), count) - expected) < 1e-13 * (1 + expected));
+        scale_number_row(2, 0.3, made.data(), count);
+        for (std::size_t i = 0; i < made.size(); ++i) CHECK(made[i] == 0 || made[i] >= 0.3);
+    }
+    std::vector<std::uint8_t> bytes(80);
+    std::vector<std::uint16_t> sums(40, 9);
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = std::uint8_t(3 * i);
+    add_byte_rows(bytes.data(), 40, sums.data(), 20, 2, 1, 5);
+    for (std::size_t i = 0; i < 20; ++i)
+        for (std::size_t row = 0; row < 2; ++row)
+            CHECK(sums[20 * row + i] == (i < 16 ? 9 + bytes[40 * row + i] - 5 : 9));
 }
 
 TEST(weights) {

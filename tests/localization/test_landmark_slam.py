@@ -295,6 +295,15 @@ def test_moving_the_frame_changes_nothing_in_base(method):
     np.testing.assert_allclose(b.landmarks.points, moved, atol=1e-7)
 
 
+@pytest.mark.parametrize("method", ["ekf", "fastslam"])
+def test_slam_of_a_log_begins_at_the_start_that_is_given(method):
+    log, start = log_of(3, 12.0), (5.0, -2.0, 0.7)
+    found = cs.slam(log, method=method, start=start, rng=1)
+    same = run_ekf_slam(log, start=start) if method == "ekf" else run_fast_slam(log, start=start, rng=1)
+    assert np.array_equal(found.poses, same.poses)
+    assert not np.allclose(found.poses[0], 0)
+
+
 @pytest.mark.parametrize("linearization", LINEARIZATIONS)
 def test_the_order_of_readings_does_not_matter(linearization):
     runs = []

@@ -84,6 +84,31 @@ def test_the_answer_is_the_same_again(log, found):
     assert np.array_equal(again.poses, found.poses)
 
 
+@pytest.mark.parametrize("start", [(3.0, -40.0, 2.5), cs.pose_2d(xytheta=[-7e3, 2e4, -np.pi / 2])])
+def test_another_start_moves_everything_as_a_whole(log, found, start):
+    moved = cs.slam(log, start=start)
+    first = np.asarray(start) if np.shape(start) == (3,) else cs.to_xytheta(start)
+    assert list(moved.stages) == list(found.stages)
+    assert np.array_equal(moved.poses[0], first)
+    for name, stage in found.stages.items():
+        here, there = cs.pose_2d(xytheta=stage.poses), cs.pose_2d(xytheta=moved.stages[name].poses)
+        assert np.allclose(cs.pose_2d(xytheta=first) @ here, there, rtol=1e-15, atol=1e-11)
+    assert np.array_equal(moved.poses, moved.stages["closed"].poses)
+    assert np.array_equal(moved.poses, moved.graph.poses)
+    assert np.array_equal(moved.covariances, found.covariances)
+    assert np.array_equal(moved.graph.motions, found.graph.motions)
+    assert all(np.array_equal(a.pose, b.pose) for a, b in zip(moved.loops, found.loops, strict=True))
+    walls = [(s.map.probability > 0.65).sum() for s in (moved, found)]
+    assert walls[0] == pytest.approx(walls[1], rel=0.05)
+
+
+def test_a_start_that_is_no_pose_is_named(log):
+    for bad in ((0.0, np.nan, 0.0), (1.0, 2.0), np.full((3, 3), 2.0), "origin"):
+        for method in ("graph", "ekf", "fastslam"):
+            with pytest.raises(cs.CspaceError, match="start"):
+                cs.slam(log, method=method, start=bad)
+
+
 def test_half_a_log(log):
     middle = log.scans.times[len(log.scans) // 2]
     half = Log(

@@ -152,6 +152,40 @@ MRCLAM = {
 }
 
 
+@pytest.mark.parametrize(
+    ("missing", "part", "is_empty"),
+    [
+        ("Robot1_Groundtruth.dat", "truth", False),
+        ("Robot1_Groundtruth.dat", "truth", True),
+        ("Landmark_Groundtruth.dat", "landmarks", False),
+    ],
+)
+def test_folders_without_a_truth_are_read(tmp_path, missing, part, is_empty):
+    for each, text in MRCLAM.items():
+        (tmp_path / each).write_text(text)
+    whole = read_log(tmp_path)
+    if is_empty:
+        (tmp_path / missing).write_text("# t x y w\n")
+    else:
+        (tmp_path / missing).unlink()
+    log = read_log(tmp_path)
+    assert getattr(log, part) is None
+    assert any(missing in note for note in log.notes)
+    assert not any(missing in note for note in whole.notes)
+    assert np.array_equal(log.odometry.steps, whole.odometry.steps)
+    assert np.array_equal(log.readings.range, whole.readings.range)
+    assert np.array_equal(log.readings.landmark, whole.readings.landmark)
+
+
+@pytest.mark.parametrize("name", ["Barcodes.dat", "Robot1_Odometry.dat", "Robot1_Measurement.dat"])
+def test_folders_without_what_a_log_needs_are_refused(tmp_path, name):
+    for each, text in MRCLAM.items():
+        if each != name:
+            (tmp_path / each).write_text(text)
+    with pytest.raises(LogError, match=name):
+        read_log(tmp_path)
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("name", MRCLAM)
 def test_mutated_folders_are_read_whole_or_refused(tmp_path, name, seed):

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import DescriptionError, InputError
+from cspace.errors import DescriptionError
 from cspace.trajectory import (
     from_csv,
     from_json,
     state_to_state,
     to_csv,
     to_json,
-    to_ros,
 )
 
 NAMES = ("shoulder", 'the "elbow", bent')
@@ -128,23 +127,6 @@ def test_csv_attains_its_samples(tmp_path):
     assert np.allclose(other(samples.times, 1), samples.qd, atol=1e-11)
     t = np.linspace(0.0, one.duration, 999)
     assert np.allclose(other(t), one(t), atol=1e-6)
-
-
-def test_ros_points_are_samples(tmp_path):
-    yaml = pytest.importorskip("yaml")
-    path, one = tmp_path / "a.yaml", motion()
-    to_ros(one, path, rate=100.0)
-    message, samples = yaml.safe_load(path.read_text("utf-8")), one.sample(100.0)
-    assert message["joint_names"] == list(NAMES)
-    points = message["points"]
-    assert np.array_equal([p["positions"] for p in points], samples.q)
-    assert np.array_equal([p["velocities"] for p in points], samples.qd)
-    assert np.array_equal([p["accelerations"] for p in points], samples.qdd)
-    ticks = [p["time_from_start"]["sec"] * 10**9 + p["time_from_start"]["nanosec"] for p in points]
-    assert (np.diff(ticks) > 0).all()
-    assert ticks[-1] == round(one.duration * 1e9)
-    with pytest.raises(InputError, match="no names of joints"):
-        to_ros(motion(None), path, rate=10.0)
 
 
 def test_bad_files_are_named_with_their_fault(tmp_path):

@@ -27,12 +27,21 @@ namespace cspace::trajectory::inline CSPACE_ISA {
 namespace crossing {
 
 inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
-inline constexpr int most_steps = 200;  // bisection alone needs 64
+inline constexpr int most_steps = 200;  // bisection alone needs 64, and 30 more from any magnitude
+inline constexpr int first_steps = 30;  // after which a bracket that is still wide is halved in logarithms,
+inline constexpr double wide = 1024;    // from this ratio of its ends on
+inline constexpr double widest = 1e16;  // and at most: a bracket may begin at zero
 
 template <class V>
 struct Value {
     V value, slope, bend;
 };
+
+// The geometric mean of the ends of a bracket, of which the first may be zero.
+template <class V>
+CSPACE_INLINE V halve_magnitudes(V low, V high) {
+    return sqrt(max(low, high * (1 / widest))) * sqrt(high);
+}
 
 // The time between low and high at which f, which is below zero at low and not at high, is zero: Halley's
 // method in a bracket, where `asked`. f(T) returns value, slope and bend.
@@ -52,6 +61,8 @@ CSPACE_INLINE V find_root(V low, V high, mask_of<V> asked, const F& f) {
         // A step that leaves the bracket by rounding alone has arrived.
         const auto stays = met || (!inside && abs(next - x) <= 2 * epsilon * x);
         next = select(inside || stays, next, 0.5 * (low + high));
+        if (i >= first_steps)  // steps from far above only halve the time
+            next = select(!stays && high > wide * low, halve_magnitudes(low, high), next);
         const auto arrived = abs(next - x) <= 2 * epsilon * x || high - low <= 2 * epsilon * high;
         x = select(open && !stays, next, x);
         open = open && !stays && !arrived;

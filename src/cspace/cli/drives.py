@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.cli.arguments import add_option
+from cspace.cli.arguments import add_option, read_radians
 from cspace.cli.exits import UsageError
 from cspace.cli.output import Output, check_format, check_writable
 from cspace.errors import CspaceError
@@ -69,6 +69,12 @@ def load_map(path: Path, resolution: float | None) -> Any:
         return Landmarks(rows[:, 0].astype(np.int64), rows[:, 1:3], spread)
     except CspaceError as error:
         raise lines.error(number, str(error)) from None
+
+
+def read_start(words: list[float], degrees: bool) -> tuple[float, float, float]:
+    """The pose of --start X Y THETA."""
+    x, y, theta = words
+    return x, y, read_radians(theta, degrees=degrees)
 
 
 def measure_error(answer: Any, truth: Any, align: str | None) -> float | None:

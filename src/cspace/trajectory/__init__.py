@@ -10,13 +10,14 @@ from cspace.trajectory.limit_check import BindingLimit, TrajectoryCheck, Violati
 from cspace.trajectory.path import Path
 from cspace.trajectory.point_to_point import move_to
 from cspace.trajectory.polynomials import PolynomialTrajectory
+from cspace.trajectory.ros_files import from_ros, to_ros
 from cspace.trajectory.splines import b_spline, spline
 from cspace.trajectory.state_to_state import TrajectoryBatch, state_to_state
 from cspace.trajectory.time_parametrize import time_parametrize
 from cspace.trajectory.timed_motion import TimedMotion
 from cspace.trajectory.timed_path import SlowStretch, TimedPath
 from cspace.trajectory.trajectory import Extremes, JoinedTrajectory, Samples, Trajectory
-from cspace.trajectory.trajectory_files import from_csv, to_csv, to_ros
+from cspace.trajectory.trajectory_files import from_csv, to_csv
 
 __all__ = [
     "BindingLimit",
@@ -41,6 +42,7 @@ __all__ = [
     "fit_path",
     "from_csv",
     "from_json",
+    "from_ros",
     "line_path",
     "move_to",
     "pose_path",

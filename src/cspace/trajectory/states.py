@@ -60,7 +60,10 @@ def read_states(
 
 
 def read_magnitudes(value: ArrayLike | None, subject: str, out: Array) -> None:
-    """Write limits above zero into out (dof,); inf and None are none. One number is that of all joints."""
+    """Write limits above zero into out (dof,); inf and None are none. One number is that of all joints.
+
+    Finite limits beyond FARTHEST are refused: their cubes overflow.
+    """
     if value is None:
         out[...] = np.inf
         return
@@ -70,6 +73,12 @@ def read_magnitudes(value: ArrayLike | None, subject: str, out: Array) -> None:
     out[...] = row
     if not (out > 0.0).all():
         raise InputError(f"{subject} contains {float(row[~(row > 0.0)].flat[0]):g}; it must be above zero")
+    too_large = np.isfinite(out) & (out > FARTHEST)
+    if too_large.any():
+        raise InputError(
+            f"{subject} contains {float(out[too_large][0]):g}; it must not exceed {FARTHEST:g}; inf or None"
+            " is no limit"
+        )
 
 
 def read_lowest(value: ArrayLike | None, subject: str, highest: Array, out: Array) -> None:

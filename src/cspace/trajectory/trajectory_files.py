@@ -1,17 +1,16 @@
-"""Samples of trajectories as files: CSV, and JointTrajectory messages of ROS as YAML."""
+"""Samples of trajectories as CSV files."""
 
 from __future__ import annotations
 
 import csv
 import io
-import json
 import os
 from typing import Final
 
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import DescriptionError, InputError
+from cspace.errors import DescriptionError
 from cspace.files import path_of, read_text, write_text
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.time_scaling import connect_samples
@@ -22,9 +21,6 @@ QUANTITIES: Final = ("q", "qd", "qdd")
 
 LARGEST_FILE: Final = 2_000_000_000
 """Bytes of a file that is read."""
-
-NANOSECONDS: Final = 1_000_000_000
-"""In a second."""
 
 
 def to_csv(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float) -> None:
@@ -86,36 +82,3 @@ def _read_rows(rows: list[list[str]], columns: int, path: str) -> Array:
         if not np.isfinite(table[i]).all():
             raise DescriptionError("the numbers must be finite", path=path, line=i + 2)
     return table
-
-
-def to_ros(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float) -> None:
-    """Write samples as a message trajectory_msgs/JointTrajectory of ROS 2, in YAML.
-
-    Times are seconds and nanoseconds that strictly increase. rate [Hz]: of the points; the end is among them.
-    The file is complete or untouched.
-    Raises InputError for a trajectory without names of joints, and where the file cannot be written.
-    """
-    if trajectory.joint_names is None:
-        raise InputError("the trajectory has no names of joints, which ROS needs; pass joint_names=")
-    samples = trajectory.sample(rate)
-    ticks = np.rint(samples.times * NANOSECONDS).astype(np.int64)
-    kept = np.append(np.diff(ticks) > 0, True)  # the end replaces a point within the same nanosecond
-    lines = [f"joint_names: [{', '.join(json.dumps(n, ensure_ascii=False) for n in trajectory.joint_names)}]"]
-    lines.append("points:")
-    for i in np.flatnonzero(kept):
-        second, nanosecond = divmod(int(ticks[i]), NANOSECONDS)
-        for key, values in (
-            ("positions", samples.q),
-            ("velocities", samples.qd),
-            ("accelerations", samples.qdd),
-        ):
-            mark = "  - " if key == "positions" else "    "
-            lines.append(f"{mark}{key}: [{', '.join(map(_yaml_number, values[i].tolist()))}]")
-        lines.append(f"    time_from_start: {{sec: {second}, nanosec: {nanosecond}}}")
-    write_text(path_of(path), "\n".join(lines) + "\n")
-
-
-def _yaml_number(value: float) -> str:
-    """A number as readers of YAML 1.1 take it: with a point before an exponent."""
-    digits, sign, exponent = repr(value).partition("e")
-    return digits + (".0" if sign and "." not in digits else "") + sign + exponent

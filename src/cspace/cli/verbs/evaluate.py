@@ -23,7 +23,7 @@ ALIGNMENTS: Final = ("se2", "se3", "none")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    text = "trajectory: TUM, KITTI, or a log whose reference poses count"
+    text = "trajectory: TUM, KITTI, CSV, or a log whose reference poses count"
     parser.add_argument("estimate", metavar="EST", type=Path, help=f"estimated {text}")
     parser.add_argument("truth", metavar="TRUTH", type=Path, help=f"true {text}")
     add_option(parser, "--robot N", "which robot of an MRCLAM folder", int)

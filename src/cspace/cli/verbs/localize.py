@@ -11,7 +11,6 @@ from cspace.cli.arguments import (
     add_option,
     read_angle,
     read_length,
-    read_radians,
     read_seed,
 )
 from cspace.cli.drives import (
@@ -22,6 +21,7 @@ from cspace.cli.drives import (
     load_map,
     measure_error,
     print_drive,
+    read_start,
     say_errors,
 )
 from cspace.cli.exits import Exit
@@ -38,7 +38,7 @@ FILTERS: Final = ("ekf", "iekf", "ukf", "information", "mcl", "histogram")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    text = "log: CARMEN, MRCLAM (a folder), Victoria Park, TUM or KITTI"
+    text = "log: CARMEN, MRCLAM (a folder), Victoria Park, TUM, KITTI or CSV"
     parser.add_argument("log", metavar="LOG", type=Path, help=text)
     add_option(parser, "--robot N", "which robot of an MRCLAM folder", int)
     text = "a grid (.yaml, .map, .png, .pgm), or a text of landmarks NAME X Y (default: the map of the log)"
@@ -67,8 +67,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         world = None if args.map is None else load_map(args.map, args.resolution)
     more: dict[str, Any] = {} if args.seed is None else {"rng": args.seed}
     if args.start is not None:
-        x, y, theta = args.start
-        more["start"] = (x, y, read_radians(theta, degrees=args.deg))
+        more["start"] = read_start(args.start, args.deg)
     with show_progress(f"localizing by {args.filter}"):
         found: Any = localize(log, world, filter=args.filter, **more)
         answer = found.smoothed() if args.smooth and hasattr(found, "smoothed") else found

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.cli.arguments import add_option, read_seed
+from cspace.cli.arguments import add_degrees, add_option, read_angle, read_seed
 from cspace.cli.drives import (
     ROS_MAPS,
     add_pictures,
@@ -17,6 +17,7 @@ from cspace.cli.drives import (
     draw_drive,
     measure_error,
     print_drive,
+    read_start,
     say_length,
 )
 from cspace.cli.exits import Exit, UsageError
@@ -40,6 +41,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     text = "of logs: graph matches scans, ekf and fastslam see landmarks (default: graph)"
     add_option(parser, "--method", text, choices=METHODS, default="graph")
     add_option(parser, "--robot N", "which robot of an MRCLAM folder", int)
+    text = "the pose at which trajectory and map of a log begin (default: 0 0 0)"
+    add_option(parser, "--start X Y THETA", text, read_angle)
     text = "of pose graphs: how false loops are found and rejected"
     add_option(parser, "--robust", text, choices=ROBUST)
     add_option(parser, "--seed N", "the seed of fastslam", read_seed)
@@ -48,6 +51,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     text = "write the map of --method graph as a ROS map: FILE.yaml and an image FILE.pgm"
     add_option(parser, "--save-map FILE.yaml", text, Path)
     add_pictures(parser, "the graph before and after, or the drive")
+    add_degrees(parser)
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
@@ -74,8 +78,10 @@ def run_graph(args: argparse.Namespace, out: Output) -> int:
     """The optimum of a pose graph."""
     from cspace.localization import PoseGraph
 
-    if args.method != "graph" or not (args.animate is args.seed is args.save_map is None):
-        raise UsageError("a pose graph is optimized; --method, --animate, --save-map and --seed are for logs")
+    if args.method != "graph" or not (args.animate is args.seed is args.save_map is args.start is None):
+        raise UsageError(
+            "a pose graph is optimized; --method, --animate, --save-map, --seed and --start are for logs"
+        )
     with show_progress(f"reading {args.file}"):
         graph = PoseGraph.read(args.file)
     with show_progress("optimizing"):
@@ -155,8 +161,9 @@ def run_log(args: argparse.Namespace, out: Output) -> int:
     with show_progress(f"reading {args.file}"):
         log = read_log(args.file, robot=args.robot)
     check_method(args.method, log)
+    more: dict[str, Any] = {} if args.start is None else {"start": read_start(args.start, args.deg)}
     with show_progress(f"SLAM by {args.method}"):
-        answer: Any = slam(log, method=args.method, rng=args.seed)
+        answer: Any = slam(log, method=args.method, rng=args.seed, **more)
     error = measure_error(answer, log.truth, "se2")
     world: Any = getattr(answer, "map", None)
     with show_progress("drawing"):

@@ -84,7 +84,7 @@ def read_track(value: Any, subject: str) -> Track:
 
 
 def read_file(path: str, subject: str) -> Track:
-    """The poses of a file of TUM or KITTI, or the truth of a log."""
+    """The poses of a file of TUM, KITTI or CSV, or the truth of a log."""
     if not os.path.isdir(path):
         lines = read_lines(path)
         found = read_pose_file(lines)

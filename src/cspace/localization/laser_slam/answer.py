@@ -56,7 +56,7 @@ class LaserSlamStats:
 class LaserSlam:
     """A drive with its map; truthy if the robot is localised on it at the end.
 
-    times (n,) [s]: of the scans. poses (n, 3): x, y [m], θ [rad] of base, in the frame of the first one.
+    times (n,) [s]: of the scans. poses (n, 3): x, y [m], θ [rad] of base, in the frame of `start`.
     covariances (n, 3, 3) of ξ in T exp ξ, in base. graph: the PoseGraph with the poses as its start, the
     accepted loops after the edges between neighbouring scans. loops: every loop that was found. stages:
     trajectories by name, "odometry", "calibrated", "matched" and "closed", as far as each was done. scans:

@@ -13,6 +13,8 @@ import numpy.typing as npt
 from cspace._core import LaserSlamRun, TimeOver, set_deadline
 from cspace.arrays import Array, positive_number, truth_value
 from cspace.errors import InputError, InputTypeError, check_known
+from cspace.localization.checks import read_pose
+from cspace.localization.filters.rows import follow_rows
 from cspace.localization.graph import GraphAnswer, PoseGraph
 from cspace.localization.landmark_slam import LandmarkSlam, run_ekf_slam, run_fast_slam
 from cspace.localization.laser_slam.answer import LaserSlam, LaserSlamStats, LoopClosure
@@ -48,6 +50,7 @@ def slam(
     log: Log,
     *,
     method: str = "graph",
+    start: npt.ArrayLike = (0.0, 0.0, 0.0),
     resolution: float = 0.05,
     max_range: float = 20.0,
     loops: bool = True,
@@ -64,7 +67,9 @@ def slam(
     rejects what contradicts it (Agarwal et al. 2013). "ekf" and "fastslam" need readings of landmarks, as
     run_ekf_slam and run_fast_slam with their defaults.
 
-    resolution: of the fields and of the map [m]. max_range [m]: farther beams are not used. loops: whether
+    start: (3,) or (3, 3), the pose at which trajectory and map begin: for "graph" at the first scan that is
+    used, for the others at the first time of the odometry. The answer is in its frame. resolution: of the
+    fields and of the map [m]. max_range [m]: farther beams are not used. loops: whether
     loops are searched. calibrated: False to take the odometry as it is. rng: int, Generator or None, for
     "fastslam" alone. time_limit [s]: the answer is what was done until then. progress: called with the share
     that is done, 0 to 1. Raises InputError for a log without scans or odometry, or without any return.
@@ -73,17 +78,18 @@ def slam(
         raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
     check_known("method", method, METHODS)
     limit = None if time_limit is None else positive_number(time_limit, "time_limit", largest=inf)
+    first = read_pose(start)
     if method == "ekf":
-        return run_ekf_slam(log, time_limit=limit)
+        return run_ekf_slam(log, start=first, time_limit=limit)
     if method == "fastslam":
-        return run_fast_slam(log, rng=rng, time_limit=limit)
+        return run_fast_slam(log, start=first, rng=rng, time_limit=limit)
     drive = read_drive(log, positive_number(max_range, "max_range"))
     cell = positive_number(resolution, "resolution")
     check_bell(cell, SIGMA, f"resolution is {cell:g} m, and the bells of points {SIGMA:g} m; these may have")
     flags = truth_value(loops, "loops"), truth_value(calibrated, "calibrated")
     if not (progress is None or callable(progress)):
         raise InputTypeError(f"progress is a {type(progress).__name__}; give a function of a share, 0 to 1")
-    mapper = Mapper(drive, cell, *flags, progress)
+    mapper = Mapper(drive, first, cell, *flags, progress)
     mapper.run(inf if limit is None else limit)
     return mapper.report()
 
@@ -122,12 +128,19 @@ def read_drive(log: Log, max_range: float) -> Drive:
 
 
 class Mapper:
-    """The stages of laser SLAM, each kept."""
+    """The stages of laser SLAM, each kept, with the first pose at the origin; the report begins at start."""
 
     def __init__(
-        self, drive: Drive, resolution: float, loops: bool, calibrated: bool, progress: Progress | None
+        self,
+        drive: Drive,
+        start: Array,
+        resolution: float,
+        loops: bool,
+        calibrated: bool,
+        progress: Progress | None,
     ) -> None:
-        self.drive, self.resolution, self.loops, self.calibrated = drive, resolution, loops, calibrated
+        self.drive, self.start, self.resolution = drive, start, resolution
+        self.loops, self.calibrated = loops, calibrated
         self.tell = (lambda share: None) if progress is None else progress
         self.begun = perf_counter()
         self.stages: dict[str, TimedPoses] = {}
@@ -224,8 +237,12 @@ class Mapper:
         if self.answer is not None:
             poses = self.answer.poses
             covariances = covariances if self.covariances is None else self.covariances
-            graph = graph.with_poses(poses)
             self.stages["closed"] = TimedPoses(scans.times, poses, covariances)
+        poses = self.place(poses)
+        placed = {
+            name: TimedPoses(stage.times, self.place(stage.poses), stage.covariances)
+            for name, stage in self.stages.items()
+        }
         closures = self.list_loops(used, len(graph.poses) - 1)
         scores = self.core.edges[3][:, 0]
         accepted = sum(loop.accepted for loop in closures)
@@ -245,9 +262,9 @@ class Mapper:
             times=scans.times,
             poses=poses,
             covariances=covariances,
-            graph=graph,
+            graph=graph.with_poses(poses),
             loops=closures,
-            stages=self.stages,
+            stages=placed,
             scans=scans,
             scores=np.concatenate([[np.nan], scores]),
             status=status,
@@ -256,6 +273,11 @@ class Mapper:
             resolution=self.resolution,
             max_range=self.drive.max_range,
         )
+
+    def place(self, poses: Array) -> Array:
+        """Poses (n, 3) as they are if the first one is at start. Covariances and edges stay, as those of
+        poses are in base and those of edges between two."""
+        return follow_rows(self.start, poses) if self.start.any() else poses
 
     def judge(self, scores: Array, stats: LaserSlamStats) -> tuple[str, str]:
         """The status, and the same in words."""

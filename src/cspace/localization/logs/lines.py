@@ -40,13 +40,17 @@ class Lines:
         """The error of a line."""
         return LogError(text, path=self.path, line=line)
 
-    def numbers(self, line: int, words: Sequence[str], what: str) -> list[float]:
-        """Words as finite numbers; LogError for others."""
+    def numbers(
+        self, line: int, words: Sequence[str], what: str, factors: Sequence[float] | None = None
+    ) -> list[float]:
+        """Words as finite numbers, times a factor each; LogError for others."""
         try:
             found = [float(word) for word in words]
         except ValueError:
             bad = next(word for word in words if not is_number(word))
             raise self.error(line, f"{shorten(bad, 40)!r} is no number; {what} expected") from None
+        if factors is not None:
+            found = [value * factor for value, factor in zip(found, factors, strict=True)]
         if not np.isfinite(found).all():
             raise self.error(line, f"{what} must be finite, and one of them is not")
         largest = tolerances.LARGEST_LOGGED

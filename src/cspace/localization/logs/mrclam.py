@@ -15,12 +15,14 @@ from cspace.mobile import Odometry, TimedPoses
 
 ROBOTS = 5
 """Subjects from 1 to this are robots, the others landmarks."""
+MAP = "Landmark_Groundtruth"
+ENDINGS = (".dat", ".dat.gz")
 FILE = re.compile(r"Robot(\d+)_(Odometry|Measurement|Groundtruth)\.dat(\.gz)?")
 
 
 def is_mrclam(folder: Path) -> bool:
-    """Whether the folder has the map of landmarks of such a data set."""
-    return any((folder / f"Landmark_Groundtruth.dat{ending}").is_file() for ending in ("", ".gz"))
+    """Whether the folder has the barcodes or the map of landmarks of such a data set."""
+    return any(has_file(folder, name) for name in ("Barcodes", MAP))
 
 
 def list_robots(folder: Path) -> list[int]:
@@ -32,7 +34,8 @@ def read_mrclam(folder: Path, robot: int | None) -> Log:
     """The log of one robot, the first unless given, with landmarks and truth.
 
     Readings name the barcode that was seen; Barcodes.dat says whose it is. Readings of other robots and of
-    unknown barcodes are left out. The odometry is the commanded velocity. Source: Leung et al. 2011.
+    unknown barcodes are left out. The odometry is the commanded velocity. Without the file of its truth, or
+    that of the map, the log has none, and a note says so. Source: Leung et al. 2011.
     """
     numbers = list_robots(folder)
     if not numbers:
@@ -45,7 +48,6 @@ def read_mrclam(folder: Path, robot: int | None) -> Log:
     notes = [f"robot {chosen} of {', '.join(map(str, numbers))}"] if len(numbers) > 1 else []
     speeds = read_table(folder, f"Robot{chosen}_Odometry", 3, "time, forward velocity, angular velocity")
     seen = read_seen(folder, f"Robot{chosen}_Measurement")
-    truth = read_table(folder, f"Robot{chosen}_Groundtruth", 4, "time, x, y, orientation")
     if not len(speeds):
         raise LogError(f"Robot{chosen}_Odometry.dat has no rows", path=str(folder))
     zero = speeds[0, 0]
@@ -56,15 +58,27 @@ def read_mrclam(folder: Path, robot: int | None) -> Log:
     if repeated:
         notes.append(f"odometry: {repeated} stamps are repeated; the last velocity of each holds")
     readings, more = name_landmarks(folder, seen, zero)
-    truth_times, clock = mend_clock(truth[:, 0] - zero)
-    notes += more + [f"truth: {note}" for note in clock]
+    truth, of_truth = read_truth(folder, f"Robot{chosen}_Groundtruth", zero)
+    landmarks = read_landmarks(folder) if has_file(folder, MAP) else None
+    of_map = [f"map: the folder has no {MAP}.dat"] if landmarks is None else []
     return Log(
         Odometry.from_twists(times, twists),
         readings=readings,
-        landmarks=read_landmarks(folder),
-        truth=TimedPoses(truth_times, truth[:, 1:]),
-        notes=tuple(notes),
+        landmarks=landmarks,
+        truth=truth,
+        notes=tuple(notes + more + of_truth + of_map),
     )
+
+
+def read_truth(folder: Path, name: str, zero: float) -> tuple[TimedPoses | None, list[str]]:
+    """The true poses and notes; None where the folder has no file of them, or one without rows."""
+    if not has_file(folder, name):
+        return None, [f"truth: the folder has no {name}.dat"]
+    rows = read_table(folder, name, 4, "time, x, y, orientation")
+    if not len(rows):
+        return None, [f"truth: {name}.dat has no rows"]
+    times, clock = mend_clock(rows[:, 0] - zero)
+    return TimedPoses(times, rows[:, 1:]), [f"truth: {note}" for note in clock]
 
 
 def name_landmarks(folder: Path, seen: Array, zero: float) -> tuple[Readings, list[str]]:
@@ -86,7 +100,7 @@ def name_landmarks(folder: Path, seen: Array, zero: float) -> tuple[Readings, li
 def read_landmarks(folder: Path) -> Landmarks:
     """The map with the standard deviations of its points."""
     what = "subject, x, y and their standard deviations"
-    rows = read_names(folder, "Landmark_Groundtruth", 5, what)
+    rows = read_names(folder, MAP, 5, what)
     covariances = np.zeros((len(rows), 2, 2))
     covariances[:, 0, 0], covariances[:, 1, 1] = rows[:, 3] ** 2, rows[:, 4] ** 2
     return Landmarks(rows[:, 0].astype(np.int64), rows[:, 1:3], covariances)
@@ -117,9 +131,14 @@ def read_table(folder: Path, name: str, columns: int, what: str) -> Array:
     return find_lines(folder, name).table(columns, what)
 
 
+def has_file(folder: Path, name: str) -> bool:
+    """Whether the folder has a file of a name, plain or compressed."""
+    return any((folder / (name + ending)).is_file() for ending in ENDINGS)
+
+
 def find_lines(folder: Path, name: str) -> Lines:
     """The lines of a file of the folder, plain or compressed."""
-    for ending in (".dat", ".dat.gz"):
+    for ending in ENDINGS:
         if (folder / (name + ending)).is_file():
             return read_lines(str(folder / (name + ending)))
     raise LogError(f"there is no {name}.dat in the folder; it belongs to the data set", path=str(folder))

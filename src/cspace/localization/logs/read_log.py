@@ -12,6 +12,7 @@ from cspace.files import path_of
 from cspace.localization.log import Log
 from cspace.localization.logs import kitti
 from cspace.localization.logs.carmen import RECORDS, read_carmen
+from cspace.localization.logs.csv_poses import find_heading, read_csv
 from cspace.localization.logs.lines import Lines, is_number, read_lines
 from cspace.localization.logs.mrclam import FILE, is_mrclam, read_mrclam
 from cspace.localization.logs.tum import COLUMNS, read_tum
@@ -21,7 +22,7 @@ GRAPHS = ("VERTEX", "EDGE", "FIX")
 
 
 def read_log(path: str | os.PathLike[str], *, robot: int | None = None) -> Log:
-    """The log of a robot: CARMEN, MRCLAM, Victoria Park, TUM or KITTI, by its content; files may be gzips.
+    """The log of a robot: CARMEN, MRCLAM, Victoria Park, TUM, KITTI or CSV, by its content; gzips too.
 
     path: a file, or for MRCLAM the folder, or a file of one robot in it. robot: which robot of an MRCLAM
     folder, the first unless given. A log is read whole or not at all; `log.notes` says what was dropped or
@@ -34,7 +35,7 @@ def read_log(path: str | os.PathLike[str], *, robot: int | None = None) -> Log:
     if place.is_dir():
         if not is_mrclam(place):
             raise LogError(
-                "this is a folder without Landmark_Groundtruth.dat of MRCLAM; give the file of a log",
+                "this is a folder without Barcodes.dat of MRCLAM; give the file of a log",
                 path=name,
             )
         return read_mrclam(place, robot)
@@ -51,7 +52,10 @@ MOST_ROBOTS = 1000
 
 
 def read_by_content(lines: Lines) -> Log:
-    """The log of a file by its first line that is no comment."""
+    """The log of a file by its first line that is no comment, or by the heading of a table."""
+    heading = find_heading(lines)
+    if heading is not None:
+        return read_csv(lines, heading)
     number, words = next(lines.rows(), (0, [""]))
     if words[0] in ("ODOMETRY", "LANDMARK"):
         return read_victoria(lines)
@@ -66,7 +70,11 @@ def read_by_content(lines: Lines) -> Log:
     if not words[0]:
         raise LogError("the file has no lines", path=lines.path)
     shown: Any = shorten(" ".join(words), 40)
-    remedy = "; words are separated by blanks, numbers have points" if "," in words[0] else ""
+    remedy = (
+        "; a table needs a heading that names time, x, y and theta"
+        if "," in words[0] or ";" in words[0]
+        else ""
+    )
     raise lines.error(
-        number, f"{shown!r} begins no log of CARMEN, MRCLAM, Victoria Park, TUM or KITTI{remedy}"
+        number, f"{shown!r} begins no log of CARMEN, MRCLAM, Victoria Park, TUM, KITTI or CSV{remedy}"
     )
