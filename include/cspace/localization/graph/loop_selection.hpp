@@ -194,9 +194,9 @@ class LoopSelection {
         FactorWeights weights = optimizer_.weights();
         for (std::size_t k : group) weights.fixed[k] = 0;
         const double cost = equations.linearize(answer.state, options_.residual, weights, squares_);
-        if (!equations.solver().factor_matrix(equations.values())) return 0;
         step_ = equations.gradient();
-        equations.solver().solve(step_.data());
+        double* const side = step_.data();
+        if (!equations.solver().solve_matrix(equations.values(), nullptr, {&side, 1})) return 0;
         double decrease = 0;
         for (std::size_t k = 0; k < step_.size(); ++k) decrease += step_[k] * equations.gradient()[k];
         return cost_ - (cost - decrease);
