@@ -69,7 +69,7 @@ class LoopSelection {
 
   private:
     static constexpr std::size_t n = Space::freedom;
-    using JointCovariance = std::array<double, 4 * n * n>;  // of the poses of an edge, row by row
+    using PairCovariance = std::array<double, 4 * n * n>;  // of the poses of an edge, row by row
 
     bool is_doubted(std::size_t k) const { return !trusted_[k]; }
 
@@ -243,7 +243,7 @@ class LoopSelection {
     }
     // A block of the inverse, times a factor, where it is in the pattern.
     void read_block(int i, int j, std::size_t row, std::size_t column, double factor,
-                    JointCovariance& to) const {
+                    PairCovariance& to) const {
         std::array<double, n * n> block;
         if (i < 0 || j < 0 || !optimizer_.equations().solver().inverse_block(i, j, block.data())) return;
         for (std::size_t r = 0; r < n; ++r) {
@@ -251,22 +251,22 @@ class LoopSelection {
                 to[(row + r) * 2 * n + column + c] = factor * block[r * n + c];
         }
     }
-    JointCovariance read_covariance(std::size_t k) const {
-        JointCovariance S{};
+    PairCovariance read_covariance(std::size_t k) const {
+        PairCovariance S{};
         const int a = block_from(k), b = block_to(k);
         read_block(a, a, 0, 0, 1, S), read_block(a, b, 0, n, 1, S);
         read_block(b, a, n, 0, 1, S), read_block(b, b, n, n, 1, S);
         return S;
     }
     // Not below the joint covariance, whatever the correlation.
-    JointCovariance bound_covariance(std::size_t k) const {
-        JointCovariance S{};
+    PairCovariance bound_covariance(std::size_t k) const {
+        PairCovariance S{};
         read_block(block_from(k), block_from(k), 0, 0, 2, S);
         read_block(block_to(k), block_to(k), n, n, 2, S);
         return S;
     }
-    JointCovariance solve_covariance(std::size_t k) {
-        JointCovariance S = read_covariance(k);
+    PairCovariance solve_covariance(std::size_t k) {
+        PairCovariance S = read_covariance(k);
         const int a = block_from(k), b = block_to(k);
         if (a < 0 || b < 0) return S;
         auto& solver = optimizer_.equations().solver();
@@ -283,12 +283,12 @@ class LoopSelection {
     double measure_pull(const State& state, std::size_t k) const {
         return change_square(state, k, read_covariance(k), -1);
     }
-    double measure_rise(const State& state, std::size_t k, const JointCovariance& S) const {
+    double measure_rise(const State& state, std::size_t k, const PairCovariance& S) const {
         return change_square(state, k, S, 1);
     }
     // eᵀWe − sign gᵀ(Σ⁻¹ + sign A)⁻¹g of an edge, where A, g are its part of the equations; sign 1: what χ²
     // gains with it, −1: what it loses without it.
-    double change_square(const State& state, std::size_t k, const JointCovariance& S, double sign) const {
+    double change_square(const State& state, std::size_t k, const PairCovariance& S, double sign) const {
         const auto model = linearize_edge(graph_.edges[k], state, options_.residual);
         double A[2 * n][2 * n] = {}, g[2 * n] = {};
         for (std::size_t r = 0; r < n; ++r) {
