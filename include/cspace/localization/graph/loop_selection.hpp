@@ -32,7 +32,7 @@ inline constexpr double heavy_tail = 0.01;     // of true edges, that may exceed
 inline constexpr double belief = 0.05;         // in a scale of 1, in numbers per unknown one
 inline constexpr std::size_t least_group = 3;  // edges; smaller ones are found edge by edge
 inline constexpr int most_rounds = 100, most_cycles = 4;
-inline constexpr int tests_per_solve = 4;  // of groups, at most, for each factorisation until then
+inline constexpr int tests_per_solve = 16;  // of groups, at most, for each factorisation until then
 
 }  // namespace loop_tests
 
