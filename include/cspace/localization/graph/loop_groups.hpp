@@ -1,4 +1,5 @@
-// Groups of edges that measure about the same: both of their ends are near in the order of the poses.
+// Groups of edges that measure about the same: both of their ends are near in the order of the poses, and
+// their errors agree.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +15,10 @@ namespace cspace::localization {
 
 inline constexpr int group_gap = 3;  // poses between ends of neighbours; every other frame may lack a loop
 
-// The groups of edges (from, to), as lists of their numbers; the direction of an edge does not matter.
-inline std::vector<std::vector<std::size_t>> find_loop_groups(std::vector<std::pair<int, int>> edges) {
-    for (auto& [first, second] : edges) {
-        if (first > second) std::swap(first, second);
-    }
+// The groups of edges (from, to), as lists of their numbers. agree(a, b): whether two near ones do.
+template <class Agree>
+std::vector<std::vector<std::size_t>> find_loop_groups(const std::vector<std::pair<int, int>>& edges,
+                                                       const Agree& agree) {
     std::vector<std::size_t> order(edges.size()), root(edges.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::iota(root.begin(), root.end(), std::size_t(0));
@@ -36,7 +36,7 @@ inline std::vector<std::vector<std::size_t>> find_loop_groups(std::vector<std::p
             poll.step();
             const auto& other = edges[order[m]];
             if (other.first - edge.first > group_gap) break;
-            if (std::abs(other.second - edge.second) <= group_gap)
+            if (std::abs(other.second - edge.second) <= group_gap && agree(order[k], order[m]))
                 root[find_root(order[m])] = find_root(order[k]);
         }
     }

@@ -31,7 +31,8 @@ namespace loop_tests {
 inline constexpr double heavy_tail = 0.01;     // of true edges, that may exceed the limit
 inline constexpr double belief = 0.05;         // in a scale of 1, in numbers per unknown one
 inline constexpr std::size_t least_group = 3;  // edges; smaller ones are found edge by edge
-inline constexpr int most_rounds = 100, most_cycles = 4;
+inline constexpr int most_rounds = 100, most_cycles = 6;
+inline constexpr double same_scale = 0.9;   // of the last one: false edges made that larger
 inline constexpr int tests_per_solve = 16;  // of groups, at most, for each factorisation until then
 
 }  // namespace loop_tests
@@ -51,18 +52,21 @@ class LoopSelection {
           trusted_(trusted),
           limits_(limits),
           unknowns_(double(unknowns)),
-          was_dropped_(graph.edges.size(), 0) {}
+          was_dropped_(graph.edges.size(), 0),
+          was_alone_(graph.edges.size(), 0) {}
 
     // Rejects edges and groups that pull, the worst first, and takes back those that fit, until nothing
     // changes.
     RobustAnswer<Space> refine(RobustAnswer<Space> answer) {
         tests_left_ = std::ptrdiff_t(loop_tests::tests_per_solve) * optimizer_.stats().factorizations;
         use(answer, answer.is_used);
-        if (!invert_equations(answer)) return finish(std::move(answer));
-        answer.scale = std::min(answer.scale, find_scale(answer));
         for (int cycle = 0; cycle < loop_tests::most_cycles; ++cycle) {
+            if (!invert_equations(answer)) break;
+            const double scale = find_scale(answer);
+            if (cycle > 0 && scale > loop_tests::same_scale * answer.scale && !was_taken_) break;
+            answer.scale = std::min(answer.scale, scale);
             drop_pulling(answer);
-            if (!take_back(answer)) break;
+            was_taken_ = take_back(answer);
         }
         return finish(std::move(answer));
     }
@@ -113,7 +117,11 @@ class LoopSelection {
         const double mean =
             std::exp(numbers * std::log(cost_ / numbers) / (numbers + loop_tests::belief * unknowns_));
         if (pulls.empty()) return mean;
-        const auto above = std::ptrdiff_t(loop_tests::heavy_tail * double(pulls.size()));
+        // Edges that were dropped alone may be of the tail too.
+        double alone = 0;
+        for (std::size_t k = 0; k < was_alone_.size(); ++k) alone += was_alone_[k] && !answer.is_used[k];
+        const auto above =
+            std::ptrdiff_t(std::max(0.0, loop_tests::heavy_tail * (double(pulls.size()) + alone) - alone));
         std::nth_element(pulls.begin(), pulls.begin() + above, pulls.end(), std::greater<>());
         return std::max(mean, pulls[std::size_t(above)]);
     }
@@ -136,7 +144,8 @@ class LoopSelection {
             }
             if (worst.edges.empty()) return;
             std::vector<char> kept = answer.is_used;
-            for (std::size_t k : worst.edges) kept[k] = 0, ++was_dropped_[k];
+            for (std::size_t k : worst.edges)
+                kept[k] = 0, ++was_dropped_[k], was_alone_[k] = worst.edges.size() == 1;
             use(answer, std::move(kept));
         }
     }
@@ -160,7 +169,18 @@ class LoopSelection {
             if (!is_doubted(k) || !answer.is_used[k]) continue;
             numbers.push_back(k), ends.push_back({graph_.edges[k].from, graph_.edges[k].to});
         }
-        std::vector<std::vector<std::size_t>> groups = find_loop_groups(std::move(ends));
+        const auto error = [&](std::size_t k) {
+            return evaluate_edge(graph_.edges[k], answer.state, options_.residual).e;
+        };
+        // Half the square of a difference is χ² of one error.
+        std::vector<std::vector<std::size_t>> groups =
+            find_loop_groups(ends, [&](std::size_t a, std::size_t b) {
+                typename Space::Twist between = error(numbers[a]);
+                const typename Space::Twist other = error(numbers[b]);
+                for (std::size_t i = 0; i < n; ++i) between[i] -= other[i];
+                return weigh_residual(between, graph_.edges[numbers[a]].W) <=
+                       2 * answer.scale * limits_[numbers[a]];
+            });
         std::erase_if(groups, [](const auto& group) { return group.size() < loop_tests::least_group; });
         std::vector<std::pair<double, std::size_t>> order;
         for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -348,8 +368,10 @@ class LoopSelection {
     std::vector<char> pattern_;  // measurements that the equations are analysed for
     double cost_ = 0;            // χ² of the answer
     std::ptrdiff_t tests_left_ = 0;
+    bool was_taken_ = false;  // whether edges came back last
     std::vector<std::vector<std::size_t>> suspected_;
     std::vector<char> was_dropped_;  // how often
+    std::vector<char> was_alone_;    // whether dropped without a group
     std::vector<double> pulls_, squares_, step_;
 };
 

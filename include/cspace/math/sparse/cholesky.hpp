@@ -576,9 +576,9 @@ class SparseCholesky {
     std::vector<std::size_t> first_block_;  // of each column, and the number of blocks
     std::vector<Block> blocks_;
     std::size_t value_count_ = 0;
-    std::vector<std::size_t> panels_;                 // begin of each panel, and the numbers of all
-    std::vector<std::size_t> inverses_;               // the same of the inverse, where none share a place
-    std::vector<int> subtree_of_;                     // of each front whose panel shares its place, else −1
+    std::vector<std::size_t> panels_;    // begin of each panel, and the numbers of all
+    std::vector<std::size_t> inverses_;  // the same of the inverse, where none share a place
+    std::vector<int> subtree_of_;        // of each front whose panel shares its place, else −1
     std::vector<std::pair<std::size_t, std::size_t>> subtrees_;  // first front, and that after the last
     int resident_ = -1;                                          // subtree whose panels are there
     std::vector<std::size_t> scratch_, complements_;  // where a complement is made, and where it waits
