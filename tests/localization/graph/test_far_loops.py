@@ -36,8 +36,9 @@ def test_loops_far_from_dead_reckoning_are_kept():
 
 
 def make_street(rng: np.random.Generator, scale: float, *, groups: int) -> tuple[cs.PoseGraph, int]:
-    """Two rounds of a square, seen again at many places, and groups of false loops behind its edges that agree
-    within each group; the information of all is `scale` times the true one. Also the number of true edges.
+    """Two rounds of a square, each place seen again, and behind these edges groups of false loops that agree.
+
+    The information of all is `scale` times the true one. Also the number of true edges.
     """
     n, deviations = 240, np.array([0.02, 0.02, 0.01])
     truth = [np.eye(3)]
@@ -85,7 +86,7 @@ def test_true_loops_are_kept_where_there_are_no_false_ones():
 
 def test_no_kept_loop_pulls_more_than_its_limit_and_no_rejected_one_fits():
     for seed in range(4):
-        graph, true = make_street(np.random.default_rng(seed), 0.02, groups=1)
+        graph, _ = make_street(np.random.default_rng(seed), 0.02, groups=1)
         answer = graph.optimize(robust="dcs", start="given")
         limit = answer.rejected[0].limit
         rejected = np.array([loop.edge for loop in answer.rejected])
