@@ -159,7 +159,7 @@ class SolverOf : public GraphSolver {
             std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
                 return solver.count_kept(a) < solver.count_kept(b);
             })->scale;
-        const RobustAnswer<Space> best = solver.drop_pulling(
+        const RobustAnswer<Space> best = solver.select_loops(
             *std::min_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
                 return solver.truncated_cost(a, scale) < solver.truncated_cost(b, scale);
             }));

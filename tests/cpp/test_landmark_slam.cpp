@@ -241,17 +241,20 @@ TEST(an_update_that_was_interrupted_is_finished_by_the_next_call) {
     Slam whole({}, {0, 0, 0}, {0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.001});
     whole.update(all);
     Slam stopped = whole;
-    whole.update(some);
-    cspace::set_interrupt_check(interrupt);
-    calls_left = 0;
+    // Products are put off, so that the check comes in one of the next updates; that one uses no readings.
     bool was_stopped = false;
-    cspace::interrupts::next_check = {};
-    try {
-        stopped.update(some);
-    } catch (const Interrupted&) {
-        was_stopped = true;
+    for (int k = 0; k < 3; ++k) whole.update(some);
+    for (int k = 0; k < 3; ++k) {
+        cspace::set_interrupt_check(interrupt);
+        calls_left = 0;
+        cspace::interrupts::next_check = {};
+        try {
+            stopped.update(some);
+        } catch (const Interrupted&) {
+            was_stopped = true, --k;
+        }
+        cspace::set_interrupt_check(nullptr);
     }
-    cspace::set_interrupt_check(nullptr);
     CHECK(was_stopped);
     whole.predict({}, {}), stopped.predict({}, {});
     for (int j = 0; j < 1500; j += 7) {

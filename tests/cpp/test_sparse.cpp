@@ -93,9 +93,9 @@ Dense dense_inverse(Dense A) {
     return B;
 }
 
-void check_problem(const Problem& problem, check::Random& random) {
+void check_problem(const Problem& problem, check::Random& random, const cspace::PanelSharing& sharing) {
     const BlockGraph graph = cspace::make_block_graph(problem.sizes, problem.pairs);
-    cspace::SparseCholesky<> solver(graph);
+    cspace::SparseCholesky<> solver(graph, cspace::order_blocks(graph), {}, sharing);
     std::vector<int> order = solver.pattern().order;
     std::sort(order.begin(), order.end());
     for (int k = 0; k < int(order.size()); ++k) CHECK(order[std::size_t(k)] == k);
@@ -119,6 +119,14 @@ void check_problem(const Problem& problem, check::Random& random) {
     }
     solver.multiply(values.data(), x.data(), y.data());
     for (std::size_t k = 0; k < n; ++k) CHECK_NEAR(y[row[k]], b[k], 1e-9);
+    std::vector<double> z(n);
+    for (std::size_t k = 0; k < n; ++k) y[row[k]] = b[k], z[row[k]] = -2 * b[k];
+    double* const sides[] = {y.data(), z.data()};
+    CHECK(solver.solve_matrix(values.data(), nullptr, sides));
+    for (std::size_t k = 0; k < n; ++k) {
+        CHECK_NEAR(y[k], x[k], 1e-12);
+        CHECK_NEAR(z[k], -2 * x[k], 1e-12);
+    }
 
     solver.invert_pattern();
     for (int i = 0; i < int(problem.sizes.size()); ++i) {
@@ -141,6 +149,11 @@ void check_problem(const Problem& problem, check::Random& random) {
         double block[36];
         CHECK(solver.inverse_block(i, j, block));
     }
+}
+// With all panels kept, and with small subtrees that share one place.
+void check_problem(const Problem& problem, check::Random& random) {
+    for (std::size_t subtree : {std::size_t(0), std::size_t(50), std::size_t(500), std::size_t(1) << 20})
+        check_problem(problem, random, {0, subtree});
 }
 
 }  // namespace

@@ -5,53 +5,21 @@
 // measurements within the quantile of 99.9 % count, the others do not, and the graph is solved again until
 // nothing changes. The information of many files is far too small, so that false measurements would pass as
 // well; the quantile is scaled by χ² per degree of freedom of the measurements that count. Of several answers
-// that with the least truncated cost is the better one.
+// that with the least truncated cost is the better one. Its edges are then tested against each other.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
+#include "cspace/localization/graph/doubted_measurements.hpp"
 #include "cspace/localization/graph/initial_guess.hpp"
+#include "cspace/localization/graph/loop_selection.hpp"
 #include "cspace/localization/graph/optimizer.hpp"
 
 namespace cspace::localization {
-
-// Squared error that a true measurement of so many coordinates exceeds once in a thousand times.
-inline double quantile_999(int coordinates) {
-    constexpr double quantiles[] = {0, 10.828, 13.816, 16.266, 18.467, 20.515, 22.458};
-    return quantiles[coordinates];
-}
-
-template <class Space>
-std::vector<double> find_limits(const PoseGraph<Space>& graph) {
-    std::vector<double> limits(graph.edges.size(), quantile_999(Space::freedom));
-    for (const auto& seen : graph.sightings) {
-        int coordinates = 0;
-        for (std::size_t k = 0; k < Space::dimension; ++k)
-            coordinates += seen.W[k * (Space::dimension + 1)] > 0;
-        limits.push_back(quantile_999(coordinates));
-    }
-    return limits;
-}
-
-template <class Space>
-std::vector<char> find_trusted(const PoseGraph<Space>& graph) {
-    std::vector<char> trusted(graph.is_trusted);
-    trusted.insert(trusted.end(), graph.is_sighting_trusted.begin(), graph.is_sighting_trusted.end());
-    return trusted;
-}
-
-template <class Space>
-struct RobustAnswer {
-    GraphState<Space> state;
-    GraphStatus status = GraphStatus::stopped;
-    std::vector<char> is_used;  // by measurement
-    double scale = 1;           // of the limits of the squared errors
-    std::vector<double> squares;
-};
 
 template <class Space, class Fronts>
 class FalseLoopSolver {
@@ -161,23 +129,10 @@ class FalseLoopSolver {
         return cost;
     }
 
-    // Drops edges that only fit because they pull: without them χ² would fall by more than their limit. The
-    // worst one goes, and the rest is solved again, until none is left.
-    RobustAnswer<Space> drop_pulling(RobustAnswer<Space> answer) {
-        constexpr int most_rounds = 30;
-        optimizer_.weights().fixed.clear();
-        std::vector<char> kept = answer.is_used;
-        for (int round = 0; round < most_rounds; ++round) {
-            optimizer_.use_factors(kept);
-            const std::ptrdiff_t worst = find_pulling(answer);
-            if (worst < 0) break;
-            kept[std::size_t(worst)] = 0;
-            optimizer_.use_factors(kept);
-            answer.status = optimizer_.optimize(answer.state);
-            answer.is_used = is_used_ = kept;
-        }
-        measure_squares(graph_, answer.state, options_.residual, answer.squares);
-        return answer;
+    // Tests each edge and each group of edges of an answer against all others.
+    RobustAnswer<Space> select_loops(RobustAnswer<Space> answer) {
+        LoopSelection<Space, Fronts> selection(graph_, options_, optimizer_, trusted_, limits_, unknowns_);
+        return selection.refine(std::move(answer));
     }
 
     // How many doubted measurements an answer keeps, and how many there are.
@@ -196,83 +151,6 @@ class FalseLoopSolver {
     std::size_t count_doubted() const { return std::size_t(std::count(trusted_.begin(), trusted_.end(), 0)); }
 
   private:
-    // The doubted edge in use without which χ² falls most beyond its limit; −1: none.
-    std::ptrdiff_t find_pulling(const RobustAnswer<Space>& answer) {
-        auto& equations = optimizer_.equations();
-        equations.linearize(answer.state, options_.residual, {}, squares_);
-        if (!equations.solver().factor_matrix(equations.values())) return -1;
-        equations.solver().invert_pattern();
-        std::ptrdiff_t worst = -1;
-        double most = 1;  // of the limit
-        for (std::size_t k = 0; k < graph_.edges.size(); ++k) {
-            if (trusted_[k] || !equations.is_used(k)) continue;
-            const double share = measure_pull(answer.state, k) / (answer.scale * limits_[k]);
-            if (share > most) worst = std::ptrdiff_t(k), most = share;
-        }
-        return worst;
-    }
-    // What χ² loses without an edge: eᵀWe, and gᵀ(Σ⁻¹ − A)⁻¹g of its poses, where Σ is their covariance and
-    // A, g the edge's part of the equations.
-    double measure_pull(const State& state, std::size_t k) {
-        constexpr std::size_t n = Space::freedom;
-        const auto& numbers = optimizer_.equations().numbers();
-        const auto& solver = optimizer_.equations().solver();
-        const auto model = linearize_edge(graph_.edges[k], state, options_.residual);
-        const int a = numbers.pose[std::size_t(graph_.edges[k].from)];
-        const int b = numbers.pose[std::size_t(graph_.edges[k].to)];
-        double S[2 * n][2 * n] = {}, A[2 * n][2 * n] = {}, g[2 * n] = {};
-        std::array<double, n * n> block;
-        const auto put = [&](int i, int j, std::size_t row, std::size_t column) {
-            if (i < 0 || j < 0 || !solver.inverse_block(i, j, block.data())) return;
-            for (std::size_t r = 0; r < n; ++r) std::copy_n(block.data() + r * n, n, &S[row + r][column]);
-        };
-        put(a, a, 0, 0), put(a, b, 0, n), put(b, a, n, 0), put(b, b, n, n);
-        for (std::size_t r = 0; r < n; ++r) {
-            g[r] = model.ga[r], g[n + r] = model.gb[r];
-            for (std::size_t c = 0; c < n; ++c) {
-                A[r][c] = model.aa[r * n + c], A[n + r][n + c] = model.bb[r * n + c];
-                A[r][n + c] = A[n + c][r] = model.ab[r * n + c];
-            }
-        }
-        // y of (I − ΣA) y = Σg.
-        std::vector<double> M(4 * n * n), y(2 * n);
-        for (std::size_t r = 0; r < 2 * n; ++r) {
-            for (std::size_t c = 0; c < 2 * n; ++c) {
-                double sum = r == c;
-                for (std::size_t i = 0; i < 2 * n; ++i) sum -= S[r][i] * A[i][c];
-                M[r * 2 * n + c] = sum;
-                y[r] += S[r][c] * g[c];
-            }
-        }
-        if (!solve_general(M, y)) return 0;
-        double pull = model.square;
-        for (std::size_t r = 0; r < 2 * n; ++r) pull += g[r] * y[r];
-        return pull;
-    }
-    // Gauss elimination with row pivots; false for singular matrices.
-    static bool solve_general(std::vector<double>& M, std::vector<double>& y) {
-        constexpr double singular = 1e-12;
-        const std::size_t n = y.size();
-        for (std::size_t c = 0; c < n; ++c) {
-            std::size_t pivot = c;
-            for (std::size_t r = c + 1; r < n; ++r) {
-                if (std::fabs(M[r * n + c]) > std::fabs(M[pivot * n + c])) pivot = r;
-            }
-            if (!(std::fabs(M[pivot * n + c]) > singular)) return false;
-            for (std::size_t k = 0; k < n; ++k) std::swap(M[c * n + k], M[pivot * n + k]);
-            std::swap(y[c], y[pivot]);
-            for (std::size_t r = c + 1; r < n; ++r) {
-                const double factor = M[r * n + c] / M[c * n + c];
-                for (std::size_t k = c; k < n; ++k) M[r * n + k] -= factor * M[c * n + k];
-                y[r] -= factor * y[c];
-            }
-        }
-        for (std::size_t c = n; c-- > 0;) {
-            for (std::size_t k = c + 1; k < n; ++k) y[c] -= M[c * n + k] * y[k];
-            y[c] /= M[c * n + c];
-        }
-        return true;
-    }
     // The last pose of each measurement.
     std::vector<int> find_times() const {
         std::vector<int> times;

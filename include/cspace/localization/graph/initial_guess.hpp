@@ -52,9 +52,9 @@ class LinearGraph {
         }
     }
     bool solve() {
-        if (!solver_.factor_matrix(values_.data())) return false;
-        for (auto& side : sides_) solver_.solve(side.data());
-        return true;
+        std::vector<double*> sides;
+        for (auto& side : sides_) sides.push_back(side.data());
+        return solver_.solve_matrix(values_.data(), nullptr, sides);
     }
     SparseCholesky<Fronts>& solver() { return solver_; }
     std::vector<double>& values() { return values_; }

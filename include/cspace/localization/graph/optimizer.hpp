@@ -118,11 +118,10 @@ class GraphOptimizer {
     bool solve_step(const double* added) {
         ++stats_.factorizations;
         auto& solver = equations_->solver();
-        if (!solver.factor_matrix(equations_->values(), added)) return false;
         const auto& gradient = equations_->gradient();
         for (std::size_t k = 0; k < step_.size(); ++k) step_[k] = -gradient[k];
-        solver.solve(step_.data());
-        return true;
+        double* const side = step_.data();
+        return solver.solve_matrix(equations_->values(), added, {&side, 1});
     }
     static double inner(const std::vector<double>& a, const std::vector<double>& b) {
         double sum = 0;

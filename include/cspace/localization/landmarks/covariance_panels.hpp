@@ -21,65 +21,56 @@ constexpr std::size_t panel_offset(std::size_t panel) { return 8 * panel * (pane
 
 namespace cspace::localization::inline CSPACE_ISA {
 
-// The columns first to last − 1 of one panel of P += Σ X_k Y_kᵀ, of `rank` vectors that are `stride` numbers
-// apart.
-template <int rank>
-CSPACE_INLINE void add_to_panel(double* to, const double* X, const double* Y, std::ptrdiff_t stride,
-                                int first, int last) {
-    FrontPack x[rank];
-    for (int k = 0; k < rank; ++k) x[k] = load_pack(X + k * stride);
-    for (int c = first; c < last; ++c) {
-        FrontPack sum = load_pack(to + panel_rows * c);
-        for (int k = 0; k < rank; ++k) sum = mul_add(x[k], fill<FrontPack>(Y[k * stride + c]), sum);
-        store_pack(to + panel_rows * c, sum);
+// P += Σ X_k Y_kᵀ on four columns of so many panels in a row, of `rank` vectors that are `stride` numbers
+// apart. The numbers stay in registers while all vectors are added. X: at the rows of the first panel; Y: at
+// the columns; to: the columns of each panel.
+template <int panels>
+CSPACE_INLINE void add_to_tile(double* const (&to)[panels], const double* X, const double* Y,
+                               std::ptrdiff_t stride, int rank) {
+    FrontPack sum[panels][panel_rows];
+    for (int i = 0; i < panels; ++i) {
+        for (int c = 0; c < panel_rows; ++c) sum[i][c] = load_pack(to[i] + panel_rows * c);
     }
-}
-// Two panels in a row at once: each number of Y is read once for both.
-template <int rank>
-CSPACE_INLINE void add_to_two_panels(double* upper, double* lower, const double* X, const double* Y,
-                                     std::ptrdiff_t stride, int columns) {
-    FrontPack x[rank], z[rank];
-    for (int k = 0; k < rank; ++k) {
-        x[k] = load_pack(X + k * stride);
-        z[k] = load_pack(X + k * stride + panel_rows);
-    }
-    for (int c = 0; c < columns; ++c) {
-        FrontPack sum = load_pack(upper + panel_rows * c), next = load_pack(lower + panel_rows * c);
-        for (int k = 0; k < rank; ++k) {
-            const FrontPack y = fill<FrontPack>(Y[k * stride + c]);
-            sum = mul_add(x[k], y, sum), next = mul_add(z[k], y, next);
+    for (int k = 0; k < rank; ++k, X += stride, Y += stride) {
+        FrontPack x[panels];
+        for (int i = 0; i < panels; ++i) x[i] = load_pack(X + panel_rows * i);
+        for (int c = 0; c < panel_rows; ++c) {
+            const FrontPack y = fill<FrontPack>(Y[c]);
+            for (int i = 0; i < panels; ++i) sum[i][c] = mul_add(x[i], y, sum[i][c]);
         }
-        store_pack(upper + panel_rows * c, sum), store_pack(lower + panel_rows * c, next);
     }
-    add_to_panel<rank>(lower, X + panel_rows, Y, stride, columns, columns + panel_rows);
+    for (int i = 0; i < panels; ++i) {
+        for (int c = 0; c < panel_rows; ++c) store_pack(to[i] + panel_rows * c, sum[i][c]);
+    }
 }
-// The same on panel p, and on the next one where there are two.
-template <int rank>
-CSPACE_INLINE void add_to_panels(double* panels, int p, bool are_two, const double* X, const double* Y,
-                                 std::ptrdiff_t stride) {
-    double* upper = panels + panel_offset(std::size_t(p));
-    const int columns = panel_rows * (p + 1);
+// The same on all columns of the panels p to p + panels − 1, each of which has four more than the last.
+template <int panels>
+CSPACE_INLINE void add_to_panels(double* all, int p, const double* X, const double* Y, std::ptrdiff_t stride,
+                                 int rank) {
+    double* to[panels];
+    for (int i = 0; i < panels; ++i) to[i] = all + panel_offset(std::size_t(p + i));
     X += panel_rows * p;
-    if (are_two)
-        add_to_two_panels<rank>(upper, panels + panel_offset(std::size_t(p) + 1), X, Y, stride, columns);
-    else
-        add_to_panel<rank>(upper, X, Y, stride, 0, columns);
+    const int shared = panel_rows * (p + 1);
+    for (int c = 0; c < shared; c += panel_rows, Y += panel_rows) {
+        add_to_tile<panels>(to, X, Y, stride, rank);
+        for (int i = 0; i < panels; ++i) to[i] += panel_rows * panel_rows;
+    }
+    for (int more = 1; more < panels; ++more, Y += panel_rows) {
+        for (int i = more; i < panels; ++i) {
+            double* const one[1] = {to[i]};
+            add_to_tile<1>(one, X + panel_rows * i, Y, stride, rank);
+            to[i] += panel_rows * panel_rows;
+        }
+    }
 }
 
 // P += Σ X_k Y_kᵀ on the panels first to last − 1, of vectors padded with zeros to a multiple of four.
 CSPACE_INLINE void add_products(double* panels, int first, int last, const double* X, const double* Y,
                                 std::ptrdiff_t stride, int rank) {
-    constexpr int block = 4;
-    for (int p = first; p < last; p += 2) {
-        const bool are_two = p + 1 < last;
-        int k = 0;
-        for (; k + block <= rank; k += block)
-            add_to_panels<block>(panels, p, are_two, X + k * stride, Y + k * stride, stride);
-        const double *x = X + k * stride, *y = Y + k * stride;
-        if (rank - k == 3) add_to_panels<3>(panels, p, are_two, x, y, stride);
-        if (rank - k == 2) add_to_panels<2>(panels, p, are_two, x, y, stride);
-        if (rank - k == 1) add_to_panels<1>(panels, p, are_two, x, y, stride);
-    }
+    int p = first;
+    for (; p + 3 <= last; p += 3) add_to_panels<3>(panels, p, X, Y, stride, rank);
+    if (last - p == 2) add_to_panels<2>(panels, p, X, Y, stride, rank);
+    if (last - p == 1) add_to_panels<1>(panels, p, X, Y, stride, rank);
 }
 
 }  // namespace cspace::localization::inline CSPACE_ISA

@@ -62,6 +62,7 @@ class EkfSlam {
         if (readings.empty()) return outcomes_;
         ++counts_.updates;
         const bool named = readings[0].name >= 0;
+        if (!named) P_.apply_pending();  // all landmarks are read
         named ? match_names(readings) : associate_readings();
         for (std::size_t k = 0; k < pairs_.size(); k += most_at_once)
             correct(std::span(pairs_).subspan(k, std::min(most_at_once, pairs_.size() - k)));

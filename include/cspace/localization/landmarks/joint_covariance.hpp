@@ -1,8 +1,9 @@
 // The covariance of a pose and of all landmarks, in axes of the map: x, y, θ, then x, y of each landmark.
 //
 // Three parts: that of the pose, the three columns of the pose against all landmarks, and the landmarks in
-// panels. A prediction touches the first two; an update adds a product of low rank to all of them. The large
-// part of that is a kernel and may be interrupted: what is left of it is done before anything else.
+// panels. A prediction touches the first two; an update adds a product of low rank to all of them. Products
+// with the panels are put off until there are enough for a kernel; until then readers add them to the numbers
+// they read. The kernel may be interrupted: what is left of it is done before anything else.
 #pragma once
 
 #include <algorithm>
@@ -26,24 +27,27 @@ struct HeaderPanels {
     }
 };
 
-// P += Σ X_k Y_kᵀ with a symmetric sum: the part of the pose and the parts of the landmarks of each vector.
+// P += Σ X_k Y_kᵀ with a symmetric sum: the parts of the landmarks of each vector, those before `first` of
+// earlier updates, and the parts of the pose.
 struct LowRank {
-    int rank = 0;
+    int first = 0, rank = 0;
     std::size_t stride = 0;
     std::vector<Vector3> pose_x, pose_y;
     std::vector<double> x, y;
 
+    int all() const { return first + rank; }
     void reset(std::size_t padded) {
-        rank = 0, stride = padded, pose_x.clear(), pose_y.clear(), x.clear(), y.clear();
+        first = rank = 0, stride = padded, pose_x.clear(), pose_y.clear(), x.clear(), y.clear();
     }
+    void begin() { first += rank, rank = 0, pose_x.clear(), pose_y.clear(); }
     // Room for one more pair of vectors, filled with zeros.
     void append() {
         ++rank;
         pose_x.emplace_back(), pose_y.emplace_back();
-        x.resize(std::size_t(rank) * stride), y.resize(x.size());
+        x.resize(std::size_t(all()) * stride), y.resize(x.size());
     }
-    double* x_of(int k) { return x.data() + std::size_t(k) * stride; }
-    double* y_of(int k) { return y.data() + std::size_t(k) * stride; }
+    double* x_of(int k) { return x.data() + std::size_t(first + k) * stride; }
+    double* y_of(int k) { return y.data() + std::size_t(first + k) * stride; }
 };
 
 template <class Kernel>
@@ -66,7 +70,14 @@ class JointCovariance {
             return {other[0], other[2], other[1], other[3]};
         }
         const double* at = panels_.data() + entry(2 * i, 2 * j);
-        return {at[0], at[panel_rows], at[1], at[panel_rows + 1]};
+        Matrix2 found{at[0], at[panel_rows], at[1], at[panel_rows + 1]};
+        const double* x = change_.x.data() + 2 * i;
+        const double* y = change_.y.data() + 2 * j;
+        for (int k = 0; k < change_.all(); ++k, x += change_.stride, y += change_.stride) {
+            found[0] += x[0] * y[0], found[1] += x[0] * y[1];
+            found[2] += x[1] * y[0], found[3] += x[1] * y[1];
+        }
+        return found;
     }
 
     // The two columns of a landmark, of padded() numbers each.
@@ -79,6 +90,12 @@ class JointCovariance {
             const double* from = panels_.data() + panel_offset(p) + panel_rows * std::size_t(2 * j);
             for (std::size_t r = 0; r < panel_rows; ++r)
                 first[panel_rows * p + r] = from[r], second[panel_rows * p + r] = from[panel_rows + r];
+        }
+        for (int k = 0; k < change_.all(); ++k) {
+            const double* const x = change_.x.data() + std::size_t(k) * change_.stride;
+            const double* const y = change_.y.data() + std::size_t(k) * change_.stride + 2 * j;
+            for (std::size_t c = 0; c < change_.stride; ++c)
+                first[c] += x[c] * y[0], second[c] += x[c] * y[1];
         }
     }
 
@@ -99,6 +116,7 @@ class JointCovariance {
     }
     // A landmark seen from the pose: δl = δp + J arm δθ + n, with the covariance of n.
     void add_landmark(Vector2 arm, const Symmetric2& noise) {
+        apply_pending();
         const int j = landmarks_++;
         if (j % 2 == 0) {
             for (auto& column : cross_) column.resize(column.size() + panel_rows);
@@ -120,6 +138,7 @@ class JointCovariance {
     }
     // The last landmark takes the place of this one.
     void remove_landmark(int j) {
+        apply_pending();
         const int last = landmarks_ - 1;
         if (j < last) {
             std::vector<double> first(padded()), second(padded());
@@ -138,7 +157,9 @@ class JointCovariance {
     }
 
     LowRank& begin_update() {
-        change_.reset(padded());
+        constexpr int most_pending = 16;  // vectors; more cost readers more than the kernel gains
+        if (change_.stride != padded() || change_.all() >= most_pending) apply_pending();
+        change_.begin();
         return change_;
     }
     void apply_update() {
@@ -154,23 +175,30 @@ class JointCovariance {
             for (std::size_t j = 0; j < i; ++j)
                 pose_[3 * j + i] = pose_[3 * i + j] = (pose_[3 * i + j] + pose_[3 * j + i]) / 2;
         }
-        next_panel_ = 0;
-        finish_update();
     }
-    // What is left of an update that was interrupted.
+    // Adds the products that were put off.
+    void apply_pending() {
+        if (change_.all() > 0 && !is_applying_) next_panel_ = 0, is_applying_ = true;
+        finish_update();
+        change_.reset(padded());
+    }
+    // What is left of products whose addition was interrupted.
     void finish_update() {
+        if (!is_applying_) return;
         constexpr std::size_t numbers_per_look = 1 << 21;  // take some hundred microseconds
         const int end = int(change_.stride / panel_rows);
         while (next_panel_ < end) {
             int last = next_panel_ + 1;
             while (last < end && panel_offset(std::size_t(last)) - panel_offset(std::size_t(next_panel_)) <
-                                     numbers_per_look / std::size_t(std::max(change_.rank, 1)))
+                                     numbers_per_look / std::size_t(change_.all()))
                 ++last;
             Kernel::add(panels_.data(), next_panel_, last, change_.x.data(), change_.y.data(),
-                        std::ptrdiff_t(change_.stride), change_.rank);
+                        std::ptrdiff_t(change_.stride), change_.all());
             next_panel_ = last;
             if (next_panel_ < end) poll_interrupts();
         }
+        is_applying_ = false;
+        change_.reset(padded());
     }
 
   private:
@@ -180,6 +208,7 @@ class JointCovariance {
     std::vector<double> panels_;
     LowRank change_;
     int next_panel_ = 0;
+    bool is_applying_ = false;  // the panels before the next one have the products already
 
     static std::size_t entry(int row, int column) { return entry(std::size_t(row), std::size_t(column)); }
     static std::size_t entry(std::size_t row, std::size_t column) {
@@ -205,7 +234,6 @@ class JointCovariance {
             }
         }
         change_.reset(padded());
-        next_panel_ = int(padded() / panel_rows);
     }
 };
 

@@ -4,13 +4,15 @@
 //
 // The pattern is analysed once; matrices of it are then factored as often as needed. A front adds the blocks
 // of its columns and the Schur complements of its children, which wait on a stack, and is factored as a dense
-// matrix.
+// matrix. Half of the numbers of a large factor stand in small subtrees that take little time. They share one
+// place: a solve factors each of them again.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -62,13 +64,20 @@ class RawNumbers {
     std::size_t count_ = 0;
 };
 
+// Which panels share one place: those of subtrees with so many numbers at most, where all are more.
+struct PanelSharing {
+    std::size_t large = 48'000'000;  // numbers, 384 MB; factors of common graphs are smaller
+    std::size_t subtree = 1 << 19;   // numbers, 4 MB
+};
+
 template <class Fronts = HeaderFronts>
 class SparseCholesky {
   public:
-    SparseCholesky(const BlockGraph& graph, std::vector<int> order, const Amalgamation& rule = {})
+    SparseCholesky(const BlockGraph& graph, std::vector<int> order, const Amalgamation& rule = {},
+                   const PanelSharing& sharing = {})
         : factor_(analyze_pattern(graph, std::move(order), rule)) {
         place_values(graph);
-        place_panels();
+        place_panels(sharing);
         place_rows();
         place_targets();
         for (std::size_t s = 0; s < nodes(); ++s) place_runs(s);
@@ -80,7 +89,7 @@ class SparseCholesky {
     // The first row of a block in vectors, which have the order of the elimination.
     int row_of(int block) const { return factor_.starts[std::size_t(factor_.place[std::size_t(block)])]; }
     std::size_t value_count() const { return value_count_; }
-    std::size_t factor_count() const { return panels_.back(); }
+    std::size_t factor_count() const { return panels_.back(); }  // numbers that are kept
     std::size_t stack_count() const {
         return stack_peak_;
     }  // numbers beside the factor, while it is computed
@@ -96,20 +105,15 @@ class SparseCholesky {
         return {found->at, factor_.size(found->row), a < b};
     }
 
-    // Factors the matrix of these values, with `added` on its diagonal unless null. False where it is not
-    // positive definite; failed_block() then is near the reason.
+    // Factors the matrix of these values, with `added` on its diagonal unless null; both must stay until the
+    // last solve. False where it is not positive definite; failed_block() then is near the reason.
     bool factor_matrix(const double* values, const double* added = nullptr) {
-        numbers_.allocate(panels_.back());
-        stack_.allocate(stack_peak_);
-        InterruptPoll poll(1 << 4);
-        for (std::size_t s = 0; s < nodes(); ++s) {
-            poll.step();
-            assemble_front(s, values, added);
-            if (!factor_front(s)) {
-                failed_ = factor_.order[std::size_t(factor_.supernodes[s].first)];
-                return false;
-            }
-        }
+        return eliminate(values, added, {});
+    }
+    // Factors, and each x becomes A⁻¹ x, in the order of the elimination.
+    bool solve_matrix(const double* values, const double* added, std::span<double* const> sides) {
+        if (!eliminate(values, added, sides)) return false;
+        substitute_back(sides);
         return true;
     }
     int failed_block() const { return failed_; }
@@ -119,17 +123,10 @@ class SparseCholesky {
         InterruptPoll poll(1 << 6);
         for (std::size_t s = 0; s < nodes(); ++s) {
             poll.step();
-            gather_rows(s, x);
-            const Supernode& at = supernode(s);
-            Fronts::lower(panel(s), stride(s), at.pivots, local_.data());
-            scatter_rows(s, x, true);
+            restore_panel(s);
+            solve_lower_front(s, x);
         }
-        for (std::size_t s = nodes(); s-- > 0;) {
-            poll.step();
-            gather_rows(s, x);
-            Fronts::upper(panel(s), stride(s), supernode(s).pivots, local_.data());
-            scatter_rows(s, x, false);
-        }
+        substitute_back({&x, 1});
     }
 
     // y = A x for the values of a matrix, in the order of the elimination.
@@ -148,10 +145,11 @@ class SparseCholesky {
 
     // Computes the entries of the inverse on the pattern of the factor.
     void invert_pattern() {
-        inverse_.allocate(panels_.back());
+        inverse_.allocate(inverses_.back());
         std::vector<int> local(std::size_t(factor_.columns()));
         for (std::size_t s = nodes(); s-- > 0;) {
             poll_interrupts();
+            restore_panel(s);
             gather_inverse(s, local);
             invert_front(s);
         }
@@ -165,7 +163,7 @@ class SparseCholesky {
         if (offset < 0) return false;
         const int first =
             factor_.starts[std::size_t(column)] - factor_.starts[std::size_t(supernode(s).first)];
-        const double* const from = inverse_.data() + panels_[s];
+        const double* const from = inverse_.data() + inverses_[s];
         for (int r = 0; r < factor_.size(row); ++r) {
             for (int c = 0; c < factor_.size(column); ++c) {
                 const double value =
@@ -218,17 +216,15 @@ class SparseCholesky {
     }
     // Panels one after the other; complements on a stack, from which the parent removes those of its
     // children.
-    void place_panels() {
-        panels_.reserve(nodes() + 1);
+    void place_panels(const PanelSharing& sharing) {
+        share_panels(sharing);
         complements_.resize(nodes());
         scratch_.resize(nodes());
         std::vector<std::size_t> base(nodes(), 0);
         std::vector<char> has_child(nodes(), 0);
-        std::size_t at = 0, top = 0;
+        std::size_t top = 0;
         int tallest = 0;
         for (std::size_t s = 0; s < nodes(); ++s) {
-            panels_.push_back(at);
-            at += std::size_t(stride(s)) * std::size_t(supernode(s).pivots);
             const auto size = std::size_t(round_up(supernode(s).below));
             scratch_[s] = top;
             complements_[s] = has_child[s] ? base[s] : top;
@@ -239,8 +235,43 @@ class SparseCholesky {
             const auto parent = std::size_t(supernode(s).parent);
             if (!has_child[parent]) has_child[parent] = 1, base[parent] = complements_[s];
         }
-        panels_.push_back(at);
         local_.assign(std::size_t(tallest), 0.0);
+    }
+    std::size_t panel_size(std::size_t s) const {
+        return std::size_t(stride(s)) * std::size_t(supernode(s).pivots);
+    }
+    // Panels that share the place before all others, and where each stands.
+    void share_panels(const PanelSharing& sharing) {
+        std::vector<std::size_t> below(nodes(), 0), first(nodes());  // numbers and first node of each subtree
+        for (std::size_t s = 0; s < nodes(); ++s) first[s] = s;
+        inverses_.assign(1, 0);
+        for (std::size_t s = 0; s < nodes(); ++s) {
+            inverses_.push_back(inverses_.back() + panel_size(s));
+            below[s] += panel_size(s);
+            if (supernode(s).parent < 0) continue;
+            const auto parent = std::size_t(supernode(s).parent);
+            below[parent] += below[s], first[parent] = std::min(first[parent], first[s]);
+        }
+        panels_ = inverses_;
+        subtree_of_.assign(nodes(), -1);
+        if (inverses_.back() <= sharing.large) return;
+        std::size_t shared = 0;
+        for (std::size_t s = 0; s < nodes(); ++s) {
+            const int parent = supernode(s).parent;
+            const bool is_root = parent < 0 || below[std::size_t(parent)] > sharing.subtree;
+            if (below[s] > sharing.subtree || !is_root) continue;
+            for (std::size_t k = first[s]; k <= s; ++k) {
+                subtree_of_[k] = int(subtrees_.size());
+                panels_[k] = inverses_[k] - inverses_[first[s]];
+            }
+            subtrees_.push_back({first[s], s + 1});
+            shared = std::max(shared, below[s]);
+        }
+        std::size_t at = shared;
+        for (std::size_t s = 0; s < nodes(); ++s) {
+            if (subtree_of_[s] < 0) panels_[s] = std::exchange(at, at + panel_size(s));
+        }
+        panels_.back() = at;
     }
     void place_rows() {
         row_offsets_.reserve(factor_.rows.size());
@@ -309,6 +340,56 @@ class SparseCholesky {
         const auto found = std::lower_bound(begin, end, row);
         if (found == end || *found != row) return -1;
         return row_offsets_[std::size_t(found - factor_.rows.begin())];
+    }
+
+    // Factors all fronts, and substitutes forwards in each side.
+    bool eliminate(const double* values, const double* added, std::span<double* const> sides) {
+        numbers_.allocate(panels_.back());
+        stack_.allocate(stack_peak_);
+        values_ = values, added_ = added;
+        InterruptPoll poll(1 << 4);
+        for (std::size_t s = 0; s < nodes(); ++s) {
+            poll.step();
+            assemble_front(s, values, added);
+            if (!factor_front(s)) {
+                failed_ = factor_.order[std::size_t(factor_.supernodes[s].first)];
+                return false;
+            }
+            for (double* x : sides) solve_lower_front(s, x);
+        }
+        resident_ = int(subtrees_.size()) - 1;
+        return true;
+    }
+    void substitute_back(std::span<double* const> sides) {
+        InterruptPoll poll(1 << 6);
+        for (std::size_t s = nodes(); s-- > 0;) {
+            poll.step();
+            restore_panel(s);
+            for (double* x : sides) {
+                gather_rows(s, x);
+                Fronts::upper(panel(s), stride(s), supernode(s).pivots, local_.data());
+                scatter_rows(s, x, false);
+            }
+        }
+    }
+    void solve_lower_front(std::size_t s, double* x) {
+        gather_rows(s, x);
+        Fronts::lower(panel(s), stride(s), supernode(s).pivots, local_.data());
+        scatter_rows(s, x, true);
+    }
+    // Factors the subtree of a front again where another one has taken its place. The stack is free by then.
+    void restore_panel(std::size_t s) {
+        const int subtree = subtree_of_[s];
+        if (subtree < 0 || subtree == resident_) return;
+        resident_ = -1;
+        InterruptPoll poll(1 << 4);
+        for (std::size_t k = subtrees_[std::size_t(subtree)].first;
+             k < subtrees_[std::size_t(subtree)].second; ++k) {
+            poll.step();
+            assemble_front(k, values_, added_);
+            factor_front(k);
+        }
+        resident_ = subtree;
     }
 
     void assemble_front(std::size_t s, const double* values, const double* added) {
@@ -425,7 +506,7 @@ class SparseCholesky {
                 owner = factor_.owner[std::size_t(block)];
                 set_local_rows(std::size_t(owner), local);
             }
-            const double* const from = inverse_.data() + panels_[std::size_t(owner)];
+            const double* const from = inverse_.data() + inverses_[std::size_t(owner)];
             const auto step = std::size_t(stride(std::size_t(owner)));
             for (int c = 0; c < factor_.size(block); ++c, ++column) {
                 const double* const source = from + std::size_t(local[std::size_t(block)] + c) * step;
@@ -445,7 +526,7 @@ class SparseCholesky {
         const Supernode& at = supernode(s);
         const auto p = std::size_t(at.pivots), below = std::size_t(at.below), step = std::size_t(stride(s));
         const double* const L = panel(s);
-        double* const Z = inverse_.data() + panels_[s];
+        double* const Z = inverse_.data() + inverses_[s];
         std::fill_n(Z, step * p, 0.0);
         gain_.assign(below * p, 0.0);
         for (std::size_t k = p; k-- > 0;) {  // columns of G, the last first
@@ -495,7 +576,11 @@ class SparseCholesky {
     std::vector<std::size_t> first_block_;  // of each column, and the number of blocks
     std::vector<Block> blocks_;
     std::size_t value_count_ = 0;
-    std::vector<std::size_t> panels_;                 // begin of each panel, and the numbers of all
+    std::vector<std::size_t> panels_;    // begin of each panel, and the numbers of all
+    std::vector<std::size_t> inverses_;  // the same of the inverse, where none share a place
+    std::vector<int> subtree_of_;        // of each front whose panel shares its place, else −1
+    std::vector<std::pair<std::size_t, std::size_t>> subtrees_;  // first front, and that after the last
+    int resident_ = -1;                                          // subtree whose panels are there
     std::vector<std::size_t> scratch_, complements_;  // where a complement is made, and where it waits
     std::size_t stack_peak_ = 0;
     std::vector<int> children_, siblings_;
@@ -503,6 +588,7 @@ class SparseCholesky {
     std::vector<std::size_t> run_starts_;
     std::vector<Run> runs_;
     RawNumbers numbers_, stack_, inverse_;
+    const double *values_ = nullptr, *added_ = nullptr;  // of the matrix that was factored
     std::vector<double> local_, dense_, gain_;
     int failed_ = -1;
 };
