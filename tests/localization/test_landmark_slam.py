@@ -702,16 +702,18 @@ def twelve_landmarks(seed, most_range=5.0):
         field_of_view=float(rng.choice([4.0, 2 * np.pi])),
     )
     log = simulate(run, Landmarks(range(12), points), sensor=sensor, rng=seed)
-    return log, points, sensor
+    return log, sensor
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_missed_sightings_by_going_through_all(seed):
     from cspace.localization.landmark_slam.doubts import SURELY_SEEN, find_missed_share
 
-    log, points, sensor = twelve_landmarks(seed)
+    log, sensor = twelve_landmarks(seed)
     found = run_ekf_slam(log, sensor=sensor, start=log.truth.poses[0])
-    marks = Landmarks(np.append(found.landmarks.names, 99), np.concatenate([found.landmarks.points, [[4, 3]]]))
+    marks = Landmarks(
+        np.append(found.landmarks.names, 99), np.concatenate([found.landmarks.points, [[4, 3]]])
+    )
     share = find_missed_share(marks, found.poses, found.measured, found.readings, sensor)
     expected, missed = 0, 0
     for node in np.unique(found.measured):
@@ -764,7 +766,7 @@ def test_wrong_maps_of_simulated_drives_without_names_say_so_and_right_ones_do_n
 
 
 def test_a_heading_that_nobody_knows_makes_the_map_doubtful():
-    log, points, sensor = twelve_landmarks(3)
+    log, sensor = twelve_landmarks(3)
     vague = RandomWalk(0, 0, 0, 0, 1e-4, 4.0)
     found = run_ekf_slam(log, sensor=sensor, start=log.truth.poses[0], noise=vague)
     turned = np.sqrt((found.covariances[:, 2, 2] - found.covariances[0, 2, 2]).max())

@@ -89,7 +89,7 @@ def test_rays_are_judged_as_by_walking_along_them(seed):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_open_fields_weigh_what_rays_see_before_walls(seed):
-    """Ends in unknown cells count a half, beside known walls as much as those, and outside of the map, too."""
+    """Ends in unknown cells count a half, beside known walls as much as those, outside of the map, too."""
     rng = np.random.default_rng(seed)
     part = mapped_part(building(seed), rng)
     model = make_model(part, SCANNER)
@@ -270,4 +270,5 @@ def test_a_robot_whose_beams_go_through_walls_is_lost_however_well_they_end():
         assert monitor.is_crossing
     assert monitor.is_lost
     monitor.add(Judgement(0.95, 0.9), True)
-    assert not monitor.is_lost and not monitor.is_crossing
+    assert not monitor.is_lost
+    assert not monitor.is_crossing

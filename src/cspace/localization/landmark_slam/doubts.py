@@ -8,7 +8,6 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.localization.filters.rows import follow_rows
-
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes
 from cspace.localization.log import Ids, Landmarks
 from cspace.localization.sensors import RangeBearing, is_unlimited
@@ -111,8 +110,8 @@ def explain_doubt(
         )
     if not is_named and missed > MOST_MISSED:
         return (
-            f"of the landmarks within range {missed:.0%} were not seen (at most {MOST_MISSED:.0%} may be); some"
-            " probably are at wrong places, or on the map twice"
+            f"of the landmarks within range {missed:.0%} were not seen (at most {MOST_MISSED:.0%} may be);"
+            " some probably are at wrong places, or on the map twice"
         )
     twins = 0.0 if is_named else find_twin_share(landmarks, range_sigma)
     if twins > MOST_TWINS:

@@ -104,8 +104,8 @@ class ScanModel:
             self.table, self.grid = BeamTable(scanner), self.walls
 
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
-        """Weighs by the field or along the rays; the score is that of the field in both, where unknown cells are
-        open."""
+        """Weighs by the field or along the rays; the score is that of the field in both, with unknown
+        cells open."""
         ends = self.read_ends(measurement)
         if len(ends) < FEWEST_BEAMS:
             return None

@@ -262,7 +262,7 @@ class ParticleFilter(Running):
         return best
 
     def _search(self, scan: Any, judged: Judgement) -> Judgement:
-        """Puts half of the particles on the best other places, at the start all of them; the new judgement."""
+        """Puts half of the particles on the best other places, at the start all; the new judgement."""
         is_start, self.is_searching = self.is_searching, False
         bounds = (LEAST_SCORE, LEAST_SCORE) if is_start else self._monitor.bound_places(judged)
         poses = self.model.search(scan, *bounds, self._rng)
