@@ -696,3 +696,89 @@ def test_shares_of_doubt_by_brute_force():
     near = [any(0 < np.hypot(*(p - q)) < 0.6 for q in points) for p in points]
     assert find_twin_share(Landmarks(range(60), points), 0.2) == pytest.approx(np.mean(near))
     assert find_twin_share(Landmarks([], np.zeros((0, 2))), 0.2) == 0.0
+
+
+def twelve_landmarks(seed, most_range=5.0):
+    """A drive along twelve landmarks, and what it read of them."""
+    rng = np.random.default_rng(seed)
+    run = cs.navigation.follow([(0, 0), (9, 0), (9, 6), (0, 6), (0, 1)], vehicle=cs.Unicycle())
+    points = rng.uniform([-3, -3], [12, 9], (12, 2))
+    sensor = RangeBearing(
+        range_sigma=0.05,
+        bearing_sigma=0.01,
+        most_range=most_range,
+        mount=(0.2, 0.1, 0.3),
+        field_of_view=float(rng.choice([4.0, 2 * np.pi])),
+    )
+    log = simulate(run, Landmarks(range(12), points), sensor=sensor, rng=seed)
+    return log, sensor
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_missed_sightings_by_going_through_all(seed):
+    from cspace.localization.landmark_slam.doubts import SURELY_SEEN, find_missed_share
+
+    log, sensor = twelve_landmarks(seed)
+    found = run_ekf_slam(log, sensor=sensor, start=log.truth.poses[0])
+    marks = Landmarks(
+        np.append(found.landmarks.names, 99), np.concatenate([found.landmarks.points, [[4, 3]]])
+    )
+    share = find_missed_share(marks, found.poses, found.measured, found.readings, sensor)
+    expected, missed = 0, 0
+    for node in np.unique(found.measured):
+        T = cs.pose_2d(xytheta=found.poses[node]) @ cs.pose_2d(xytheta=sensor.mount)
+        seen = set(found.readings.landmark[found.measured == node])
+        for name, point in zip(marks.names, marks.points, strict=True):
+            x, y = (cs.inverse_pose_2d(T) @ [*point, 1.0])[:2]
+            is_near = np.hypot(x, y) < SURELY_SEEN * sensor.most_range
+            is_ahead = abs(np.arctan2(y, x)) < SURELY_SEEN * 0.5 * sensor.field_of_view
+            if is_near and (is_ahead or sensor.field_of_view == 2 * np.pi):
+                expected += 1
+                missed += name not in seen
+    assert expected > 100
+    assert share == pytest.approx(missed / expected)
+    assert share > found.stats.missed_share  # nobody saw the one added
+    unlimited = replace(sensor, most_range=np.inf)
+    assert find_missed_share(marks, found.poses, found.measured, found.readings, unlimited) == 0.0
+
+
+def random_drive(seed):
+    """A drive twice past one wall of a room of landmarks, and what a random sensor read of them."""
+    rng = np.random.default_rng(seed)
+    run = cs.navigation.follow([(0, 0), (9, 0), (9, 6), (0, 6), (0, 1), (9, 1)], vehicle=cs.Unicycle())
+    count = int(rng.integers(12, 30))
+    marks = Landmarks(range(count), rng.uniform([-3, -3], [12, 9], (count, 2)))
+    sensor = RangeBearing(rng.uniform(0.03, 0.15), rng.uniform(0.01, 0.04), most_range=rng.uniform(3, 6))
+    return simulate(run, marks, sensor=sensor, rng=seed), sensor
+
+
+def test_wrong_maps_of_simulated_drives_without_names_say_so_and_right_ones_do_not():
+    sure, wrong, doubted, right = 0, 0, 0, 0
+    for seed in range(300, 316):
+        log, sensor = random_drive(seed)
+        start = log.truth.poses[0]
+        named = rmse(run_fast_slam(log, sensor=sensor, start=start, rng=seed), log)
+        nameless = replace(log, readings=replace(log.readings, landmark=np.full(len(log.readings), -1)))
+        for found in (
+            run_ekf_slam(nameless, sensor=sensor, start=start),
+            run_fast_slam(nameless, sensor=sensor, start=start, rng=seed),
+        ):
+            error = rmse(found, log)
+            is_right, is_sure = error <= max(2 * named, 0.1), found.status == "localised"
+            wrong += not is_right and error > 0.5
+            sure += not is_right and error > 0.5 and is_sure
+            right += is_right
+            doubted += is_right and not is_sure
+    assert wrong >= 4
+    assert sure <= 0.2 * wrong
+    assert doubted <= 0.2 * right
+
+
+def test_a_heading_that_nobody_knows_makes_the_map_doubtful():
+    log, sensor = twelve_landmarks(3)
+    vague = RandomWalk(0, 0, 0, 0, 1e-4, 4.0)
+    found = run_ekf_slam(log, sensor=sensor, start=log.truth.poses[0], noise=vague)
+    turned = np.sqrt((found.covariances[:, 2, 2] - found.covariances[0, 2, 2]).max())
+    assert (found.status == "ambiguous") == (turned > 1.0)
+    assert turned > 1.0
+    assert "heading was uncertain" in found.reason

@@ -476,7 +476,7 @@ def test_a_step_of_the_histogram_filter_moves_mean_and_covariance():
 def test_the_threshold_is_learned_from_scores_of_the_log():
     monitor = ScoreMonitor(0.7)
     for _ in range(FIRST_SCORES):
-        monitor.add(0.65, True)
+        monitor.add(Judgement(0.65, 0.65), True)
     assert monitor.threshold == pytest.approx(0.8 * 0.65)
     assert not monitor.wants_search(Judgement(0.6, 0.6))
     assert monitor.wants_search(Judgement(0.5, 0.5))

@@ -10,9 +10,10 @@ import cspace as cs
 from cspace import _core
 from cspace.localization import LaserScanner, ParticleFilter, Scans, simulate
 from cspace.localization.filters.rows import relate_rows
-from cspace.localization.particles.evidence import NEW_SCORE, WALL_SLACK, RayJudge
-from cspace.localization.particles.models import make_model
+from cspace.localization.particles.evidence import NEW_SCORE, WALL_SLACK, RayJudge, open_unknown
+from cspace.localization.particles.models import Judgement, make_model
 from cspace.localization.particles.placing import lift_share
+from cspace.localization.particles.recovery import LOST_UPDATES, ScoreMonitor
 from cspace.maps import EvidenceGrid
 
 SCANNER = LaserScanner(most_range=15.0)
@@ -87,6 +88,27 @@ def test_rays_are_judged_as_by_walking_along_them(seed):
 
 
 @pytest.mark.parametrize("seed", range(4))
+def test_open_fields_weigh_what_rays_see_before_walls(seed):
+    """Ends in unknown cells count a half, beside known walls as much as those, outside of the map, too."""
+    rng = np.random.default_rng(seed)
+    part = mapped_part(building(seed), rng)
+    model = make_model(part, SCANNER)
+    opened = open_unknown(model.field, model.known)
+    assert (opened.scores[model.known] == model.field.scores[model.known]).all()
+    new = round(255 * NEW_SCORE)
+    np.testing.assert_array_equal(
+        opened.scores[~model.known], np.maximum(model.field.scores[~model.known], new)
+    )
+    assert opened.outside == new
+    poses = np.array([free_pose(part.to_grid(), rng) for _ in range(20)])
+    ends = rng.uniform(-6, 6, (40, 2))
+    seen = model.rays.look(ends, np.zeros(2), poses)
+    by_field = RayJudge(opened, None, None).look(ends, np.zeros(2), poses)
+    np.testing.assert_allclose(seen.ends, by_field.ends, atol=1 / 255)
+    assert open_unknown(model.field, None) is model.field
+
+
+@pytest.mark.parametrize("seed", range(4))
 def test_parts_of_the_evidence_add_up(seed):
     rng = np.random.default_rng(seed)
     grid = building(seed)
@@ -104,8 +126,8 @@ def test_parts_of_the_evidence_add_up(seed):
 
 
 def test_the_true_place_beats_others_along_rays_where_half_of_the_map_is_unknown():
-    """Ends alone prefer known walls elsewhere."""
-    by_rays, by_ends, trials = 0, 0, 0
+    """Ends alone prefer known walls elsewhere, less so where ends in unknown cells are open."""
+    by_rays, by_ends, by_open, trials = 0, 0, 0, 0
     rng = np.random.default_rng(8)
     angles = np.linspace(-np.pi / 2, np.pi / 2, 61)
     for trial in range(160):
@@ -122,10 +144,15 @@ def test_the_true_place_beats_others_along_rays_where_half_of_the_map_is_unknown
         others = model.rays.look(ends, np.zeros(2), false)
         trials += 1
         by_rays += seen.whole[0] > others.whole.max()
-        by_ends += seen.ends[0] > others.ends.max()
+        by_open += seen.ends[0] > others.ends.max()
+        walls = RayJudge(model.field, None, None)
+        by_ends += walls.look(ends, np.zeros(2), truth[None]).ends[0] > (
+            walls.look(ends, np.zeros(2), false).ends.max()
+        )
     assert trials >= 20
     assert by_rays > 0.6 * trials
     assert by_rays >= 2 * by_ends
+    assert by_rays > by_open > by_ends
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -208,3 +235,40 @@ def test_a_robot_that_drives_off_its_map_is_not_sent_elsewhere(seed):
         if known[: k + 1].all():
             assert np.hypot(*(pf.pose - poses[k])[:2]) < 0.6
     assert not [event for event in pf.events if event.kind == "search"]
+
+
+def test_searches_find_more_places_at_the_end_of_the_map_where_unknown_cells_are_open():
+    opened, shut, trials = 0, 0, 0
+    rng = np.random.default_rng(5)
+    angles = np.linspace(-np.pi / 2, np.pi / 2, 61)
+    for trial in range(200):
+        grid = building(trial)
+        model = make_model(mapped_part(grid, rng, 0.5), SCANNER)
+        truth = free_pose(grid, rng)
+        ranges = cs.maps.cast_rays(grid, truth[:2], truth[2] + angles)
+        ends = ranges[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        if not 0.3 < model.rays.look(ends, np.zeros(2), truth[None]).unknown[0] < 0.6:
+            continue
+        trials += 1
+        for field in (model.open, model.field):
+            found = cs.localization.search_pose(ends, field, most=8, least_score=0.2, margin=1.0)
+            is_found = bool((np.hypot(*(found.poses[:, :2] - truth[:2]).T) < 0.5).any())
+            opened += is_found and field is model.open
+            shut += is_found and field is model.field
+    assert trials >= 20
+    assert opened > 1.3 * shut
+
+
+def test_a_robot_whose_beams_go_through_walls_is_lost_however_well_they_end():
+    monitor = ScoreMonitor(0.7)
+    for _ in range(LOST_UPDATES):
+        assert not monitor.is_lost
+        through = Judgement(0.95, 0.2)
+        monitor.see(through)
+        assert monitor.wants_search(through)
+        monitor.add(through, True)
+        assert monitor.is_crossing
+    assert monitor.is_lost
+    monitor.add(Judgement(0.95, 0.9), True)
+    assert not monitor.is_lost
+    assert not monitor.is_crossing

@@ -25,7 +25,8 @@ class LandmarkSlamStats:
     cannot be made of them, or they lie outside of the odometry); landmarks removed again; how often the
     covariance was inflated, the search for pairings reached its most nodes, and particles were drawn anew;
     the mean NIS per degree of freedom of what was used; the largest share of rejected ones among fifty
-    readings in a row; seconds of wall time."""
+    readings in a row; the share of the landmarks within range that were not seen, 0 without a range; seconds
+    of wall time."""
 
     updates: int
     used: int
@@ -38,6 +39,7 @@ class LandmarkSlamStats:
     resamplings: int
     mean_nis: float
     rejected_share: float
+    missed_share: float
     seconds: float
 
 

@@ -14,7 +14,13 @@ from cspace.errors import InputError, InputTypeError, TimeLimitError
 from cspace.localization.filters.rows import adjoin_rows, carry_covariance, follow_rows, relate_rows
 from cspace.localization.filters.timeline import Timeline, lay_timeline
 from cspace.localization.landmark_slam.answer import LandmarkSlam, LandmarkSlamStats
-from cspace.localization.landmark_slam.doubts import explain_doubt, find_rejected_share
+from cspace.localization.landmark_slam.doubts import (
+    explain_doubt,
+    explain_turn,
+    find_gained_turn,
+    find_missed_share,
+    find_rejected_share,
+)
 from cspace.localization.landmark_slam.filters import EkfSlam, FastSlam, LandmarkFilter
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes, join_outcomes
 from cspace.localization.log import UNKNOWN, Log
@@ -128,7 +134,7 @@ def run_filter(
         lost,
         join_outcomes(parts),
         is_named=bool((rows[:, 0] >= 0).any()),
-        range_sigma=sensor.range_sigma,
+        sensor=sensor,
         seconds=perf_counter() - begun,
     )
 
@@ -169,7 +175,7 @@ def report_slam(
     lost: npt.NDArray[np.bool_],
     readings: ReadingOutcomes,
     is_named: bool,
-    range_sigma: float,
+    sensor: RangeBearing,
     seconds: float,
 ) -> LandmarkSlam:
     """The answer of a filter."""
@@ -188,10 +194,15 @@ def report_slam(
         resamplings=resamplings,
         mean_nis=float(readings.nis[readings.used].sum() / dof) if dof else float("nan"),
         rejected_share=find_rejected_share(readings),
+        missed_share=find_missed_share(slam.landmarks, poses, line.node, readings, sensor),
         seconds=seconds,
     )
     is_lost = bool(lost[-1]) or not used + created
-    doubt = explain_doubt(stats.rejected_share, is_named, slam.landmarks, range_sigma)
+    doubt = explain_doubt(
+        stats.rejected_share, stats.missed_share, is_named, slam.landmarks, sensor.range_sigma
+    )
+    if not doubt and method == "ekf":
+        doubt = explain_turn(find_gained_turn(covariances))
     return LandmarkSlam(
         times=line.times,
         poses=poses,

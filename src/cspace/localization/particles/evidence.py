@@ -18,11 +18,25 @@ WALL_SLACK: Final = 0.3
 """How far before an end [m] a wall may stand that it does not lie behind of: errors of pose and map."""
 
 
+def open_unknown(field: ByteField, known: npt.NDArray[np.bool_] | None) -> ByteField:
+    """A field in which ends in unknown cells count NEW_SCORE, unless a known wall is near them. Known cells
+    are those of a mask, all if it is None.
+
+    Where they count as little as ends in free cells, poses are preferred that turn what the map does not know
+    towards known walls: particles drift there, and a search finds such places alone.
+    """
+    if known is None:
+        return field
+    new = round(255 * NEW_SCORE)
+    scores = np.where(known, field.scores, np.maximum(field.scores, new)).astype(np.uint8)
+    return ByteField(scores, field.resolution, field.origin, outside=max(new, field.outside))
+
+
 class Evidence(NamedTuple):
     """What the rays of a scan say of poses (k,). score (0 … 1): the mean of the field at the ends of those
     beams that the map can judge. unknown: the share of the others, which end in unknown cells and cross no
-    wall. whole: the mean of all beams, NEW_SCORE for those, zero for beams through walls. ends: that of the
-    field at all ends."""
+    wall. whole: the mean of all beams, NEW_SCORE for those, zero for beams through walls. ends: that of all
+    ends, as if no beam crossed a wall."""
 
     score: Array
     unknown: Array
@@ -59,7 +73,7 @@ class RayJudge:
             np.where(unknown, 0.0, scores).sum(axis=1) / counted,
             unknown.mean(axis=1),
             np.where(unknown, NEW_SCORE, np.where(crossing, 0.0, scores)).mean(axis=1),
-            scores.mean(axis=1),
+            np.where(is_new, NEW_SCORE, scores).mean(axis=1),
         )
 
     def _read_cells(self, points: Array) -> tuple[Array, npt.NDArray[np.bool_]]:

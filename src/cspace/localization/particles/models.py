@@ -13,7 +13,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.localization.checks import suggest_map
 from cspace.localization.log import UNKNOWN, Landmarks, Readings, Scans
 from cspace.localization.particles.beam_model import BeamTable
-from cspace.localization.particles.evidence import Evidence, RayJudge
+from cspace.localization.particles.evidence import Evidence, RayJudge, open_unknown
 from cspace.localization.particles.thinning import read_ends, thin_ends
 from cspace.localization.scans.match import match_scan
 from cspace.localization.scans.search import search_pose
@@ -27,7 +27,7 @@ SEARCH_BEAMS: Final = 180
 """Beams with which the whole map is searched."""
 MOST_PLACES: Final = 3
 """Places found on the map that get particles."""
-CANDIDATES: Final = 8
+CANDIDATES: Final = 16
 """Places found by the ends of beams, of which their rays choose."""
 CANDIDATE_MARGIN: Final = 0.4
 """By how much their ends may score below those of the best one."""
@@ -92,7 +92,8 @@ class ScanModel:
             assert self.walls is not None
             self.field = make_field(self.walls, scanner.sigma, scanner.floor)
         field = self.field
-        self.map = _core.ScoreMap(field.scores, field.resolution, tuple(field.origin), field.outside)
+        self.open = opened = open_unknown(field, self.known)
+        self.map = _core.ScoreMap(opened.scores, field.resolution, tuple(field.origin), opened.outside)
         self.free = find_free_cells(grid, field)
         self.rays = RayJudge(field, self.walls, self.known)
         self.nats = -np.log(scanner.floor) / 255.0  # of a unit of a score
@@ -103,7 +104,8 @@ class ScanModel:
             self.table, self.grid = BeamTable(scanner), self.walls
 
     def weigh(self, cloud: _core.ParticleCloud, measurement: Any, share: float, threads: int) -> float | None:
-        """Weighs by the field or along the rays; the score is that of the field in both."""
+        """Weighs by the field or along the rays; the score is that of the field in both, with unknown
+        cells open."""
         ends = self.read_ends(measurement)
         if len(ends) < FEWEST_BEAMS:
             return None
@@ -153,7 +155,7 @@ class ScanModel:
     def match(self, measurement: Any, pose: Array, least: float, above: float) -> Array | None:
         """The best pose in a window, by correlation."""
         used, _ = self.choose_ends(self.read_ends(measurement))
-        found = match_scan(used, self.field, guess=pose, window=NEAR_WINDOW, least_score=0.0)
+        found = match_scan(used, self.open, guess=pose, window=NEAR_WINDOW, least_score=0.0)
         seen = self.look(measurement, used, found.pose[None])
         return found.pose if seen.score[0] >= least and seen.whole[0] > above else None
 
@@ -172,7 +174,7 @@ class ScanModel:
         bound = min(least, LEAST_OF_ENDS if self.known is not None else 1.0)
         poses = search_pose(
             used,
-            self.field,
+            self.open,
             most=CANDIDATES,
             least_score=bound,
             margin=CANDIDATE_MARGIN,

@@ -54,6 +54,9 @@ LISTED_SHARE: Final = 0.01
 """Share of the weight from which a mode is listed."""
 WIDEST: Final = (1.0, 0.5)
 """Standard deviations of the position [m] and heading [rad] beyond which the place is ambiguous."""
+LOOK_EVERY: Final = 5
+"""Measurements from one look along their rays to the next, while scores are usual: it takes a third of the
+time of an update."""
 FRESH_UPDATES: Final = 5
 """Measurements after a search that count wholly, even where the robot stands, and with more particles."""
 SEARCH_GROWTH: Final = 5
@@ -189,7 +192,7 @@ class ParticleFilter(Running):
         if used > 0 and not self.is_searching:
             self._weigh_modes(scan, used)
         judged = Judgement(score, score)
-        if not self.is_searching and (self._fresh or self._monitor.is_unusual(score)):
+        if not self.is_searching and self._wants_look(score):
             judged = self.model.judge(scan, self._best(), score)
             if self._monitor.is_unusual(judged.score) and judged.unknown < MOST_UNKNOWN:
                 judged = self._match(scan, judged)
@@ -199,12 +202,18 @@ class ParticleFilter(Running):
             self._monitor.see(judged)
         is_low = says_something and self._monitor.wants_search(judged)
         if self.recover and (self.is_searching or is_low):
-            self._search(scan, judged)
+            judged = self._search(scan, judged)
         elif share > 0:
             self._resample()
         if says_something:
-            self._monitor.add(judged.score, share > 0 and self.status == "localised")
+            self._monitor.add(judged, share > 0 and self.status == "localised")
         self._note_status()
+
+    def _wants_look(self, score: float) -> bool:
+        """Whether to look along the rays: ends behind walls may score as usual."""
+        monitor = self._monitor
+        is_due = self.updates % LOOK_EVERY == 0
+        return bool(self._fresh) or is_due or monitor.is_crossing or monitor.is_unusual(score)
 
     def _resample(self) -> None:
         cloud = self._cloud
@@ -252,8 +261,8 @@ class ParticleFilter(Running):
         best: Array = self._cloud.poses()[int(np.argmax(self._cloud.weights()))]
         return best
 
-    def _search(self, scan: Any, judged: Judgement) -> None:
-        """Puts half of the particles on the best other places, at the start all of them."""
+    def _search(self, scan: Any, judged: Judgement) -> Judgement:
+        """Puts half of the particles on the best other places, at the start all; the new judgement."""
         is_start, self.is_searching = self.is_searching, False
         bounds = (LEAST_SCORE, LEAST_SCORE) if is_start else self._monitor.bound_places(judged)
         poses = self.model.search(scan, *bounds, self._rng)
@@ -262,22 +271,23 @@ class ParticleFilter(Running):
         self._events.append(FilterEvent(self.updates, kind, judged.score, len(poses)))
         if not len(poses):
             self.is_searching = is_start
-            return
+            return judged
         cloud = self._cloud
         if is_start:
             P = np.diag(np.square(PLACE_DEVIATIONS))
             cloud.place(spread_poses(cloud, poses, P, self._places, self._grown))
-            self.model.weigh(cloud, scan, 1.0, self.threads)
+            self.score = self.model.weigh(cloud, scan, 1.0, self.threads) or judged.score
             self._found = None
             self._weigh_modes(scan, 1.0)
         else:
             kept = self._add_particles(poses, self._grown)
-            self.model.weigh(cloud, scan, 1.0, self.threads)
+            self.score = self.model.weigh(cloud, scan, 1.0, self.threads) or judged.score
             cloud.add_logs(np.where(np.arange(len(cloud)) < kept, 0.0, -CARRIED))
             self._weigh_modes(scan, 1.0)
             lift_share(cloud, kept, KEPT_SHARE)
         self._fresh = FRESH_UPDATES
         self._found = None
+        return self.model.judge(scan, self._best(), self.score)
 
     def _add_particles(self, poses: Array, least: int) -> int:
         """Replaces every other particle by one around poses (k, 3) in turn; how many were kept, which are

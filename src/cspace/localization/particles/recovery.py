@@ -22,9 +22,9 @@ LOST_UPDATES: Final = 3
 """Suspicious scores in a row after which the filter says that it is lost."""
 LOST_SHARE: Final = 0.8
 """Part of the threshold below which scores count for that."""
-LONGEST_WAIT: Final = 8
+LONGEST_WAIT: Final = 2
 """Most updates between two searches of the map that find nothing better."""
-GAINS: Final = (0.2, 0.1)
+GAINS: Final = (0.3, 0.1)
 """By how much the score of another place must exceed that of the best particle, over the number of suspicious
 scores in a row, and the least: being carried away is rare, so a first bad scan is not enough for a place that
 fits a bit better."""
@@ -36,9 +36,13 @@ UNKNOWN_GAIN: Final = 0.25
 """The same for each beam that the map cannot judge: few of the others fit elsewhere by chance."""
 MOST_UNKNOWN: Final = 0.6
 """Share of such beams from which a scan says nothing."""
-SHARE_OF_RAYS: Final = 0.5
-"""Part of the threshold below which the whole of a measurement is suspicious: most of its beams go through
+SHARE_OF_RAYS: Final = 0.65
+"""Part of the threshold below which the whole of a measurement is suspicious: many of its beams go through
 walls."""
+LOST_WHOLE: Final = 0.5
+"""Part of the threshold below which the whole counts for being lost: most of its beams go through walls."""
+DOUBTED_WHOLE: Final = 0.85
+"""Part of the threshold below which the rays of the next measurement are looked along, too."""
 PLACE_SHARE: Final = 0.9
 """The least score of another place later, over the threshold: places of maps that look alike fit by half."""
 
@@ -57,6 +61,7 @@ class ScoreMonitor:
         self.bad, self.low = 0, 0
         self._threshold, self._median = threshold, 0.0
         self._wait, self._pause = 0, 1
+        self.is_crossing = False  # whether some beams of the last measurement went through walls
 
     @property
     def threshold(self) -> float:
@@ -85,9 +90,12 @@ class ScoreMonitor:
         gain = max(GAINS[0] / max(self.low, 1), GAINS[1]) + add_doubt(judged)
         return self.least_of_places, max(LEAST_SCORE, judged.whole + gain)
 
-    def add(self, score: float, is_localised: bool) -> None:
-        """Takes note of the score of an update."""
-        self.bad = self.bad + 1 if score < LOST_SHARE * self._threshold else 0
+    def add(self, judged: Judgement, is_localised: bool) -> None:
+        """Takes note of the judgement of an update."""
+        score = judged.score
+        is_bad = score < LOST_SHARE * self._threshold or judged.whole < LOST_WHOLE * self._threshold
+        self.bad = self.bad + 1 if is_bad else 0
+        self.is_crossing = judged.whole < DOUBTED_WHOLE * self._threshold
         self._wait = max(self._wait - 1, 0)
         if is_localised and score >= self._threshold:
             self._pause = 1
