@@ -38,7 +38,7 @@ TEST(words_of_draws) {
 }
 
 TEST(rows_of_cells) {
-    Random random(5);
+    check::Random random{5};
     for (int count = 1; count < 60; ++count) {
         std::vector<std::vector<double>> given(3);
         for (auto& row : given)
