@@ -33,7 +33,7 @@ __all__ = [
     "whole_file",
     "write_text",
 ]
-__all__ += ["YAML_CONTENT", "YAML_MARKS", "YAML_QUOTED", "yaml_lines"]
+__all__ += ["yaml_lines"]
 
 DRAFTS: Final = count()
 """Numbers the drafts of this process, so that two threads never write into one."""
@@ -41,12 +41,8 @@ DRAFTS: Final = count()
 STEM: Final = 40
 """As much of a file's name as its draft repeats, so that the draft's name is no longer than is allowed."""
 
-YAML_QUOTED: Final = r'"(?:[^"\\]|\\.)*"|' + r"'(?:[^']|'')*'"
-"""A scalar of YAML in quotes."""
-YAML_CONTENT: Final = re.compile(rf"(?:(?<![^\s\[{{,:])(?:{YAML_QUOTED})|[^#]|(?<=\S)#)*")
+CONTENT: Final = re.compile(r"""(?:(?<!\S)'(?:[^']|'')*'|(?<!\S)"[^"]*"|[^#]|(?<=\S)#)*""")
 """The content of a line of YAML before its comment: a # that follows a blank and is outside quotes."""
-YAML_MARKS: Final = ("---", "...")
-"""Lines between documents."""
 
 FileError = DescriptionError | LogError | MapError | MeshError | RoadmapError
 """What is raised for a file that cannot be read."""
@@ -164,9 +160,9 @@ class YamlLine:
 def yaml_lines(document: str) -> Iterator[YamlLine]:
     """The lines of a YAML document, without comments and marks: of block mappings and lists alone."""
     for number, row in enumerate(document.splitlines(), 1):
-        found = YAML_CONTENT.match(row)
+        found = CONTENT.match(row)
         text = found.group().rstrip() if found else ""
-        if text.strip() in ("", *YAML_MARKS) or text.startswith("%"):
+        if text.strip() in ("", "---", "...") or text.startswith("%"):
             continue
         if entry := ENTRY.fullmatch(text):
             yield YamlLine(number, len(entry[1]), entry[2] or entry[3], entry[4] or "")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cspace.errors import DescriptionError, InputError
+from cspace.errors import DescriptionError, InputError, MissingExtraError
 from cspace.trajectory import from_ros, state_to_state, to_ros
 from cspace.trajectory.message_yaml import read_documents
 from localization.test_log_fuzz import mutate
@@ -116,32 +117,9 @@ def test_points_without_higher_derivatives(tmp_path, kinds, error):
     assert np.abs(found(t) - one(t)).max() < error
 
 
-SCALARS = st.one_of(
-    st.none(),
-    st.booleans(),
-    st.integers(-(2**53), 2**53),
-    st.floats(allow_nan=False),
-    st.text("abz09 .-_:#'\"[]{},&*!?|>%@~\\éλ", max_size=8),
-)
-VALUES = st.recursive(
-    SCALARS,
-    lambda inner: (
-        st.lists(inner, max_size=4) | st.dictionaries(st.text("abc xyz_09", min_size=1), inner, max_size=4)
-    ),
-    max_leaves=12,
-)
-
-
-@settings(max_examples=300, deadline=None, derandomize=True)
-@given(
-    st.dictionaries(st.text("abc_xyz", min_size=1), VALUES, min_size=1), st.sampled_from([None, True, False])
-)
-def test_values_are_read_as_by_another_reader(value, style):
-    """What PyYAML writes is read as PyYAML reads it; texts that it folds over lines in quotes are refused."""
-    yaml = pytest.importorskip("yaml")
-    text = yaml.safe_dump(value, default_flow_style=style, width=10**6, allow_unicode=True)
-    assert yaml.safe_load(text) == value
-    assert read_documents(text, "a.yaml") == [value]
+@pytest.mark.parametrize("text", ["1e-5", "1E5", "-2.e+3", "2.5e-300", "1.0e+2", "-0.0", "7"])
+def test_numbers_of_any_spelling(text):
+    assert read_documents(f"[{text}, a{text}]", "a.yaml") == [[float(text), f"a{text}"]]
 
 
 @settings(deadline=None, derandomize=True)
@@ -210,14 +188,22 @@ POINT = "- {positions: [1], velocities: [0], time_from_start: {sec: 0}}\n"
         ),
         (f"joint_names: [a]\npoints:\n{POINT.replace('velocities', 'accelerations')}", "need velocities"),
         (f"joint_names: [a, a]\npoints:\n{POINT}", "joint_names must differ: a, a"),
-        (f"joint_names: &names [a]\npoints:\n{POINT}", "yaml:1: anchors are not read"),
-        (f"joint_names: [a\npoints:\n{POINT}", "yaml:1: a bracket is not closed"),
-        (f"joint_names: [a]\n  points:\n{POINT}", "yaml:2: the indent fits no line"),
-        (f"joint_names: [a]\njoint_names: [a]\npoints:\n{POINT}", "yaml:2: .*second time"),
+        (f"joint_names: [a\npoints:\n{POINT}", r"yaml:\d: the file is no YAML"),
+        (f"joint_names: [a]\n  points:\n{POINT}", r"yaml:2: the file is no YAML"),
+        (f"joint_names: !!python/object:os.system [a]\npoints:\n{POINT}", r"yaml:1: the file is no YAML"),
+        ("[" * 100_000, "the file is no YAML|depth"),
     ],
 )
 def test_bad_messages_are_named(tmp_path, text, fault):
     path = tmp_path / "bad.yaml"
     path.write_text(text)
     with pytest.raises(DescriptionError, match=fault):
+        from_ros(path)
+
+
+def test_without_the_extra_its_name_is_said(tmp_path, monkeypatch):
+    path = tmp_path / "a.yaml"
+    to_ros(motion(), path, rate=10.0)
+    monkeypatch.setitem(sys.modules, "yaml", None)
+    with pytest.raises(MissingExtraError, match=r"cspace\[ros\]"):
         from_ros(path)

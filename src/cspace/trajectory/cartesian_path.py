@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -56,7 +56,7 @@ class CartesianPath:
         self.lengths: Array = np.array([piece.length for piece in pieces])
         self.breaks: Array = np.concatenate([[0.0], np.cumsum(self.lengths)])
         self.stops: Array = np.array(stops, dtype=float)
-        self._pieces: tuple[Array, ...] = tuple(
+        self._pieces: Any = tuple(
             np.array([getattr(piece, name) for piece in pieces], dtype=float) for name in PIECE_FIELDS
         )
 

@@ -69,6 +69,7 @@ def from_ros(path: str | os.PathLike[str]) -> PolynomialTrajectory:
     The inverse of to_ros; also what `ros2 topic echo` prints, and goals that hold such a message. Between
     points it is the quintic polynomial through positions, velocities and accelerations, the cubic one where
     there are no accelerations, and a straight line where there are positions alone, as ROS follows them.
+    Needs PyYAML (`pip install 'cspace[ros]'`).
 
     Returns a PolynomialTrajectory. Raises DescriptionError with the file, and the line or the point, for
     other contents, several messages, numbers that are missing or not finite, and times that do not increase

@@ -20,7 +20,9 @@ cspace doctor
 cspace doctor --json
 """
 
-EXTRAS: Final[Mapping[str, str]] = MappingProxyType({"rich": "cli", "matplotlib": "plot", "xacro": "xacro"})
+EXTRAS: Final[Mapping[str, str]] = MappingProxyType(
+    {"rich": "cli", "matplotlib": "plot", "pyyaml": "ros", "xacro": "xacro"}
+)
 """Optional packages and the extra that brings each."""
 
 ARMS: Final = ("ur5e", "puma560", "kr6_r900")

@@ -125,7 +125,8 @@ class HistogramFilter(Running):
             return None
         first = (np.array([x[0], y[0]]) - field.origin) / field.resolution
         headings = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-        return _core.LatticeScores(field.scores, field.outside, step, first, *self._free.shape, headings)
+        rows, columns = self._free.shape
+        return _core.LatticeScores(field.scores, field.outside, step, first, rows, columns, headings)
 
     def _put_start(self, start: npt.ArrayLike, covariance: npt.ArrayLike | None) -> None:
         pose = read_pose(start)
