@@ -39,6 +39,7 @@ OPTIONAL_IMPORTS = {
     "cli": {"rich"},
     "maps": {"PIL"},
     "plot": {"matplotlib", "PIL"},  # the latter comes with the former
+    "trajectory": {"yaml"},
     "lab": {"viser", "websockets"},
 }
 
