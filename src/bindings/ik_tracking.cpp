@@ -61,6 +61,12 @@ nb::tuple cheapest_chain(Matrix q, Row cost, Array<const std::size_t, nb::ndim<1
     return nb::make_tuple(chain.states, chain.cost);
 }
 
+void square_volumes(Array<const double, nb::shape<-1, 6, -1>> J, Array<double, nb::ndim<1>> squares) {
+    require_sizes(squares.shape(0) == J.shape(0));
+    const nb::gil_scoped_release release;
+    ik::square_volumes(J.data(), J.shape(0), J.shape(2), squares.data());
+}
+
 }  // namespace
 
 void bind_ik_tracking(nb::module_& m) {
@@ -68,4 +74,5 @@ void bind_ik_tracking(nb::module_& m) {
     m.def("_ik_path_rows", joint_path_rows,
           "Corrects q to the poses of a path; slope, bend and info take the results.");
     m.def("_ik_cheapest_chain", cheapest_chain, "The cheapest chain of states, one of each layer.");
+    m.def("_square_volumes", square_volumes, "Writes det(J Jᵀ) of Jacobians (n, 6, dof).");
 }

@@ -1,12 +1,14 @@
 #include "ik_tracking.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/tracking/along.hpp"
 #include "cspace/ik/tracking/cheapest_chain.hpp"
 #include "cspace/ik/tracking/follow.hpp"
 #include "cspace/math/interrupts.hpp"
+#include "cspace/math/linear.hpp"
 #include "kernels/ik.hpp"
 #include "robot_path.hpp"
 
@@ -59,6 +61,17 @@ void correct_joint_path(const JointPathRows& given) {
     if (given.count == 0) return;
     kernels::ik_path_rows({&on.path, on.number, dof, given.count, poses.data(), given.twists, given.rates,
                            given.q, given.slope, given.bend, given.info, poll_interrupts});
+}
+
+void square_volumes(const double* J, std::size_t rows, std::size_t dof, double* squares) {
+    for (std::size_t k = 0; k < rows; ++k, J += 6 * dof) {
+        double A[6][6];
+        for (std::size_t r = 0; r < 6; ++r)
+            for (std::size_t c = r; c < 6; ++c)
+                A[r][c] = std::inner_product(J + r * dof, J + (r + 1) * dof, J + c * dof, 0.0);
+        squares[k] = factor_ldl(A, 6) ? 1.0 : 0.0;
+        for (int r = 0; r < 6 && squares[k] > 0.0; ++r) squares[k] /= A[r][r];
+    }
 }
 
 LayerChain cheapest_chain(Layers layers) {

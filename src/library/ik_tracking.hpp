@@ -41,4 +41,7 @@ void correct_joint_path(const JointPathRows& rows);
 // As find_cheapest_chain, heeding signals.
 LayerChain cheapest_chain(Layers layers);
 
+// det(J Jᵀ) of Jacobians (rows, 6, dof), 0 where rounding leaves no more.
+void square_volumes(const double* J, std::size_t rows, std::size_t dof, double* squares);
+
 }  // namespace cspace::ik

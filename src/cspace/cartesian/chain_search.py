@@ -171,7 +171,8 @@ class ChainSearch:
         off = np.where(self.narrow, (q - self.middle) / self.half, 0.0) ** 2
         cost = LIMIT_WEIGHT * np.sum(off / (1.0 + CHAIN_AT_LIMIT - np.minimum(off, 1.0)), axis=1)
         J = self.robot.jacobian(q)
-        volume = np.linalg.det(J @ np.swapaxes(J, 1, 2)) if len(q) else np.zeros(0)
+        volume = np.empty(len(q))
+        _core._square_volumes(J, volume)
         best = volume.max(initial=0.0)
         if best > 0.0:
             cost += SINGULAR_WEIGHT * best / np.maximum(volume, CHAIN_LEAST_VOLUME * best)

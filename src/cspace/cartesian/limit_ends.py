@@ -26,6 +26,9 @@ def find_limit_end(path: Path, bounds: Limits) -> LimitEnd | None:
     A piece lies within the hull of its control points; where these leave the limits, the roots of the
     derivative tell whether the piece does.
     """
+    flat = path.control_points.reshape(-1, path.dof)
+    if (flat.max(axis=0) <= bounds.upper).all() and (flat.min(axis=0) >= bounds.lower).all():
+        return None
     found = [*_ends_above(path, 1.0, bounds.upper), *_ends_above(path, -1.0, -bounds.lower)]
     return min(found, default=None)
 

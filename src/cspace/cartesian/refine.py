@@ -190,10 +190,9 @@ class _Refiner:
         guess += 0.5 * (h * t * rest) ** 2 * bend
         piece, u = self.piece[a], self.u[a] + share[:, 0] * h[:, 0]
         T = self.path.poses_on(piece, u)
-        reached = self.robot.fk(guess)
-        error = np.empty((len(a), 2))
-        error[:, 0] = np.linalg.norm(reached[:, :3, 3] - T[:, :3, 3], axis=1)
-        error[:, 1] = np.linalg.norm(reached[:, :3, :3] - T[:, :3, :3], axis=(1, 2)) * np.sqrt(0.5)
+        off = self.robot.fk(guess)[:, :3] - T[:, :3]
+        squares = np.einsum("kij,kij->kj", off, off)
+        error = np.sqrt(np.stack([squares[:, 3], 0.5 * squares[:, :3].sum(axis=1)], axis=1))
         return error, (piece, u, T, guess)
 
     def _measure_sides(self, rows: Indices) -> Array:

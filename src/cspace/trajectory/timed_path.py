@@ -101,9 +101,10 @@ class TimedPath(Trajectory):
         self._speeds = np.sqrt(self.squared_speed)
         lengths = intervals.lengths(path)
         if len(squared_speed):
-            self._accelerations = np.diff(self.squared_speed) / (2.0 * lengths)
-            seconds = 2.0 * lengths / (self._speeds[:-1] + self._speeds[1:])
-            self._times = np.concatenate([[0.0], np.cumsum(seconds)])
+            twice = 2.0 * lengths
+            self._accelerations = (self.squared_speed[1:] - self.squared_speed[:-1]) / twice
+            self._times = np.zeros(len(squared_speed))
+            np.cumsum(twice / (self._speeds[:-1] + self._speeds[1:]), out=self._times[1:])
         else:
             self._times = np.zeros(1)
         super().__init__(path.dof, float(self._times[-1]), joint_names, reason)
