@@ -4,7 +4,7 @@ Usage: python benchmarks/path_timing.py [--paths 20] [--rounds 7] [--write]
 
 Random cubic splines of seven joints, |q̇| ≤ 2, |q̈| ≤ 8. For each contender the coarsest uniform grid whose
 duration is within 0.1 % of that of 20,000 intervals, then its automatic grid, then torque limits of
-the panda.
+the panda, then limits of jerk (80) along quintic splines.
 Processor time of one thread per call from Python, medians over rounds in turns; the limits that each
 answer exceeds at ten places of every interval stand beside it.
 """
@@ -31,9 +31,11 @@ sys.path.append(str(HERE.parent / "tests"))
 
 import cspace as cs  # noqa: E402
 from cspace.trajectory import Path as JointPath  # noqa: E402
-from oracles.path_timing import copp_call, duration, excess, toppra_call  # noqa: E402
+from oracles.path_timing import copp_call, copp_jerk_call, duration, excess, toppra_call  # noqa: E402
 
-VELOCITY, ACCELERATION = np.full(7, 2.0), np.full(7, 8.0)
+VELOCITY, ACCELERATION, JERK = np.full(7, 2.0), np.full(7, 8.0), np.full(7, 80.0)
+COPP_INTERVALS = 100
+"""Of copp-py under limits of jerk."""
 FINE = 20_000
 WITHIN = 1e-3
 GRIDS = (60, 100, 150, 200, 300, 400, 600, 800, 1200, 1600, 2400, 3200, 4800)
@@ -149,6 +151,34 @@ def measure_torque(rng: np.random.Generator, count: int, rounds: int) -> dict[st
     return {"us": float(us), "intervals": float(intervals)}
 
 
+def measure_jerk(rng: np.random.Generator, count: int, rounds: int) -> Rows:
+    """Ours on its default grid, copp-py on 100 intervals with one and three rounds of its solver."""
+    rows: list[Rows] = []
+    for _ in range(count):
+        path = cs.spline(rng.uniform(-1.5, 1.5, (5, 7)), degree=5)
+        limits = {"velocity": VELOCITY, "acceleration": ACCELERATION, "jerk": JERK}
+
+        def ours(path: JointPath = path, limits: Any = limits) -> Any:
+            return cs.time_parametrize(path, **limits)
+
+        grid = np.linspace(0.0, path.length, COPP_INTERVALS + 1)
+        calls: dict[str, Callable[[], Any]] = {"cspace": ours}
+        for number in (1, 3):
+            name = f"copp-py, {number} round{'s' * (number > 1)}"
+            calls[name] = copp_jerk_call(path, VELOCITY, ACCELERATION, JERK, grid, number)
+        times = time_calls(calls, rounds)
+        timed = ours()
+        intervals = {name: COPP_INTERVALS for name in calls} | {"cspace": len(timed.grid) - 1}
+        seconds = {name: float(call()[-1]) for name, call in calls.items() if name != "cspace"}
+        seconds["cspace"] = timed.duration
+        row: Rows = {}
+        for name in calls:
+            longer = seconds[name] / timed.duration - 1.0
+            row[name] = {"intervals": intervals[name], "us": times[name], "longer": longer}
+        rows.append(row)
+    return summarize(rows)
+
+
 def summarize(rows: list[Rows]) -> Rows:
     """Medians of numbers of intervals, times and durations; the largest excess of limits."""
     made: Rows = {}
@@ -182,6 +212,8 @@ def main() -> None:
                 )
     results["torque"] = measure_torque(rng, options.paths, options.rounds)
     print("torque", results["torque"])
+    results["jerk"] = measure_jerk(rng, options.paths, options.rounds)
+    print("jerk", json.dumps(results["jerk"]))
     if options.write:
         text = json.dumps(results, indent=1) + "\n"
         (HERE / "results/path_timing.json").write_text(text, encoding="utf-8")

@@ -1,6 +1,8 @@
 """Motions of seven joints from state to state beside Ruckig, from Python: benchmarks/results/trajectory.json.
 
-Usage: python benchmarks/trajectory.py [--problems 2000] [--rounds 9] [--write]. Needs `pip install ruckig`.
+Usage: python benchmarks/trajectory.py [--problems 2000] [--rounds 9] [--core FILE] [--write]. Needs
+`pip install ruckig`. FILE: what bench_states of benchmarks/cpp printed, built with -DCSPACE_BENCHMARKS=ON
+where CMake finds Ruckig.
 
 Random problems, the same for both: from rest to rest, and between moving states. Each contender sets its
 problem from arrays and computes the motion. Times are processor times of one thread, medians over rounds in
@@ -120,6 +122,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--problems", type=int, default=10000)
     parser.add_argument("--rounds", type=int, default=9)
+    parser.add_argument("--core", type=Path, help="what bench_states of benchmarks/cpp printed")
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args()
     results: dict[str, Any] = {
@@ -130,6 +133,9 @@ def main() -> None:
         "rest": measure_kind(given.problems, given.rounds, False),
         "moving": measure_kind(given.problems, given.rounds, True),
     }
+    if given.core is not None:
+        lines = map(json.loads, given.core.read_text(encoding="utf-8").splitlines())
+        results["core"] = {line["name"]: line["median"] for line in lines}
     print(json.dumps(results, indent=1))
     if given.write:
         (HERE / "results/trajectory.json").write_text(json.dumps(results, indent=1) + "\n")

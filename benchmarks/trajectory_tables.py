@@ -57,7 +57,14 @@ def timing_table(measured: Results) -> str:
             cells = [time_and_excess(peers.get(peer)) for peer in ("cspace", "copp-py", "toppra")]
             body.append([f"{count} waypoints, {label}", *cells])
     heading = ["timing of splines, µs (limits exceeded by)", "**cspace**", "copp-py", "toppra"]
-    return table(heading, body)
+    tables = [table(heading, body)]
+    if jerk := measured.get("jerk"):
+        rows = [
+            [name, f"{entry['intervals']:.0f}", f"{entry['us'] / 1e3:.1f}", f"{100 * entry['longer']:+.2f} %"]
+            for name, entry in jerk.items()
+        ]
+        tables.append(table(["quintic splines with limits of jerk", "intervals", "ms", "duration"], rows))
+    return "\n\n".join(tables)
 
 
 def cartesian_table(measured: Results) -> str:
@@ -97,6 +104,33 @@ def state_row(results: Results) -> Row:
     factors = [measured[kind]["ruckig_us"] / measured[kind]["ours_batch_us"] for kind in ("rest", "moving")]
     text = " / ".join(f"{factor:.2f}×" for factor in factors)
     return row(what, "≥ 3×", "≥ 8×", text, min(factors) >= 3.0, min(factors) >= 8.0)
+
+
+def core_row(results: Results) -> Row:
+    what = "the same in C++, one call against one of Ruckig's: rest / moving (with polynomials)"
+    measured = (results["trajectory"] or {}).get("core")
+    if not measured:
+        return row(what, "≤ 1×", "≤ 0.4×", "", None)
+    shares, made = (
+        [measured[f"{name}, {kind}"] / measured[f"ruckig, {kind}"] for kind in ("at rest", "moving")]
+        for name in ("states", "states with pieces")
+    )
+    text = " / ".join(f"{share:.2f}× ({whole:.2f}×)" for share, whole in zip(shares, made, strict=True))
+    return row(what, "≤ 1×", "≤ 0.4×", text, max(shares) <= 1.0, max(shares) <= 0.4)
+
+
+def jerk_row(results: Results) -> Row:
+    what = "timing with jerk limits, default grid, against copp-py at 100 intervals: time / duration"
+    measured = (results["path_timing"] or {}).get("jerk")
+    if not measured:
+        return row(what, "≤ 15 ms / not longer", "≤ 4 ms", "", None)
+    ms = measured["cspace"]["us"] / 1e3
+    peers = [entry for name, entry in measured.items() if name != "cspace"]
+    shorter = min(entry["longer"] for entry in peers)
+    fastest = min(entry["us"] for entry in peers) / 1e3
+    text = f"{ms:.1f} ms (copp-py {fastest:.0f}) / {100 * shorter:.1f} % shorter"
+    good = shorter >= 0.0
+    return row(what, "≤ 15 ms / not longer", "≤ 4 ms", text, good and ms <= 15.0, good and ms <= 4.0)
 
 
 def timing_row(results: Results) -> Row:
@@ -163,4 +197,14 @@ def move_row(results: Results) -> Row:
     return row(what, "≤ 25 ms", "≤ 8 ms", f"{ms:.1f} ms", ms <= 25.0, ms <= 8.0)
 
 
-ROWS = [state_row, timing_row, automatic_row, torque_row, line_row, redundant_row, move_row]
+ROWS = [
+    state_row,
+    core_row,
+    timing_row,
+    automatic_row,
+    torque_row,
+    jerk_row,
+    line_row,
+    redundant_row,
+    move_row,
+]

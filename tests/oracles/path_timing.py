@@ -56,6 +56,38 @@ def copp_call(path: Path, velocity: np.ndarray, acceleration: np.ndarray, grid: 
     return call
 
 
+def copp_jerk_call(
+    path: Path,
+    velocity: np.ndarray,
+    acceleration: np.ndarray,
+    jerk: np.ndarray,
+    grid: np.ndarray,
+    rounds: int = 1,
+) -> Peer:
+    """Durations of copp-py under limits of jerk: solved so many times around the last answer, at first that
+    without them. The derivatives of the path on the grid are prepared."""
+    import copp_py as copp
+
+    topp2, topp3 = copp.solver.topp2_ra, copp.solver.topp3_socp
+    derivatives = [path(grid, order) for order in range(4)]
+    length = len(grid)
+
+    def call() -> np.ndarray:
+        robot = copp.Robot(path.dof, capacity=length)
+        robot.append_s(grid)
+        robot.set_q(*derivatives[:3], 0, dddq=derivatives[3])
+        robot.add_velocity_limits(velocity, -velocity, start_idx_s=0, length=length)
+        robot.add_acceleration_limits(acceleration, -acceleration, start_idx_s=0, length=length)
+        robot.add_jerk_limits(jerk, -jerk, start_idx_s=0, length=length)
+        squares = np.asarray(topp2.solve(topp2.Problem(robot.constraints, (0, length - 1), (0.0, 0.0))))
+        for _ in range(rounds):
+            profile = topp3.solve(topp3.Problem(robot.constraints, squares))
+            squares = np.asarray(profile.a)
+        return np.asarray(copp.interpolation.s_to_t_topp3(grid, profile)[1])
+
+    return call
+
+
 def _ends(path: Path) -> str:
     return "natural" if np.abs(path([0.0, path.length], 2)).max() < 1e-9 else "not-a-knot"
 
