@@ -4,7 +4,7 @@ file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels
 list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
 # Kernels that work on packs of four numbers: an AVX-512 copy of them is no faster than that for AVX2
 # (docs/decisions/compiled-boundary.md). Their headers say CSPACE_NARROW_KERNEL.
-set(narrow_kernels math_fronts localization_correlation localization_landmarks localization_particles localization_search ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision search)
+set(narrow_kernels math_fronts localization_correlation localization_landmarks localization_particles localization_search ik_pose ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision search)
 list(TRANSFORM narrow_kernels PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/)
 list(TRANSFORM narrow_kernels APPEND .cpp)
 set(wide_files ${kernel_files})
@@ -28,6 +28,11 @@ function(add_kernels isa)
                                                            CSPACE_ISA=${isa} ${kernel_copies})
   target_link_libraries(cspace_kernels_${isa} PRIVATE cspace cspace_flags)
   target_sources(cspace_kernels PRIVATE $<TARGET_OBJECTS:cspace_kernels_${isa}>)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)  # as in src/bindings
+    target_precompile_headers(cspace_kernels_${isa} PRIVATE
+      <algorithm> <cmath> <cstring> <limits> <utility> <vector>
+      ${CMAKE_CURRENT_SOURCE_DIR}/include/cspace/math/registers.hpp)
+  endif()
   set_property(GLOBAL APPEND PROPERTY cspace_kernel_copies ${isa})
 endfunction()
 
@@ -66,6 +71,8 @@ if(has_wide_moves)
   foreach(kernel kinematics dynamics dynamics_simulation dynamics_floats dynamics_regressor dynamics_spatial)
     set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/${kernel}.cpp
                  APPEND PROPERTY COMPILE_OPTIONS -mmove-max=256 -mstore-max=256)
+    # A precompiled header brings options of its own.
+    set_property(SOURCE ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/${kernel}.cpp PROPERTY SKIP_PRECOMPILE_HEADERS ON)
   endforeach()
 endif()
 
@@ -78,28 +85,42 @@ if(NOT MSVC)
 endif()
 
 # The library: what calls the kernels and what needs no instruction set of its own, compiled once behind plain
-# functions. The bindings include these headers and no solver.
+# functions. The bindings include these headers and no solver. Only its searches and graphs gain from -O3.
+function(configure_library name)
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+  target_link_libraries(${name} PUBLIC cspace PRIVATE cspace_flags)
+  target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  target_compile_definitions(${name} PRIVATE ${kernel_copies})
+  if(NOT MSVC)
+    target_compile_options(${name} PRIVATE -ffunction-sections -fdata-sections ${ARGN})  # the linker drops what nobody calls
+  endif()
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)  # as in src/bindings
+    target_precompile_headers(${name} PRIVATE <algorithm> <array> <atomic> <cmath> <functional> <map> <memory> <mutex>
+                                              <optional> <queue> <span> <string> <utility> <vector>)
+  endif()
+endfunction()
 file(GLOB library_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/library/*.cpp)
-add_library(cspace_library STATIC ${library_files})
-set_target_properties(cspace_library PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
-target_link_libraries(cspace_library PUBLIC cspace_kernels PRIVATE cspace_flags)
-if(NOT MSVC)
-  target_compile_options(cspace_library PRIVATE -ffunction-sections -fdata-sections)  # so that the linker drops what nobody calls
-endif()
+set(search_files ${library_files})
+list(FILTER search_files INCLUDE REGEX "library/(localization|navigation)_")
+list(REMOVE_ITEM library_files ${search_files})
+add_library(cspace_searches OBJECT ${search_files})
+configure_library(cspace_searches)
+add_library(cspace_library STATIC ${library_files} $<TARGET_OBJECTS:cspace_searches>)
+configure_library(cspace_library -O2)
+target_link_libraries(cspace_library PUBLIC cspace_kernels)
+
 # Trees of samples are the same on every machine: none may round a product and a sum at once where others do not. Nor may
 # decisions about points, whose signs rest on every rounding as written; x86-64 has no such instruction in its baseline.
 if(NOT MSVC)
-  set(exact_files ${library_files})
+  set(exact_files ${library_files} ${search_files})
   list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation|collision|planning|shapes|localization_particles|localization_histogram)[_.]")
   set_property(SOURCE ${exact_files} APPEND PROPERTY COMPILE_OPTIONS -ffp-contract=off)
 endif()
-# GCC stops inlining in a file that has grown by two fifths, and a file of several searches soon has.
+# GCC stops inlining in a file that has grown by two fifths, and a file of several searches soon has. It takes this limit
+# from a precompiled header, whatever the file asks for.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  set(search_files ${library_files})
-  list(FILTER search_files INCLUDE REGEX "library/navigation_(grid|polygons)")
-  set_property(SOURCE ${search_files} APPEND PROPERTY COMPILE_OPTIONS --param=inline-unit-growth=300)
-endif()
-if(NOT CMAKE_CXX_COMPILER_LAUNCHER)  # as in src/bindings
-  target_precompile_headers(cspace_library PRIVATE <algorithm> <array> <atomic> <cmath> <functional> <map> <memory> <mutex>
-                                                   <optional> <queue> <span> <string> <utility> <vector>)
+  set(large_files ${search_files})
+  list(FILTER large_files INCLUDE REGEX "library/navigation_(grid|polygons)")
+  set_property(SOURCE ${large_files} APPEND PROPERTY COMPILE_OPTIONS --param=inline-unit-growth=300)
+  set_property(SOURCE ${large_files} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
 endif()

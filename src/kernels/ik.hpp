@@ -31,19 +31,22 @@ CSPACE_KERNEL(cspace::ik, void, ik_many,
               (const Arm& arm, const double* T, std::size_t n, std::size_t batch, int room, double* q,
                std::int64_t* count, FastPath* quick))
 
-// --- ik_pose.cpp ---------------------------------------------------------------------------------------
+// --- ik_general.cpp ------------------------------------------------------------------------------------
+// The arm points to the solver of its general part, in the copy that made it.
 CSPACE_KERNEL(cspace::ik, void, ik_make_arm, (const Chain& chain, Arm& arm))
+
+// --- ik_pose.cpp ---------------------------------------------------------------------------------------
 // Every solution of a pose, by whatever the arm needs; unconstrained: null, or values of the joints that the
 // goal leaves free.
-CSPACE_KERNEL(cspace::ik, void, ik_pose,
-              (const Arm& arm, const Posed& goal, const double* unconstrained, Solutions& out))
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_pose,
+                     (const Arm& arm, const Posed& goal, const double* unconstrained, Solutions& out))
 // The configuration that comes nearest to a pose; weight: of a radian, in lengths of the arm.
-CSPACE_KERNEL(cspace::ik, void, ik_nearest_miss,
-              (const Arm& arm, const Posed& goal, double weight, NearestPose& out))
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_nearest_miss,
+                     (const Arm& arm, const Posed& goal, double weight, NearestPose& out))
 // Every configuration of up to three joints that brings the tip to a point, and the nearest one if there is
 // none.
-CSPACE_KERNEL(cspace::ik, void, ik_position,
-              (const Chain& chain, const Vec3d& goal, bool with_nearest, PositionSolutions& out))
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_position,
+                     (const Chain& chain, const Vec3d& goal, bool with_nearest, PositionSolutions& out))
 
 // --- ik_locked.cpp: plans of a redundant arm and of an arm with joints locked ------------------------------
 CSPACE_NARROW_KERNEL(cspace::ik, void, ik_make_redundant,

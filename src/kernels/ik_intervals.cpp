@@ -4,6 +4,9 @@
 
 namespace cspace::ik::inline CSPACE_ISA {
 
+template void intervals_by_arcs(const Redundant&, const LockedArm&, int, const LimitArms&, const Posed&,
+                                Trail&, Intervals&);
+
 void ik_make_limit_arms(const Redundant& arm, LimitArms& out) { make_limit_arms(arm, out); }
 
 void ik_intervals(const Redundant& arm, const LockedArm& locked, int parameter, const LimitArms& arms,

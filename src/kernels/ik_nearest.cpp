@@ -4,6 +4,10 @@
 
 namespace cspace::ik::inline CSPACE_ISA {
 
+// In ik_intervals.cpp.
+extern template void intervals_by_arcs(const Redundant&, const LockedArm&, int, const LimitArms&,
+                                       const Posed&, Trail&, Intervals&);
+
 bool ik_nearest(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
     return nearest_configuration(arm, goal, seed, q);
 }

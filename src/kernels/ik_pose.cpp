@@ -4,13 +4,7 @@
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-template bool make_plan(Plan&, const Chain&);
-template bool find_self_motion(const Chain&, const Posed&, double, const double*, const PoseSvd&, double*);
-template int accept_solution(Solutions&, const Chain&, const Posed&, double, double*, int, int);
-template Arm make_arm(const Chain&, bool);
 template Solutions solve_pose(const Arm&, const Posed&, const double*);
-
-void ik_make_arm(const Chain& chain, Arm& arm) { arm = make_arm(chain); }
 
 void ik_pose(const Arm& arm, const Posed& goal, const double* unconstrained, Solutions& out) {
     out = solve_pose(arm, goal, unconstrained);

@@ -4,6 +4,10 @@
 
 #include "cspace/ik/redundancy/turning_points.hpp"
 
+namespace cspace::inline CSPACE_ISA {
+extern template void decompose(SmallSvd<6, ik::max_joints>&, bool);  // ik_self_motion.cpp
+}
+
 namespace cspace::ik::inline CSPACE_ISA {
 
 // ik_closed_form.cpp
@@ -12,12 +16,16 @@ extern template Branches<double> solve_closed_form(const Plan&, const Posed&, co
 // ik_general.cpp
 extern template bool make_general_arm(const Chain&, GeneralArm&);
 extern template bool renumber_general_arm(const GeneralArm&, const Chain&, GeneralArm&);
-// ik_pose.cpp
 extern template bool make_plan(Plan&, const Chain&);
+extern template Arm make_arm(const Chain&, bool);
+extern template PositionSolutions solve_position(const Chain&, const Vec3d&, bool);
+// ik_self_motion.cpp
+extern template CurveEnd follow_curve(const Chain&, const TipConstraint&, const double*, const double*,
+                                      VisitCurve, int, double);
 extern template bool find_self_motion(const Chain&, const Posed&, double, const double*, const PoseSvd&,
                                       double*);
 extern template int accept_solution(Solutions&, const Chain&, const Posed&, double, double*, int, int);
-extern template Arm make_arm(const Chain&, bool);
+// ik_pose.cpp
 extern template Solutions solve_pose(const Arm&, const Posed&, const double*);
 // ik_locked.cpp
 extern template LockedArm lock_joints(const Chain&, const int*, int, const double*, bool);

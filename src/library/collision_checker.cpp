@@ -6,8 +6,8 @@
 #include <new>
 
 #include "cspace/math/threads.hpp"
-#include "cspace/shapes/convex_distance.hpp"
 #include "kernels/collision.hpp"
+#include "shapes_distance.hpp"
 
 namespace cspace::collision {
 

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "cspace/math/interrupts.hpp"
-#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/distance.hpp"
+#include "shapes_distance.hpp"
 
 namespace cspace::collision {
 

@@ -6,9 +6,9 @@
 
 #include "cspace/collision/tree_gap.hpp"
 #include "cspace/math/interrupts.hpp"
-#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/triangle.hpp"
 #include "cspace/tolerances.hpp"
+#include "shapes_distance.hpp"
 
 namespace cspace::collision {
 

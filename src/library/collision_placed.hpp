@@ -11,8 +11,8 @@
 #include "cspace/collision/workspace.hpp"
 #include "cspace/kinematics/jacobian.hpp"
 #include "cspace/math/interrupts.hpp"
-#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/distance.hpp"
+#include "shapes_distance.hpp"
 
 namespace cspace::collision {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cspace/shapes/convex_distance.hpp"
 #include "cspace/shapes/distance.hpp"
 #include "cspace/tolerances.hpp"
+#include "shapes_distance.hpp"
 
 namespace cspace::collision {
 

@@ -9,6 +9,15 @@
 #include "cspace/localization/graph/spatial_space.hpp"
 #include "localization_fronts.hpp"
 
+namespace cspace {
+
+template BlockGraph make_block_graph(std::vector<int>, const std::vector<BlockPair>&);
+template std::vector<int> order_minimum_degree(const BlockGraph&);
+template std::vector<int> order_nested_dissection(const BlockGraph&);
+template SymbolicFactor analyze_pattern(const BlockGraph&, std::vector<int>, const Amalgamation&);
+
+}  // namespace cspace
+
 namespace cspace::localization {
 
 namespace {

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/isa.hpp"
 #include "cspace/shapes/convex.hpp"
 
 namespace cspace::shapes {
@@ -163,8 +164,8 @@ class Simplex {
 
 // The simplex whose nearest place is that of all differences, or which holds the origin. The search ends as
 // soon as the distance is known to be within `least`, or beyond `most`.
-inline Simplex find_nearest_simplex(const ConvexPair& pair, double least = 0,
-                                    double most = std::numeric_limits<double>::infinity()) {
+CSPACE_ONCE Simplex find_nearest_simplex(const ConvexPair& pair, double least = 0,
+                                         double most = std::numeric_limits<double>::infinity()) {
     constexpr int most_steps = 128;
     Simplex simplex;
     simplex.add(pair.find_farthest(pair.first_direction()));
@@ -317,7 +318,7 @@ class Polyhedron {
 };
 
 // Of the cores.
-inline ConvexDistance measure_cores(const Convex& a, const Convex& b) {
+CSPACE_ONCE ConvexDistance measure_cores(const Convex& a, const Convex& b) {
     const ConvexPair pair(a, b);
     const Simplex simplex = find_nearest_simplex(pair);
     const double length = norm(simplex.nearest());

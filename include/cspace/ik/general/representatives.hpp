@@ -130,11 +130,11 @@ inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, cons
         r.value = unconstrained ? unconstrained[r.joint] : 0;
         double start[max_joints], along[max_joints];
         for (int i = 0; i < chain.n; ++i) start[i] = out.q[k][i], along[i] = out.direction[k][i];
-        follow_self_motion(chain, constraint, start, along, steps_left,
-                           [&](int way, const double* q, const double* t, double) {
-                               offer_next(chain, constraint, r, way, q, t);
-                               mark_passed(chain, constraint, q, t, out, k + 1, dropped);
-                           });
+        const auto visit = [&](int way, const double* q, const double* t, double) {
+            offer_next(chain, constraint, r, way, q, t);
+            mark_passed(chain, constraint, q, t, out, k + 1, dropped);
+        };
+        follow_self_motion(chain, constraint, start, along, steps_left, visit);
         if (is_crossing(chain, constraint, r.q) && !is_crossing(chain, constraint, start)) continue;
         for (int i = 0; i < chain.n; ++i) {
             out.q[k][i] = wrap_joint(chain, i, r.q[i]);

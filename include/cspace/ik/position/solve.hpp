@@ -132,7 +132,7 @@ void find_solutions(const Chain& chain, const Vec3d& goal, bool measure_miss, Po
 
 // Moves the tip of the chain (n ≤ 3) to p, in base coordinates. Without a solution, the nearest configuration
 // is computed on request only, because that search costs fifty times the solution.
-inline PositionSolutions solve_position(const Chain& chain, const Vec3d& p, bool measure_miss = true) {
+CSPACE_ONCE PositionSolutions solve_position(const Chain& chain, const Vec3d& p, bool measure_miss = true) {
     PositionSolutions found;
     if (chain.n == 1) position::find_solutions<1>(chain, p, measure_miss, found);
     if (chain.n == 2) position::find_solutions<2>(chain, p, measure_miss, found);

@@ -7,6 +7,7 @@
 
 #include "cspace/ik/refine.hpp"
 #include "cspace/math/continuation.hpp"
+#include "cspace/math/function_ref.hpp"
 
 namespace cspace::ik {
 
@@ -120,8 +121,8 @@ struct Room {
 // Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q.
 // Newton's step is followed by others with the same Jacobian while each divides the error by ten. near_by: on
 // entry `at` belongs to a configuration nearby, whose Jacobian serves the first steps.
-inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q, PoseError& at,
-                       bool near_by = false) {
+CSPACE_NOINLINE inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q,
+                                       PoseError& at, bool near_by = false) {
     constexpr int most_steps = 12;
     constexpr double settled = tolerance::last_digits, fast = 0.1;
     bool measured = !near_by;
@@ -227,10 +228,10 @@ inline bool start_direction(const Chain& chain, const TipConstraint& constraint,
 // Follows the curve from `start` along `direction` (in joint units). Calls `visit` with every configuration,
 // its tangent and the second singular value there, the start first. If the curve closes, the start also comes
 // last, with its angles unwrapped.
-template <class Visit>
-CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const double* start,
-                      const double* direction, Visit&& visit, int most_steps = most_curve_steps,
-                      double longest = longest_step) {
+using VisitCurve = FunctionRef<void(const double*, const double*, double)>;
+CSPACE_ONCE CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const double* start,
+                                  const double* direction, VisitCurve visit,
+                                  int most_steps = most_curve_steps, double longest = longest_step) {
     constexpr double shortest = 1e-7;
     const int n = chain.n;
     double q[max_joints] = {}, t[max_joints] = {}, first[max_joints] = {};
@@ -276,10 +277,10 @@ CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const
 // The whole self-motion: in both directions from q, or once around if it closes. Calls `visit` with the
 // direction (0 or 1) and what `follow_curve` passes; each call uses one of the remaining steps. False if the
 // curve was lost, or the steps were used up, before its end.
-template <class Visit>
-bool follow_self_motion(const Chain& chain, const TipConstraint& constraint, const double* q,
-                        const double* direction, int& steps_left, Visit&& visit,
-                        double longest = longest_step) {
+using VisitSelfMotion = FunctionRef<void(int, const double*, const double*, double)>;
+inline bool follow_self_motion(const Chain& chain, const TipConstraint& constraint, const double* q,
+                               const double* direction, int& steps_left, VisitSelfMotion visit,
+                               double longest = longest_step) {
     constexpr int most_steps = 1000;
     bool whole = true;
     for (int way = 0; way < 2; ++way) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cspace/math/interrupts.hpp"
+#include "cspace/math/isa.hpp"
 
 namespace cspace {
 
@@ -44,7 +45,7 @@ inline void remove_repetitions(BlockGraph& graph) {
 }  // namespace block_graphs
 
 // The graph of blocks of these sizes with these pairs off the diagonal, in any order and direction.
-inline BlockGraph make_block_graph(std::vector<int> sizes, const std::vector<BlockPair>& pairs) {
+CSPACE_ONCE BlockGraph make_block_graph(std::vector<int> sizes, const std::vector<BlockPair>& pairs) {
     BlockGraph graph;
     graph.starts.assign(sizes.size() + 1, 0);
     graph.sizes = std::move(sizes);

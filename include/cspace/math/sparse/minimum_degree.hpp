@@ -299,7 +299,7 @@ class MinimumDegree {
     int tag_ = 0, weigh_tag_ = 0;
 };
 
-inline std::vector<int> order_minimum_degree(const BlockGraph& graph) {
+CSPACE_ONCE std::vector<int> order_minimum_degree(const BlockGraph& graph) {
     return MinimumDegree(graph).find_order();
 }
 

@@ -130,7 +130,7 @@ class NestedDissection {
     int deepest_ = 0;
 };
 
-inline std::vector<int> order_nested_dissection(const BlockGraph& graph) {
+CSPACE_ONCE std::vector<int> order_nested_dissection(const BlockGraph& graph) {
     return NestedDissection(graph).find_order();
 }
 

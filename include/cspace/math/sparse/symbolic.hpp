@@ -272,8 +272,8 @@ inline double count_factor(const BlockGraph& graph, const std::vector<int>& orde
 }
 
 // The pattern of the sparse Cholesky factor of a matrix of blocks, eliminated in about this order.
-inline SymbolicFactor analyze_pattern(const BlockGraph& graph, std::vector<int> order,
-                                      const Amalgamation& rule = {}) {
+CSPACE_ONCE SymbolicFactor analyze_pattern(const BlockGraph& graph, std::vector<int> order,
+                                           const Amalgamation& rule = {}) {
     using namespace symbolic;
     SymbolicFactor factor;
     std::vector<int> place = invert_order(order);
