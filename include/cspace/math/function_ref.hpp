@@ -16,8 +16,10 @@ template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
   public:
     template <class Function>
+        requires(!std::is_same_v<Function, FunctionRef>)
     FunctionRef(Function& function)
-        : object_(const_cast<void*>(static_cast<const void*>(std::addressof(function)))), call_([](void* object, Arguments... arguments) -> Result {
+        : object_(const_cast<void*>(static_cast<const void*>(std::addressof(function)))),
+          call_([](void* object, Arguments... arguments) -> Result {
               return (*static_cast<Function*>(object))(arguments...);
           }) {}
     Result operator()(Arguments... arguments) const { return call_(object_, arguments...); }

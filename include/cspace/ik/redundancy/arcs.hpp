@@ -312,8 +312,7 @@ inline double far_to_follow(const Redundant& arm, const Posed& goal) {
 
 // The intervals of joint `parameter`, which `locked` locks. trail: working memory.
 CSPACE_ONCE void intervals_by_arcs(const Redundant& arm, const LockedArm& locked, int parameter,
-                                   const LimitArms& arms, const Posed& goal, Trail& trail,
-                                   Intervals& out) {
+                                   const LimitArms& arms, const Posed& goal, Trail& trail, Intervals& out) {
     LimitPoints points;
     find_limit_points(arm, arms, goal, -1, points);
     out.count = 0;
