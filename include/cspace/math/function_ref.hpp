@@ -2,7 +2,6 @@
 // compiled once, not once per caller. It does not own what it refers to.
 #pragma once
 
-#include <memory>
 #include <type_traits>
 
 #include "cspace/math/isa.hpp"
@@ -15,10 +14,9 @@ class FunctionRef;
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
   public:
-    template <class Function>
-        requires(!std::is_same_v<Function, FunctionRef>)
+    template <class Function, class = std::enable_if_t<!std::is_same_v<Function, FunctionRef>>>
     FunctionRef(Function& function)
-        : object_(const_cast<void*>(static_cast<const void*>(std::addressof(function)))),
+        : object_(const_cast<void*>(static_cast<const void*>(&function))),
           call_([](void* object, Arguments... arguments) -> Result {
               return (*static_cast<Function*>(object))(arguments...);
           }) {}
