@@ -89,3 +89,26 @@ def test_a_film_and_a_picture_of_a_motion(tmp_path):
     for name, magic in (("a.gif", b"GIF8"), ("a.png", b"\x89PNG")):
         assert cspace(f"{words} --plot {tmp_path / name}").code == 0
         assert (tmp_path / name).read_bytes()[:4] == magic
+
+
+def test_the_heading_of_waypoints_gives_the_order_of_joints(tmp_path):
+    robot = cs.load_robot("panda")
+    ready = np.array(robot.named_poses["ready"])
+    rows = np.array([ready, ready + 0.1, ready - 0.1])
+    order = np.random.default_rng(0).permutation(robot.dof)
+    plain, named = tmp_path / "plain.csv", tmp_path / "named.csv"
+    write_waypoints(plain, rows)
+    write_waypoints(named, rows[:, order])
+    heading = ",".join(robot.joint_names[k] for k in order)
+    named.write_text(f"{heading}\n{named.read_text()}")
+    found = [cspace(f"traj panda --waypoints {file} --json").json for file in (plain, named)]
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("row", ["0,-.5,,0,-2,0,1.6,.8", "0,-.5,0,-2,0,1.6,.8,", ",0,-.5,0,-2,0,1.6"])
+def test_an_empty_cell_of_a_waypoint_is_refused(tmp_path, row):
+    file = tmp_path / "way.csv"
+    file.write_text(f"0,-.5,0,-2,0,1.6,.8\n{row}\n")
+    result = cspace(f"traj panda --waypoints {file}")
+    assert result.code != 0
+    assert "way.csv:2" in result.err

@@ -158,3 +158,16 @@ def test_points_on_a_line_give_a_line():
 def test_what_is_no_path_is_named(make, message):
     with pytest.raises(InputError, match=message):
         make(np.eye(4), cs.pose((1, 0, 0)))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_blends_that_meet_leave_no_piece_of_rounding(seed):
+    """Legs of equal length whose blends want more than half of them."""
+    rng = np.random.default_rng(seed)
+    side = rng.uniform(1e-3, 1.0)
+    corners = side * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 0]])
+    turn = cs.spatial.random_pose(rng=rng)
+    for scale in (0.11, 0.2, 0.3, 0.5, 2.0):
+        path = pose_path(np.array([turn @ cs.pose(c) for c in corners]), deviation=scale * side)
+        assert (np.diff(path.breaks) > 1e-9 * side).all()
+        assert np.abs(path(path.breaks[-1])[:3, 3] - turn[:3, 3]).max() < 1e-12

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import cspace as cs
 from cspace.errors import DescriptionError, InputError, MissingExtraError
-from cspace.trajectory import from_ros, state_to_state, to_ros
+from cspace.trajectory import from_ros, state_to_state, to_csv, to_ros
 from cspace.trajectory.message_yaml import read_documents
 from localization.test_log_fuzz import mutate
 
@@ -207,3 +208,55 @@ def test_without_the_extra_its_name_is_said(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "yaml", None)
     with pytest.raises(MissingExtraError, match=r"cspace\[ros\]"):
         from_ros(path)
+
+
+HOSTILE = {
+    "refers to itself": "&a {goal: *a}",
+    "refers to itself twice": "&a {goal: {trajectory: *a}}",
+    "large": "joint_names: [a]\npoints: [{positions: [1" + 400 * "0" + "], time_from_start: 0}]",
+    "large time": "joint_names: [a]\npoints: [{positions: [1], time_from_start: {sec: 1" + 400 * "0" + "}}]",
+    "misspelt time": "joint_names: [a]\npoints: [{positions: [1], time_from_start: {sec: 0, nanosecs: 5}}]",
+    "nested": "\n".join(
+        ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+        + [f"a{k}: &a{k} [{', '.join(9 * [f'*a{k - 1}'])}]" for k in range(1, 10)]
+        + ["joint_names: [a]", "points: [{positions: {x: *a9}, time_from_start: 0}]"]
+    ),
+    **{
+        tag: f"joint_names: [a]\npoints: [{{positions: [!!{tag} 'x'], time_from_start: 0}}]"
+        for tag in ("int", "float", "bool", "timestamp", "binary")
+    },
+}
+
+
+@pytest.mark.parametrize("kind", HOSTILE)
+def test_hostile_messages_are_refused(kind, tmp_path):
+    pytest.importorskip("yaml")
+    path = tmp_path / "hostile.yaml"
+    path.write_text(HOSTILE[kind], encoding="utf-8")
+    with pytest.raises(DescriptionError, match=r"hostile\.yaml"):
+        from_ros(path)
+
+
+def test_a_motion_that_was_not_found_is_not_written(tmp_path):
+    robot = cs.load_robot("panda")
+    start = np.array(robot.named_poses["ready"])
+    failed = robot.move_to(start + 9.0 * np.eye(7)[0], start=start)
+    assert not failed
+    for write in (to_ros, to_csv):
+        with pytest.raises(InputError, match="not written"):
+            write(failed, tmp_path / "motion", rate=100.0)
+    assert not list(tmp_path.iterdir())
+
+
+def test_joints_in_another_order_are_refused():
+    one = motion()
+    other = state_to_state(
+        one(one.duration), [0.0, 0.0], velocity=1.0, acceleration=1.0, joint_names=NAMES[::-1]
+    )
+    with pytest.raises(InputError, match="one order"):
+        one.then(other, order=0)
+    robot = cs.load_robot("planar_2r")
+    names = robot.joint_names[::-1]
+    turned = state_to_state([0.0, 0.0], [0.1, 0.2], velocity=1.0, acceleration=1.0, joint_names=names)
+    with pytest.raises(InputError, match="one order"):
+        turned.check(robot)

@@ -26,6 +26,22 @@ def test_no_limit_is_exceeded_on_a_ten_times_finer_grid(name):
             assert excess(timed, v, a) <= ROUNDING
 
 
+@pytest.mark.parametrize("name", MAKERS)
+def test_no_limit_is_exceeded_where_joints_start_and_stop_on_the_way(name):
+    """Where a joint begins to move, a row bounds the speed at one end of an interval alone."""
+    rng = np.random.default_rng(13)
+    for _ in range(40):
+        w = np.repeat(rng.uniform(-2.0, 2.0, (1, int(rng.integers(2, 8)))), int(rng.integers(3, 9)), axis=0)
+        for k in range(1, len(w)):
+            moving = rng.integers(w.shape[1], size=int(rng.integers(1, 3)))
+            w[k:, moving] = rng.uniform(-2.0, 2.0, len(moving))
+        path = MAKERS[name](w)
+        v, a = np.full((2, path.dof), 10.0 ** rng.uniform(-1.0, 1.5, (2, 1)))
+        timed = cs.time_parametrize(path, velocity=v, acceleration=a)
+        assert timed, timed.reason
+        assert excess(timed, v, a) <= ROUNDING
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MAKERS)
 def test_no_limit_is_exceeded_on_many_paths(name):

@@ -150,3 +150,26 @@ def test_bad_files_are_named_with_their_fault(tmp_path):
         path.write_text(text)
         with pytest.raises(DescriptionError, match=fault):
             from_json(path)
+
+
+def test_a_table_cut_anywhere_between_its_cells_is_refused_or_ends_earlier(tmp_path):
+    path, one = tmp_path / "a.csv", motion()
+    to_csv(one, path, rate=20.0)
+    whole = path.read_text("utf-8")
+    ends = [k for k, letter in enumerate(whole) if letter in ",\n"]
+    for end in ends:
+        path.write_text(whole[:end], "utf-8")
+        try:
+            found = from_csv(path)
+        except DescriptionError:
+            continue
+        assert whole[end] == "\n"
+        assert np.abs(found(found.duration) - one(found.duration)).max() < 1e-9
+
+
+@pytest.mark.parametrize("text", ["time,q:a,qd:a\n0,0,0\n1,2\n", "x" * 200_000])
+def test_tables_of_other_shapes_are_refused(tmp_path, text):
+    path = tmp_path / "a.csv"
+    path.write_bytes(text.encode())
+    with pytest.raises(DescriptionError, match=r"a\.csv"):
+        from_csv(path)

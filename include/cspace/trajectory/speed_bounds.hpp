@@ -6,6 +6,9 @@
 // rows.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "cspace/math/float_lanes.hpp"
 #include "cspace/trajectory/path_rows.hpp"
 
@@ -90,14 +93,20 @@ CSPACE_INLINE Edges bound_next(const Rows& rows, double x, const SpeedRange& nex
 // if there is none.
 CSPACE_INLINE double find_end(const Rows& rows, double x, double side, const SpeedRange& next) {
     constexpr int most_steps = 100;  // each changes a row, and two in a hundred paths need more than four
+    double share = std::numeric_limits<double>::epsilon();
     for (int step = 0; step < most_steps; ++step) {
         const Edges edges = bound_next(rows, x, next);
         const double width = edges.high.value - edges.low.value;
         if (width >= -closed_width * (std::fabs(edges.high.value) + std::fabs(edges.low.value))) return x;
         const double slope = edges.high.slope - edges.low.slope;
         if (!(side * slope > 0.0)) return -1.0;
-        const double found = (edges.low.offset - edges.high.offset) / slope;
-        if (!(side * (found - x) > 0.0)) return x;  // within rounding of it
+        double found = (edges.low.offset - edges.high.offset) / slope;
+        if (!(side * (found - x) > 0.0)) {
+            // Within rounding of the end that this row has; where it is steep, it hides those of the others.
+            found = x + side * share * x;
+            share *= 2.0;
+        }
+        if (found == x) return x;
         if (found < 0.0) return -1.0;
         x = found;
     }

@@ -144,7 +144,7 @@ def pose_path(
     s = 0.0
     for k in range(legs.count):
         begin, end = cut[k], legs.lengths[k] - cut[k + 1]
-        if end > begin:
+        if end - begin > REPEATED_POSE:  # else blends meet
             pieces.append(legs.make_line(k, begin, end))
             s += end - begin
         if k + 1 < legs.count:

@@ -27,7 +27,8 @@ def read_documents(text: str, path: str) -> list[Any]:
     except yaml.MarkedYAMLError as error:
         line = None if error.problem_mark is None else error.problem_mark.line + 1
         raise DescriptionError(f"the file is no YAML: {error.problem}", path=path, line=line) from None
-    except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
+    except (yaml.YAMLError, ValueError, OverflowError, RecursionError, LookupError, AttributeError) as error:
+        # PyYAML raises the last two for values that do not fit their tags.
         raise DescriptionError(f"the file is no YAML: {str(error) or 'too deep'}", path=path) from None
 
 

@@ -39,11 +39,12 @@ def to_ros(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float)
 
     Times are seconds and nanoseconds that strictly increase. rate [Hz]: of the points; the end is among them.
     The file is complete or untouched.
-    Raises InputError for a trajectory without names of joints, and where the file cannot be written.
+    Raises InputError for a trajectory without names of joints, for one with a reason (which is not what was
+    asked for), and where the file cannot be written.
     """
     if trajectory.joint_names is None:
         raise InputError("the trajectory has no names of joints, which ROS needs; pass joint_names=")
-    samples = trajectory.sample(rate)
+    samples = trajectory.samples_to_write(rate)
     ticks = np.rint(samples.times * NANOSECONDS).astype(np.int64)
     kept = np.append(np.diff(ticks) > 0, True)  # the end replaces a point within the same nanosecond
     lines = [f"joint_names: [{', '.join(json.dumps(n, ensure_ascii=False) for n in trajectory.joint_names)}]"]
@@ -105,7 +106,9 @@ def from_ros(path: str | os.PathLike[str]) -> PolynomialTrajectory:
 
 def _find_message(value: Any, path: str) -> dict[str, Any]:
     """The mapping with points, which may lie in a field of another message."""
-    while isinstance(value, dict):
+    for _ in range(len(OUTER) + 1):  # a message may refer to itself
+        if not isinstance(value, dict):
+            break
         if "points" in value:
             return value
         value = next((value[field] for field in OUTER if field in value), None)
@@ -115,7 +118,7 @@ def _find_message(value: Any, path: str) -> dict[str, Any]:
 def _read_time(point: Any, k: int, path: str) -> float:
     """The time of a point [s]: a number, or whole seconds and nanoseconds."""
     given = point.get("time_from_start") if isinstance(point, dict) else None
-    if isinstance(given, dict):
+    if isinstance(given, dict) and set(given) <= {*SECONDS, *FRACTIONS}:
         parts = [next((given[f] for f in fields if f in given), 0) for fields in (SECONDS, FRACTIONS)]
         known = any(field in given for field in (*SECONDS, *FRACTIONS))
         if known and all(_is_number(part) for part in parts):
@@ -130,7 +133,12 @@ def _read_time(point: Any, k: int, path: str) -> float:
 
 def _is_number(value: Any) -> TypeGuard[float]:
     """Whether a value is a finite number."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number beyond all floats
+        return False
 
 
 def _read_states(points: list[Any], dof: int, path: str) -> Array:
@@ -145,7 +153,7 @@ def _read_states(points: list[Any], dof: int, path: str) -> Array:
             values = point.get(kind) or []
             expected = dof if kind in kinds else 0
             if not isinstance(values, list) or len(values) != expected:
-                size = len(values) if isinstance(values, list) else shorten(repr(values), 40)
+                size = len(values) if isinstance(values, list) else type(values).__name__
                 text = f"{kind} of point {k}: {size}; expected {expected}, as point 0 and joint_names have"
                 raise DescriptionError(text, path=path)
             if not all(map(_is_number, values)):

@@ -63,6 +63,17 @@ class Extremes(NamedTuple):
     t_highest: Array
 
 
+def check_order(names: Sequence[str] | None, others: Sequence[str] | None, whose: str) -> None:
+    """Raise InputError where two lists have the same names of joints in another order."""
+    if names is None or others is None or tuple(names) == tuple(others) or set(names) != set(others):
+        return
+    k = next(k for k, (one, other) in enumerate(zip(names, others, strict=False)) if one != other)
+    raise InputError(
+        f"joint {k} is {names[k]!r} in the trajectory and {others[k]!r} in {whose};"
+        " bring the joints into one order"
+    )
+
+
 class Trajectory(ABC):
     """A motion of joints in time: positions and derivatives up to the jerk; falsy where reason is not empty.
 
@@ -166,13 +177,24 @@ class Trajectory(ABC):
         times = np.append(times[times < self.duration * (1.0 - TIME_ROUNDING)], self.duration)
         return Samples(times, *(self._evaluate(times, order) for order in range(3)))
 
+    def samples_to_write(self, rate: float) -> Samples:
+        """The samples of a motion that is what was asked for.
+
+        rate: as in sample. Raises InputError with the reason for another motion.
+        """
+        if self.reason:
+            raise InputError(f"the motion is not what was asked for, and is not written: {self.reason}")
+        return self.sample(rate)
+
     def check(self, limits: Any) -> TrajectoryCheck:
         """Whether the motion stays within limits, by the roots of its derivatives and not by samples.
 
         limits: Limits or a robot; limits of effort are not looked at. A limit counts as exceeded from one
         part in 10⁹ on. Returns a TrajectoryCheck, falsy with the violations.
-        Raises InputError for limits of another number of joints.
+        Raises InputError for limits of another number of joints, and for a robot with the same joints in
+        another order.
         """
+        check_order(self.joint_names, getattr(limits, "joint_names", None), "the robot")
         return check_limits(self, read_limits(limits, self.dof))
 
     def binding(self, limits: Any) -> tuple[BindingLimit, ...]:
@@ -205,7 +227,8 @@ class Trajectory(ABC):
         """This motion and after it another one that begins where this one ends.
 
         order: up to which derivative the two must agree; `continuity` of the result says up to which they do.
-        Raises InputError where they do not, with the joint and the jump.
+        Raises InputError where they do not, with the joint and the jump, and for the same joints in another
+        order.
         """
         order = whole_number(order, "order", 0, HIGHEST_ORDER)
         if not isinstance(other, Trajectory):
@@ -214,6 +237,7 @@ class Trajectory(ABC):
             raise InputError(
                 f"the other trajectory is of {count_things(other.dof, 'joint')}, this of {self.dof}"
             )
+        check_order(self.joint_names, other.joint_names, "the other trajectory")
         for k in range(order + 1):
             self._check_joint_to(other, k)
         return self._join(other)

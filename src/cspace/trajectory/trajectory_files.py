@@ -28,9 +28,10 @@ def to_csv(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float)
 
     Columns are named time, q:joint, qd:joint and qdd:joint; numbers have all digits and are in radians or
     metres. rate [Hz]: of the samples; the end is among them. The file is complete or untouched.
-    Raises InputError where it cannot be written.
+    Raises InputError for a trajectory with a reason (which is not what was asked for), and where the file
+    cannot be written.
     """
-    samples = trajectory.sample(rate)
+    samples = trajectory.samples_to_write(rate)
     heading = ["time", *(f"{kind}:{name}" for kind in QUANTITIES for name in trajectory.labels)]
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -49,9 +50,14 @@ def from_csv(path: str | os.PathLike[str]) -> PolynomialTrajectory:
     Returns a PolynomialTrajectory. Raises DescriptionError, with the file and the line, for other columns,
     cells that are no numbers, and times that do not increase from zero.
     """
-    lines = list(
-        csv.reader(io.StringIO(read_text(path_of(path), "CSV file", LARGEST_FILE, DescriptionError)))
-    )
+    text = read_text(path_of(path), "CSV file", LARGEST_FILE, DescriptionError)
+    table_rows = csv.reader(io.StringIO(text, newline=""))
+    try:
+        lines = list(table_rows)
+    except csv.Error as error:
+        raise DescriptionError(
+            f"the file is no table: {error}", path=str(path), line=table_rows.line_num
+        ) from None
     heading = lines[0] if lines else []
     names = [title.partition(":")[2] for title in heading if title.startswith("q:")]
     kinds = [kind for kind in QUANTITIES if f"{kind}:{names[0] if names else ''}" in heading]
@@ -75,6 +81,8 @@ def _read_rows(rows: list[list[str]], columns: int, path: str) -> Array:
     if not rows:
         raise DescriptionError("the table has no rows", path=path, line=1)
     for i, row in enumerate(rows):
+        if len(row) != columns:
+            raise DescriptionError(f"the row has {len(row)} cells, expected {columns}", path=path, line=i + 2)
         try:
             table[i] = [float(cell) for cell in row]
         except ValueError:

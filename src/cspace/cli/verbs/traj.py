@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -170,7 +171,7 @@ def time_waypoints(args: argparse.Namespace, robot: Robot, limits: dict[str, Any
     from cspace.model import Limits
     from cspace.trajectory import blend, spline, time_parametrize
 
-    waypoints = read_waypoint_file(args.waypoints, robot.dof, degrees=args.deg)
+    waypoints = read_waypoint_file(args.waypoints, robot.joint_names, degrees=args.deg)
     path = spline(waypoints) if args.blend is None else blend(waypoints, args.blend)
     motion = time_parametrize(path, robot, positions=False, **limits)
     if motion and not (check := motion.check(Limits(robot.limits.lower, robot.limits.upper))):
@@ -179,28 +180,33 @@ def time_waypoints(args: argparse.Namespace, robot: Robot, limits: dict[str, Any
     return motion
 
 
-def read_waypoint_file(path: Path, dof: int, *, degrees: bool) -> Array:
-    """The rows (k, dof) of a table of numbers; a first line of words is skipped."""
+def read_waypoint_file(path: Path, names: Sequence[str], *, degrees: bool) -> Array:
+    """The rows (k, dof) of a table of numbers. A first line of words may name the joints, in any order; other
+    words are skipped."""
     from cspace.errors import DescriptionError
     from cspace.files import read_text
 
     rows: list[list[float]] = []
+    order = list(range(len(names)))
     lines = read_text(path, "CSV file", LARGEST_FILE, DescriptionError).splitlines()
     for number, line in enumerate(lines, start=1):
-        cells = [cell for cell in line.replace(",", " ").replace(";", " ").split() if cell]
-        if not cells or line.lstrip().startswith("#"):
+        if not line.strip(" \t,;") or line.lstrip().startswith("#"):
             continue
+        apart = ";" if ";" in line else "," if "," in line else None
+        cells = [cell.strip() for cell in line.split(apart)]
         try:
             row = [read_radians(read_angle(cell), degrees=degrees) for cell in cells]
         except (ValueError, argparse.ArgumentTypeError):
             if not rows and number == 1:
+                if set(cells) == set(names):
+                    order = [cells.index(name) for name in names]
                 continue
             raise DescriptionError("the row is not numbers", path=str(path), line=number) from None
-        if len(row) != dof:
+        if len(row) != len(names):
             raise DescriptionError(
-                f"the row has {len(row)} numbers, the robot {dof} joints", path=str(path), line=number
+                f"the row has {len(row)} numbers, the robot {len(names)} joints", path=str(path), line=number
             )
-        rows.append(row)
+        rows.append([row[k] for k in order])
     if len(rows) < 2:
         raise DescriptionError("the file has fewer than two waypoints", path=str(path), line=len(lines) or 1)
     return np.array(rows)
