@@ -106,7 +106,7 @@ list(REMOVE_ITEM library_files ${search_files})
 add_library(cspace_searches OBJECT ${search_files})
 configure_library(cspace_searches)
 add_library(cspace_library STATIC ${library_files} $<TARGET_OBJECTS:cspace_searches>)
-configure_library(cspace_library -O2)
+configure_library(cspace_library $<$<CONFIG:Release>:-O2>)
 target_link_libraries(cspace_library PUBLIC cspace_kernels)
 
 # Trees of samples are the same on every machine: none may round a product and a sum at once where others do not. Nor may
