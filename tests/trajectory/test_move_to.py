@@ -5,6 +5,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError, InputTypeError, UnknownNameError
+from cspace.model import Limits
 from cspace.trajectory.point_to_point import PROFILES
 from cspace.trajectory.time_scaling import BOUNDARY_ORDERS, PEAKS, connect_states
 
@@ -144,3 +145,72 @@ def test_misuse_is_named(panda):
     ):
         with pytest.raises(error, match=text):
             panda.move_to(**{"q_goal": Q1, "start": Q0} | change)
+
+
+def keeps_limits(states, h, most):
+    motion = connect_states(states, h, None)
+    for order, kind in enumerate(("velocity", "acceleration", "jerk"), 1):
+        found = motion.extremes(order)
+        if (np.maximum(found.highest, -found.lowest) > most[kind] * (1.0 + 1e-9)).any():
+            return False
+    return True
+
+
+@pytest.mark.parametrize("profile", ["cubic", "quintic", "septic"])
+def test_no_duration_before_the_shortest_keeps_the_limits_between_moving_states(profile):
+    """Windows of durations are not missed: where a dense scan finds one, no later one is answered."""
+    rng, counts = np.random.default_rng(8), [0, 0]
+    robot = cs.Robot.from_dh([(0.3, 0.0, 0.0, 0.0), (0.2, 0.0, 0.0, 0.0)], convention="standard")
+    orders = BOUNDARY_ORDERS[profile]
+    most = {"velocity": np.full(2, 1.0), "acceleration": np.full(2, 2.0), "jerk": np.full(2, 40.0)}
+    limits = Limits(np.full(2, -np.inf), np.full(2, np.inf), **most)
+    for _ in range(20):
+        states = np.zeros((2, orders, 2))
+        states[:, 0] = rng.normal(size=(2, 2)) * rng.choice([0.01, 0.3, 1.0])
+        states[:, 1] = rng.uniform(-1.0, 1.0, (2, 2))
+        if orders > 2:
+            states[:, 2] = rng.uniform(-2.0, 2.0, (2, 2))
+        ends = {"start_velocity": states[0, 1], "goal_velocity": states[1, 1]}
+        if orders > 2:
+            ends |= {"start_acceleration": states[0, 2], "goal_acceleration": states[1, 2]}
+        q0, q1 = states[:, 0]
+        motion = robot.move_to(q1, start=q0, profile=profile, limits=False, **ends, **most)
+        last = motion.duration * (1.0 - 1e-6) if motion else 20.0
+        assert not any(keeps_limits(states, h, most) for h in np.geomspace(0.01, last, 40))
+        counts[bool(motion)] += 1
+        if not motion:
+            assert f"no {profile} motion" in motion.reason
+            continue
+        assert motion.check(limits)
+        ticks = robot.move_to(q1, start=q0, profile=profile, limits=False, cycle=0.004, **ends, **most)
+        if ticks:
+            assert ticks.check(limits)
+            assert np.isclose(ticks.duration / 0.004, round(ticks.duration / 0.004))
+            assert ticks.duration >= motion.duration * (1.0 - 1e-9)
+    assert counts[1] > 5
+    assert profile == "cubic" or counts[0] > 5  # moving states that only double-S motions connect
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-4, 1e-6])
+def test_a_narrow_window_of_durations_is_found(width):
+    """An acceleration at both ends that swings out by its square: only some durations keep the velocity."""
+    robot = cs.Robot.from_dh([(0.3, 0.0, 0.0, 0.0)], convention="standard")
+    ends = {"start_acceleration": -1.0, "goal_acceleration": 1.0, "acceleration": 1e3}
+    wide = robot.move_to([1.0], start=[0.0], profile="septic", limits=False, velocity=1e3, **ends)
+    assert wide
+    durations = np.geomspace(0.05, 50.0, 500)
+    states = np.zeros((2, 4, 1))
+    states[1, 0], states[0, 2], states[1, 2] = 1.0, -1.0, 1.0
+    peaks = [
+        max(abs(e.lowest[0]), abs(e.highest[0]))
+        for e in (connect_states(states, h, None).extremes(1) for h in durations)
+    ]
+    least = min(peaks)
+    narrow = robot.move_to(
+        [1.0], start=[0.0], profile="septic", limits=False, velocity=least * (1.0 + width), **ends
+    )
+    assert narrow
+    assert narrow.duration == pytest.approx(durations[int(np.argmin(peaks))], rel=0.3)
+    below = robot.move_to([1.0], start=[0.0], profile="septic", limits=False, velocity=0.9 * least, **ends)
+    assert not below
+    assert "whatever its duration" in below.reason

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, Final
 
 import numpy as np
@@ -58,8 +57,9 @@ def move_to(
     those of the robot, False for none, or Limits.
 
     Returns a PolynomialTrajectory. It is falsy, with a reason, where the motion leaves the limits of
-    position, where a polynomial exceeds a limit in the duration that was asked for, and where double-S or
-    trapezoidal motions do not exist in that duration; the motion then has the next possible one.
+    position, where a polynomial exceeds a limit in the duration that was asked for or in every duration, and
+    where double-S or trapezoidal motions do not exist in that duration; the motion then has the next
+    possible one.
     Raises InputError for limits that are missing, by name, and as state_to_state.
 
     Biagiotti and Melchiorri 2008, chapters 2 and 3.
@@ -161,12 +161,16 @@ def fit_polynomials(
     if duration is not None:
         moves = bool((states[0] != states[1]).any() or states[:, 1:].any())
         h = 0.0 if duration == 0.0 and not moves else read_duration(duration, "duration") or 0.0
+        possible = True
     else:
-        h = find_duration(profile, states, bounds, names)
-        step = read_duration(cycle, "cycle")
-        h = h if step is None else math.ceil(h / step * (1.0 - 4.0 * np.finfo(float).eps)) * step
+        h, possible = find_duration(profile, states, bounds, names, read_duration(cycle, "cycle"))
     motion = connect_states(states, h, names)
     motion.reason = motion.check(bounds).reason
+    if not possible:
+        motion.reason = (
+            f"no {profile} motion between these states keeps the limits, whatever its duration:"
+            f" in {h:.6g} s {motion.reason}; use profile='double_s'"
+        )
     return motion
 
 

@@ -13,7 +13,13 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Limits
 from cspace.tolerances import LIMIT_ROUNDING
-from cspace.trajectory.polynomials import PolynomialTrajectory, attain_end
+from cspace.trajectory.piece_roots import find_piece_roots
+from cspace.trajectory.polynomials import (
+    PolynomialTrajectory,
+    attain_end,
+    differentiate_polynomials,
+    evaluate_polynomials,
+)
 
 BOUNDARY_ORDERS: Final = {"cubic": 2, "quintic": 3, "septic": 4, "minimum_jerk": 3}
 """How many derivatives each polynomial attains at both ends, the position among them. Of all motions with
@@ -29,11 +35,8 @@ PEAKS: Final = {
 """The largest velocity, acceleration and jerk of each polynomial from 0 to 1 in one second, from rest to
 rest."""
 
-DOUBLINGS: Final = 60
-"""Of a duration that is too short."""
-
-HALVINGS: Final = 40
-"""Of the interval between a duration that is too short and one that is not: to twelve digits."""
+MOST_JUMPS: Final = 1000
+"""Of the search for a duration: it takes five to ten, and more only past windows that just fail to open."""
 
 
 def state_polynomials(states: Array, h: Array) -> Array:
@@ -92,32 +95,77 @@ def find_rest_duration(profile: str, displacement: Array, limits: Limits) -> flo
     return longest
 
 
-def find_duration(profile: str, states: Array, limits: Limits, labels: Sequence[str]) -> float:
-    """A duration in which the polynomials keep all limits: the shortest from rest to rest; between moving
-    states the end of the first interval of durations found by doubling.
+def find_duration(
+    profile: str, states: Array, limits: Limits, labels: Sequence[str], cycle: float | None = None
+) -> tuple[float, bool]:
+    """The shortest duration in which the polynomials keep all limits, and whether there is one.
 
-    Raises InputError where a boundary state is beyond a limit, or where no duration is long enough.
+    Between moving states the durations that keep the limits can be several intervals. The search begins
+    below all of them; while a limit is exceeded it jumps to where the place that exceeds it most no longer
+    does. cycle [s]: of which the duration is a multiple. Without a duration it is the last one looked at.
+
+    Raises InputError where a boundary state is beyond a limit.
     """
-    h = find_rest_duration(profile, states[1, 0] - states[0, 0], limits)
     if not states[:, 1:].any():
-        return h
+        return _round_up(find_rest_duration(profile, states[1, 0] - states[0, 0], limits), cycle), True
     check_boundary(states, limits, labels)
-    speeds = np.abs(states[:, 1]) / limits.acceleration
-    low, high = 0.0, max(h, float(speeds.max(initial=0.0)), LIMIT_ROUNDING)
-    for _ in range(DOUBLINGS):
-        if connect_states(states, high, None).check(limits):
+    changes = states[1] - states[0]
+    if not changes.any():
+        return 0.0, True
+    most = np.array([limits.velocity, limits.acceleration, limits.jerk])
+    h = max(float(np.max(np.abs(changes[:3]) / most[: len(changes[:3])])), LIMIT_ROUNDING)
+    parts = _split_by_power(states)
+    for _ in range(MOST_JUMPS):
+        h = _round_up(h, cycle)
+        until = _leave_violations(parts, h, most)
+        if until <= h:
+            return h, True
+        if until == np.inf:
             break
-        low, high = high, 2.0 * high
-    else:
-        raise InputError(
-            f"no {profile} motion between these states keeps the limits; use profile='double_s', or give"
-            " other velocities and accelerations"
-        )
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        kept = bool(connect_states(states, middle, None).check(limits))
-        low, high = (low, middle) if kept else (middle, high)
-    return high
+        h = until
+    return h, False
+
+
+def _round_up(h: float, cycle: float | None) -> float:
+    """The first multiple of a cycle from h on, but for roundings; h without a cycle."""
+    return h if cycle is None else math.ceil(h / cycle * (1.0 - 4.0 * np.finfo(float).eps)) * cycle
+
+
+def _split_by_power(states: Array) -> Array:
+    """What multiplies hᵏ in the polynomials of the share of a duration h (dof, m, 2 m), by k and by power."""
+    m = states.shape[1]
+    basis = state_polynomials(np.eye(2 * m).reshape(2, m, 2 * m), np.array(1.0)).reshape(2, m, 2 * m)
+    return np.asarray(np.einsum("ekj,ekn->jkn", states, basis))
+
+
+def _leave_violations(parts: Array, h: float, most: Array) -> float:
+    """The duration up to which limits that are exceeded at h stay so; h if none is, inf if they always are.
+
+    Of each joint and order the place of the largest value is kept. There the value is a polynomial of the
+    duration, which crosses the limit at a root.
+    """
+    powers, until = h ** np.arange(parts.shape[1]) @ parts, h
+    begin = np.zeros(len(powers))
+    for order, limits in enumerate(most, 1):
+        rates = differentiate_polynomials(powers, order + 1)
+        places = np.nan_to_num(find_piece_roots(rates, begin, begin + 1.0))
+        places = np.concatenate([places, begin[:, None], begin[:, None] + 1.0], axis=1)
+        values = evaluate_polynomials(powers[:, None], places, order)
+        for j, k in enumerate(np.abs(values).argmax(axis=1)):
+            if abs(values[j, k]) > limits[j] * h**order * (1.0 + 0.5 * LIMIT_ROUNDING):
+                at_place = evaluate_polynomials(parts[j], places[j, k], order) * np.sign(values[j, k])
+                until = max(until, _next_crossing(at_place, limits[j], order, h))
+    return until
+
+
+def _next_crossing(values: Array, limit: float, order: int, h: float) -> float:
+    """The first duration after h at which Σ values[k] hᵏ falls to limit · h^order; inf if there is none."""
+    excess = np.zeros(max(len(values), order + 1))
+    excess[: len(values)] = values
+    excess[order] -= limit
+    roots = np.roots(excess[::-1])
+    later = roots.real[(np.abs(roots.imag) <= LIMIT_ROUNDING * np.abs(roots)) & (roots.real > h)]
+    return float(later.min(initial=np.inf))
 
 
 def check_boundary(states: Array, limits: Limits, labels: Sequence[str]) -> None:
