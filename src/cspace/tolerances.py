@@ -633,6 +633,12 @@ BARRIER_GAP: Final = 1e-4
 TIMED_WITHIN: Final = 1e-3
 """Change of the duration of a motion along a path, relative, up to which its intervals are halved."""
 
+FEED_HELD: Final = 1e-3
+"""Part of a feed by which a motion may be slower where no limit slows it: else intervals are divided."""
+
+FEED_LOST: Final = 1e-5
+"""Part of the duration that an interval below its feed may lose: what the barrier method leaves is less."""
+
 CURVE_FITTED: Final = 1e-6
 """Distance [rad or m] of a fitted path from a curve, by default: controllers resolve no less."""
 

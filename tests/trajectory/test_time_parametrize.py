@@ -387,6 +387,28 @@ def test_the_feed_is_held_but_where_a_limit_is_named():
         cs.time_parametrize(cs.spline(q), robot, acceleration=6.0, feed=1.0, speed=0.5)
 
 
+@pytest.mark.parametrize("jerk", [None, True])
+@pytest.mark.parametrize("make", [cs.spline, lambda q: cs.blend(q, deviation=0.05)])
+def test_a_feed_is_not_lost_where_every_limit_has_room(make, jerk):
+    """Coarse intervals lose speed where the tip's speed by place is curved: they are divided."""
+    robot = cs.load_robot("panda")
+    limits, rng = robot.limits, np.random.default_rng(3)
+    for feed in (0.05, 0.2, 0.4):
+        q = np.array([0.0, -0.3, 0.0, -2.0, 0.0, 1.8, 0.7]) + rng.uniform(-0.5, 0.5, (4, 7))
+        timed = cs.time_parametrize(make(q), robot, feed=feed, jerk=jerk)
+        begin, end = timed._times[:-1, None], timed._times[1:, None]
+        t = begin + (end - begin) * np.linspace(0.01, 0.99, 5)
+        qd = timed(t.ravel(), 1)
+        speed = np.linalg.norm(np.einsum("nij,nj->ni", robot.jacobian(timed(t.ravel()))[:, :3], qd), axis=1)
+        used = np.maximum(np.abs(qd) / limits.velocity, np.abs(timed(t.ravel(), 2)) / limits.acceleration)
+        if jerk:
+            used = np.maximum(used, np.abs(timed(t.ravel(), 3)) / limits.jerk)
+        has_room = used.max(axis=1).reshape(t.shape).max(axis=1) < 0.9
+        slow = has_room & (speed.reshape(t.shape).min(axis=1) < 0.99 * feed)
+        assert np.diff(timed._times)[slow].sum() < 1.5e-3 * timed.duration
+        assert speed.max() <= feed * (1.0 + 1e-5)
+
+
 def fine_times(motion, parts=20):
     """Times of a grid that is finer by far than the samples of the limits."""
     t = motion.knots

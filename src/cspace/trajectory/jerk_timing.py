@@ -75,27 +75,42 @@ def find_sections(path: Path) -> list[Section]:
     return [Section(a, b) for a, b in pairwise(stops)]
 
 
+def divide_section(path: Path, section: Section, count: int) -> Grid:
+    """The share that a section has of so many intervals of the path, without a margin at its ends."""
+    share = float(path.breaks[section.last] - path.breaks[section.first]) / path.length
+    return divide_gradually(
+        path, section, max(LEAST_INTERVALS, round(count * share)), _find_margin(path, section)
+    )
+
+
+def divide_for_feed(grid: Grid, parts: npt.NDArray[np.intp]) -> Grid:
+    """The grid with its intervals divided into parts (k,), and neighbours with them: sizes stay gradual."""
+    half = -(-parts // 2)
+    return grid.divided(np.maximum.reduce([parts, np.append(half[1:], 1), np.append(1, half[:-1])]))
+
+
+def _find_margin(path: Path, section: Section) -> float:
+    """The length of the launch and the landing of a section."""
+    whole = float(path.breaks[section.last] - path.breaks[section.first])
+    first, last = path.lengths[[section.first, section.last - 1]].tolist()
+    return float(LAUNCH_PART * min(whole, SHORT_PIECE * first, SHORT_PIECE * last))
+
+
 def time_section(
     path: Path,
     section: Section,
     arrays: tuple[Array, Array, npt.NDArray[np.int8]],
     limits: JerkLimits,
-    count: int,
+    grid: Grid,
     plain: TimedPath,
     sampled: SampledLimits | None,
 ) -> SectionLaw | None:
     """The fastest motion along a section from rest to rest; None if none keeps the limits.
 
-    arrays: the path as the core reads it. plain: the motion without jerk limits. sampled: those of torque and
-    of a frame, if there are any.
+    arrays: the path as the core reads it. grid: as of divide_section, or finer. plain: the motion without
+    jerk limits. sampled: those of torque and of a frame, if there are any.
     """
-    ends = path.breaks[section.first], path.breaks[section.last]
-    lengths = path.lengths[section.first : section.last]
-    margin = LAUNCH_PART * min(
-        float(ends[1] - ends[0]), 100.0 * float(lengths[0]), 100.0 * float(lengths[-1])
-    )
-    share = float(ends[1] - ends[0]) / path.length
-    grid = divide_gradually(path, section, max(LEAST_INTERVALS, round(count * share)), margin)
+    ends, margin = path.breaks[[section.first, section.last]], _find_margin(path, section)
     launch = find_launch_jerk(path, section.first, margin, limits, at_end=False)
     landing = find_launch_jerk(path, section.last - 1, margin, limits, at_end=True)
     times = np.interp(ends, plain.grid, plain.knots)

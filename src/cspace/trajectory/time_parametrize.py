@@ -16,11 +16,14 @@ from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.tables import join_words
 from cspace.tolerances import FARTHEST, LIMIT_ROUNDING, TIMED_WITHIN
+from cspace.trajectory.graded_grid import Section
 from cspace.trajectory.jerk_timed_path import JerkTimedPath
 from cspace.trajectory.jerk_timing import (
     JerkLimits,
     SectionLaw,
     default_intervals,
+    divide_for_feed,
+    divide_section,
     find_sections,
     refuse_jumps,
     time_section,
@@ -40,6 +43,9 @@ MOST_INTERVALS: Final = 10_000_000
 
 MOST_JERK_INTERVALS: Final = 3000
 """From which on grids are not halved further under jerk limits: a solution takes half a second."""
+
+FEED_ROUNDS: Final = 4
+"""Of dividing intervals on which a feed is not held though no limit slows it."""
 
 ROUGHLY: Final = 0.01
 """Of the duration of a motion without jerk limits, from which the search under them begins."""
@@ -212,7 +218,19 @@ class _Timer:
         return self._solve(grid, self.sampled, tolerance)
 
     def time(self, grid: Grid | None) -> TimedPath:
-        """The fastest motion; on a grid of its own without one."""
+        """The fastest motion; on a grid of its own without one, on which a feed is held."""
+        timed = self.time_on(grid)
+        for _ in range(FEED_ROUNDS if grid is None else 0):
+            parts = timed._divide_for_feed()
+            if not timed or (parts == 1).all():
+                break
+            assert self.sampled is not None
+            self.sampled = self.sampled.renewed((timed.grid, timed.squared_speed))
+            timed = self.time_on(timed.intervals.divided(parts))
+        return timed
+
+    def time_on(self, grid: Grid | None) -> TimedPath:
+        """The fastest motion on a grid, or one of its own."""
         timed = self.time_once(grid, self.within)
         if self.sampled is None:
             return timed
@@ -235,26 +253,38 @@ class _Timer:
         if not plain:
             return plain
         number = default_intervals(self.path) if count is None else count
-        timed = self.time_with_jerk_on(number, plain)
+        sections = find_sections(self.path)
+        grids = [divide_section(self.path, each, number) for each in sections]
+        timed = self.time_with_jerk_on(sections, grids, plain)
         while timed and count is None and self.tolerance is not None and number < MOST_JERK_INTERVALS:
             number *= 2
-            last, timed = timed.duration, self.time_with_jerk_on(number, plain)
+            grids = [divide_section(self.path, each, number) for each in sections]
+            last, timed = timed.duration, self.time_with_jerk_on(sections, grids, plain)
             if abs(last - timed.duration) <= self.tolerance * timed.duration:
                 timed.converged = True
                 break
+        for _ in range(FEED_ROUNDS if count is None else 0):
+            parts = timed._divide_for_feed()
+            if not timed or (parts == 1).all() or len(parts) > MOST_JERK_INTERVALS:
+                break
+            ends = np.cumsum([0, *(len(each.piece) + 2 for each in grids)])
+            grids = [
+                divide_for_feed(each, parts[a + 1 : b - 1])
+                for each, (a, b) in zip(grids, pairwise(ends.tolist()), strict=True)
+            ]
+            timed = self.time_with_jerk_on(sections, grids, plain)
         return timed
 
-    def time_with_jerk_on(self, number: int, plain: TimedPath) -> TimedPath:
-        """The same on a grid of about so many intervals; plain: the motion without limits of jerk."""
+    def time_with_jerk_on(self, sections: list[Section], grids: list[Grid], plain: TimedPath) -> TimedPath:
+        """The same on a grid of each section; plain: the motion without limits of jerk."""
         assert self.jerk is not None
         limits = JerkLimits(self.velocity, self.acceleration, self.jerk)
-        sections = find_sections(self.path)
         expected = plain.grid, plain.squared_speed
         sampled = [None if self.sampled is None else self.sampled.renewed(expected) for _ in sections]
         for _ in range(MOST_ROUNDS + 1):
             laws: list[SectionLaw] = []
-            for section, own in zip(sections, sampled, strict=True):
-                found = time_section(self.path, section, self.arrays, limits, number, plain, own)
+            for section, grid, own in zip(sections, grids, sampled, strict=True):
+                found = time_section(self.path, section, self.arrays, limits, grid, plain, own)
                 if found is None:
                     s = float(self.path.breaks[section.first])
                     return self._refuse(f"no motion from s = {s:.6g} on keeps the limits", s)

@@ -13,10 +13,14 @@ from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
 from cspace.tables import count_things, one_line, shown
+from cspace.tolerances import FEED_HELD, FEED_LOST
 from cspace.trajectory.limit_check import BindingLimit
 from cspace.trajectory.path import HIGHEST_ORDER, Path, _powers_to_bernstein, restrict_pieces
 from cspace.trajectory.piece_roots import find_piece_roots
 from cspace.trajectory.trajectory import Trajectory, read_factor
+
+MOST_PARTS: Final = 8
+"""Of an interval that is divided at once."""
 
 NEAR_LIMIT: Final = 0.99
 """Share of a limit from which on it binds: an interval attains its limit at one place and keeps below it
@@ -52,6 +56,15 @@ class Grid(NamedTuple):
         """The lengths (k,) of the parameter."""
         lengths: Array = (self.end - self.begin) * path.lengths[self.piece]
         return lengths
+
+    def divided(self, parts: npt.NDArray[np.intp]) -> Grid:
+        """The grid with each interval divided into so many equal parts (k,)."""
+        number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+        count, begin, end = (np.repeat(row, parts) for row in (parts, self.begin, self.end))
+        size = (end - begin) / count
+        begins = begin + number * size
+        ends = np.where(number + 1 == count, end, np.append(begins[1:], end[-1:]))
+        return Grid(np.repeat(self.piece, parts), begins, ends)
 
 
 class Places(NamedTuple):
@@ -222,13 +235,9 @@ class TimedPath(Trajectory):
         Returns SlowStretches in order; the first and the last are those from and to rest.
         Raises InputError without a feed.
         """
-        used, shares = self._use_limits() if self._ratios is not None and len(self._times) > 1 else ([], None)
-        row = next((k for k, each in enumerate(used) if each[1] == FEED), None)
-        if row is None or shares is None:
+        if (found := self._compare_to_feed()) is None:
             raise InputError("the motion was timed without a feed; pass feed= to time_parametrize")
-        held = shares[row].min(axis=0)
-        others = shares.max(axis=1)
-        others[row] = 0.0
+        used, row, held, others = found
         most = np.where(held < NEAR_LIMIT, _name_all(_find_binding(others), others, held < NEAR_LIMIT), row)
         feed = self._ratios.frame.speed  # type: ignore[union-attr]
         return tuple(
@@ -241,6 +250,31 @@ class TimedPath(Trajectory):
             for a, b in _find_runs(most)
             if most[a] != row
         )
+
+    def _compare_to_feed(self) -> tuple[list[tuple[str, str, Array]], int, Array, Array] | None:
+        """The limits, which is the feed, the least share (k,) of it, and most (limits, k) of the others."""
+        if self._ratios is None or len(self._times) == 1:
+            return None
+        used, shares = self._use_limits()
+        row = next((k for k, each in enumerate(used) if each[1] == FEED), None)
+        if row is None:
+            return None
+        others = shares.max(axis=1)
+        others[row] = 0.0
+        return used, row, shares[row].min(axis=0), others
+
+    def _divide_for_feed(self) -> npt.NDArray[np.intp]:
+        """Into how many parts (k,) to divide intervals that are below the feed though no limit slows them.
+
+        What a law of the squared speed loses falls by the square of the length.
+        """
+        if (found := self._compare_to_feed()) is None:
+            return np.ones(len(self.intervals.piece), dtype=np.intp)
+        _, _, held, others = found
+        parts = np.clip(np.ceil(np.sqrt((1.0 - held) / FEED_HELD)), 2, MOST_PARTS)
+        lost = (1.0 - held) * np.diff(self._times) > FEED_LOST * self.duration
+        loose = lost & (held < 1.0 - FEED_HELD) & (others.max(axis=0) < NEAR_LIMIT)
+        return np.where(loose, parts, 1).astype(np.intp)
 
     def _use_limits(self) -> tuple[list[tuple[str, str, Array]], Array]:
         """The limits, and their shares (limits, 3, k) in use at three places of every interval."""
