@@ -624,6 +624,9 @@ SHORTENED_PARTS: Final = (0.0, 1e-4, 1e-2, 0.1, 0.3, 0.6)
 """Shares by which the followed part of a Cartesian path is shortened until a motion ends there: near a
 singular configuration joints move without bound on the last of it, and a chain may end before a search."""
 
+SHORTENED_WITHIN: Final = 2e-4
+"""Share of a Cartesian path within which the end of its followed part is found."""
+
 LAUNCH_PART: Final = 1e-6
 """Length of the launch of a motion from rest, relative to its path: it takes a hundredth of the time."""
 

@@ -122,6 +122,36 @@ def test_a_scene_rules_branches_out_and_says_what_is_touched():
     assert not cs.collision.collides(robot, free(t), cs.Scene()).any()
 
 
+@pytest.mark.parametrize("name", ["panda", "ur5e"])
+def test_as_far_as_possible_stops_before_an_obstacle(name):
+    """Lines towards a box end beside it: proved free up to there, and blocked a little farther."""
+    robot = cs.load_robot(name)
+    rng, stopped = np.random.default_rng(2), 0
+    for q in robot.random_configuration(12, rng=rng, reach=0.5):
+        goal = robot.fk(q).copy()
+        goal[:3, 3] += rng.uniform(-0.3, 0.3, 3)
+        options = {"start": q, "velocity": 2.0, "acceleration": 8.0}
+        free = robot.move_linear(goal, scene=cs.Scene(), **options)
+        if not free:
+            continue
+        scene = cs.Scene([cs.Box((0.1, 0.1, 0.1), goal[:3, 3], name="crate")])
+        part = robot.move_linear(goal, scene=scene, as_far_as_possible=True, **options)
+        if cs.collision.collides(robot, q, scene):
+            assert not part
+            assert "crate" in part.reason
+            continue
+        assert part
+        assert "crate" in part.stopped_by
+        assert f"{part.s_end:.6g}" in part.stopped_by
+        assert 0.0 < part.s_end == part.path.length < part.cartesian.length == free.cartesian.length
+        assert not cs.collision.collides(robot, part(np.linspace(0, part.duration, 500)), scene).any()
+        s = np.linspace(part.s_end, min(part.s_end + 5e-3, free.path.length), 30)
+        assert cs.collision.collides(robot, free.path(s), scene).any() or len(free.branches) > 1
+        assert part(part.duration, 1).max() == 0.0
+        stopped += 1
+    assert stopped >= 3
+
+
 def test_lines_through_a_singularity_slow_down_or_say_so():
     """The shoulder singularity: the tip passes beside the first axis at some distance."""
     robot = cs.load_robot("ur5e")

@@ -223,3 +223,19 @@ def test_ten_thousand_waypoints():
 def test_bad_input_is_named(call, message):
     with pytest.raises(cs.CspaceError, match=message):
         call()
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_a_part_of_a_path_is_the_path_up_to_there(name):
+    path = MAKERS[name](random_waypoints(np.random.default_rng(6)))
+    for end in (*path.breaks[1:3], 0.37 * path.length, path.length, 1e-3 * path.length):
+        part = path.part(float(end))
+        assert part.length == end
+        s = np.linspace(0.0, end, 40)
+        for order in range(3):
+            scale = np.abs(path(s, order)).max() + 1.0
+            np.testing.assert_allclose(part(s, order)[:-1], path(s, order)[:-1], atol=1e-8 * scale)
+        np.testing.assert_allclose(part.end, path(end), atol=1e-12)
+    for end in (0.0, -1.0, path.length * 1.01, np.nan):
+        with pytest.raises(InputError, match="must be above 0"):
+            path.part(end)

@@ -195,10 +195,11 @@ class ChainSearch:
         return np.asarray(out + np.where(moved, TURN * turns, 0.0))
 
     def _explain_end(self, chain: ConfigurationChain, has_next: bool) -> ConfigurationChain:
-        s = self.stations.s[len(chain.q)]
+        k, s = len(chain.q), self.stations.s
+        where = f"at s = {s[k - 1]:.6g} … {s[k]:.6g}" if k else "at s = 0"
         whence = "" if self.start is None else " from this start"
         if has_next:
-            text = f"at s = {s:.6g}: no chain of configurations that move little leads on{whence}"
+            text = f"{where}: no chain of configurations that move little leads on{whence}"
             return ConfigurationChain(chain.q, chain.values, text, "jump")
-        text = f"at s = {s:.6g}: no configuration within the limits reaches the path"
+        text = f"{where}: no configuration within the limits reaches the path"
         return ConfigurationChain(chain.q, chain.values, text, "unreachable")

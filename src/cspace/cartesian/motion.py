@@ -12,7 +12,7 @@ from cspace.arrays import Array, one_array, one_number
 from cspace.cartesian.free_turn import follow_free_turn
 from cspace.cartesian.joint_branches import JointBranch, JointBranches, follow_cartesian
 from cspace.cartesian.redundant_path import follow_redundant
-from cspace.cartesian.scene_check import find_touches, space_of_curves
+from cspace.cartesian.scene_check import Touch, find_touches, space_of_curves
 from cspace.errors import InputError
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel
@@ -21,7 +21,13 @@ from cspace.model import Limits
 from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike, one_pose
 from cspace.tables import count_things, one_line, shown
-from cspace.tolerances import LIMIT_ROUNDING, PATH_START, SHORTENED_PARTS, SHORTEST_PATH_PIECE
+from cspace.tolerances import (
+    LIMIT_ROUNDING,
+    PATH_START,
+    SHORTENED_PARTS,
+    SHORTENED_WITHIN,
+    SHORTEST_PATH_PIECE,
+)
 from cspace.trajectory.cartesian_makers import arc_path, is_repeated, pose_path
 from cspace.trajectory.cartesian_path import CartesianPath, check_cartesian_path, stay_at
 from cspace.trajectory.path import Path
@@ -31,13 +37,10 @@ from cspace.trajectory.timed_path import TimedPath
 
 if TYPE_CHECKING:
     from cspace.collision import Scene
+    from cspace.planning import ArmSpace
 
 RANKING_GRID: Final = 100
 """Intervals with which branches are compared: their durations are off by a few percent, alike for all."""
-
-
-HALVINGS: Final = 5
-"""Of the last of these shares."""
 
 
 class CartesianMotion(TimedMotion):
@@ -136,7 +139,16 @@ def move_cartesian(
         "turn_rate": turn_rate,
         "feed": feed,
     }
-    motion = _take_fastest(robot, path, found.branches, options, grid, scene, margin)
+    options["grid"] = grid
+    space = None if scene is None else space_of_curves(robot, scene, margin)
+    motion, touches = _take_fastest(robot, path, found.branches, options, space)
+    if as_far_as_possible and touches:
+        k, touch = max(touches.items(), key=lambda each: each[1].s)
+        if touch.s > SHORTEST_PATH_PIECE:
+            joints = _joints(found.branches[k]).part(touch.s)
+            timed = time_parametrize(joints, robot, positions=False, **options)
+            motion = CartesianMotion(timed, path, found.branches, k, motion.durations)
+            path, stopped_by = path.part(touch.s), _say_where(touch)
     if stopped_by:
         motion.cartesian, motion.stopped_by, motion.s_end = whole, stopped_by, path.length
     return motion
@@ -229,7 +241,10 @@ def _follow_part(
     tolerance: float,
     found: JointBranches,
 ) -> tuple[CartesianPath, JointBranches]:
-    """The part of a path that the farthest branch follows, and its branches; shorter where rounding asks."""
+    """The part of a path that can be followed, and its branches.
+
+    It ends before the farthest branch does where rounding asks, or where a chain of stations ended it.
+    """
     end = max((branch.s_end for branch in found.branches), default=0.0)
 
     def follow(share: float) -> JointBranches | None:
@@ -242,7 +257,7 @@ def _follow_part(
     if best is None:
         return path, found
     low = max((share for share in SHORTENED_PARTS if share < high), default=0.0)
-    for _ in range(HALVINGS if high > low else 0):
+    while high - low > SHORTENED_WITHIN:
         middle = 0.5 * (low + high)
         if followed := follow(middle):
             high, best = middle, followed
@@ -293,7 +308,8 @@ def _follow(
         if branch:
             return JointBranches((branch,), False, "")
         least = follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
-        return least if least else JointBranches((branch,), False, branch.reason)
+        farther = any(each.s_end >= branch.s_end for each in least.branches)
+        return least if farther else JointBranches((branch,), False, branch.reason)
     return follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
 
 
@@ -302,32 +318,36 @@ def _take_fastest(
     path: CartesianPath,
     branches: Sequence[JointBranch],
     options: dict[str, Any],
-    grid: int | None,
-    scene: Scene | None,
-    margin: float,
-) -> CartesianMotion:
+    space: ArmSpace | None,
+) -> tuple[CartesianMotion, dict[int, Touch]]:
+    """The motion of the fastest branch that touches nothing; without one where each touches something."""
     durations = np.full(len(branches), np.nan)
     arrived = [k for k, branch in enumerate(branches) if branch]
     refused: list[str] = []
-    space = None if scene is None else space_of_curves(robot, scene, margin)
+    touches: dict[int, Touch] = {}
     if len(arrived) > 1:
+        coarse = options | {"grid": RANKING_GRID}
         for k in arrived:
-            timed = time_parametrize(
-                _joints(branches[k]), robot, grid=RANKING_GRID, positions=False, **options
-            )
+            timed = time_parametrize(_joints(branches[k]), robot, positions=False, **coarse)
             durations[k] = timed.duration if timed else np.inf
         arrived.sort(key=lambda k: durations[k])
     for k in arrived:
         joints = _joints(branches[k])
-        if space is not None and (touches := find_touches(space, joints, first=True)):
-            refused.append(f"at s = {touches[0].s:.6g}: {touches[0].text}")
+        if space is not None and (found := find_touches(space, joints, first=True)):
+            touches[k] = found[0]
+            refused.append(_say_where(found[0]))
             continue
-        timed = time_parametrize(joints, robot, grid=grid, positions=False, **options)
+        timed = time_parametrize(joints, robot, positions=False, **options)
         if timed:
-            return CartesianMotion(timed, path, branches, k, durations)
+            return CartesianMotion(timed, path, branches, k, durations), {}
         refused.append(timed.reason)
     q = _joints(branches[arrived[0]]).start
-    return _refuse(robot, path, branches, q, "; ".join(dict.fromkeys(refused)), np.nan, durations)
+    reason = "; ".join(dict.fromkeys(refused))
+    return _refuse(robot, path, branches, q, reason, np.nan, durations), touches
+
+
+def _say_where(touch: Touch) -> str:
+    return f"at s = {touch.s:.6g}: {touch.text}"
 
 
 def _joints(branch: JointBranch) -> Path:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cspace.arrays import Array
+from cspace.collision import Edge
 from cspace.planning import ArmSpace
 from cspace.tolerances import NEARLY_STRAIGHT
 from cspace.trajectory.path import Path
@@ -17,9 +18,13 @@ MOST_PARTS: Final = 1 << 12
 """Of a piece."""
 
 
+HALVINGS: Final = 8
+"""Of a part that touches something: joints move by some hundredths of a rad on it at most."""
+
+
 @dataclass(frozen=True)
 class Touch:
-    """The piece of a path that is not proved free, where it touches something, and what."""
+    """The piece of a path that is not proved free, up to which s it is, and what it touches."""
 
     piece: int
     s: float
@@ -53,11 +58,28 @@ def find_touches(
         for i in range(counts[k]):
             found = space.edge(q[i], q[i + 1])
             if not found:
-                touches.append(Touch(k, float(s[i]), found.reason))
+                free = _free_share(space, q[i], q[i + 1])
+                touches.append(Touch(k, float(s[i] + free * (s[i + 1] - s[i])), _explain(found)))
                 break
         if touches and first:
             break
     return touches
+
+
+def _free_share(space: ArmSpace, a: Array, b: Array) -> float:
+    """The share of a motion from a to b, which touches something, that is proved free."""
+    free, blocked = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = 0.5 * (free + blocked)
+        if space.edge(a, a + middle * (b - a)):
+            free = middle
+        else:
+            blocked = middle
+    return free
+
+
+def _explain(found: Edge) -> str:
+    return found.reason if found.pair is None else " touches ".join(found.pair)
 
 
 def straight_parts(path: Path) -> NDArray[np.intp]:

@@ -240,6 +240,16 @@ class Path:
         at = np.unravel_index(int(np.argmin(s)), s.shape)
         return (int(joint[at[0]]), float(s[at]), float(values[at])) if beyond.any() else None
 
+    def part(self, end: float) -> Path:
+        """The path up to the parameter `end`. Raises InputError for one that is not above 0 or not on it."""
+        if not 0.0 < end <= self.length:
+            raise InputError(f"end is {end:g}; it must be above 0 and at most {self.length:g}")
+        last = int(np.searchsorted(self.breaks, end)) - 1
+        control = np.array(self.control_points[: last + 1])
+        share = np.array([(end - self.breaks[last]) / self.lengths[last]])
+        control[last:] = restrict_pieces(control[last:], np.zeros(1), share)
+        return Path(np.append(self.breaks[: last + 1], end), control, remarks=self.remarks)
+
     def reversed(self) -> Path:
         """The same path from its end to its start."""
         breaks = self.length - self.breaks[::-1]
