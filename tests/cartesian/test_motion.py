@@ -233,3 +233,31 @@ def test_as_far_as_possible_is_the_part_that_can_be_followed(name):
         np.testing.assert_allclose(robot.fk(part.path(s)), part.cartesian(s), atol=3e-5)
         assert part.check(cs.Limits(robot.limits.lower, robot.limits.upper))
     assert parts >= 3
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda"])
+def test_polylines_that_are_timed_without_jerk_limits_are_timed_with_them(name):
+    """Blends of every size, up to those that meet: a slow motion keeps any limit of jerk."""
+    robot = cs.load_robot(name)
+    rng, timed = np.random.default_rng(9), 0
+    for _ in range(12):
+        q = robot.random_configuration(rng=rng, reach=0.4)
+        T = robot.fk(q)
+        size = 10.0 ** rng.uniform(-2.0, -0.8)
+        poses = [T @ cs.pose(rng.normal(size=3) * size) for _ in range(int(rng.integers(2, 5)))]
+        options = {
+            "start": q,
+            "deviation": size * 10.0 ** rng.uniform(-2, 0),
+            "velocity": 2,
+            "acceleration": 5,
+        }
+        plain = robot.move_through(poses, **options)
+        if not plain:
+            continue
+        timed += 1
+        for jerk in (10.0, 100.0, 10_000.0):
+            motion = robot.move_through(poses, jerk=jerk, **options)
+            assert motion, motion.reason
+            assert motion.duration >= plain.duration * (1.0 - 1e-3)  # what their grids differ by
+            assert motion.extremes(3).highest.max() <= jerk * (1.0 + 1e-9)
+    assert timed >= 4

@@ -173,3 +173,17 @@ def test_tables_of_other_shapes_are_refused(tmp_path, text):
     path.write_bytes(text.encode())
     with pytest.raises(DescriptionError, match=r"a\.csv"):
         from_csv(path)
+
+
+def test_samples_read_back_exceed_accelerations_by_a_share_of_the_jerk_as_documented(tmp_path):
+    robot = cs.load_robot("panda")
+    limits, rng, file = robot.limits, np.random.default_rng(0), tmp_path / "motion.csv"
+    q = np.array([0.0, -0.7, 0.0, -2.0, 0.0, 1.5, 0.7])
+    shares = []
+    for rate in (100.0, 250.0, 1000.0):
+        for _ in range(5):
+            to_csv(robot.move_to(q + rng.uniform(-0.4, 0.4, 7), start=q), file, rate=rate)
+            found = from_csv(file).extremes(2)
+            excess = np.maximum(found.highest, -found.lowest) - limits.acceleration
+            shares.append(float((excess / (limits.jerk / rate)).max()))
+    assert 0.0 < max(shares) < 0.05
