@@ -307,6 +307,40 @@ def test_false_readings_are_rejected_and_a_kidnapping_is_said():
     assert not lost.lost[lost.times < 30.0].any()
 
 
+@pytest.mark.parametrize("name", ALL)
+def test_a_filter_that_began_at_a_wrong_place_says_lost(name):
+    """Some readings pass their gate by chance, so that never ten in a row are rejected."""
+    sensor, silent = RangeBearing(0.1, 0.05, most_range=6.0), 0
+    for seed in range(16):
+        log, rng = log_of(seed, sensor=sensor, period=1.0), np.random.default_rng(seed)
+        aside = rng.uniform(2.0, 8.0) * np.array([np.cos(seed), np.sin(seed)])
+        start = log.truth.poses[0] + np.append(aside, rng.uniform(-0.6, 0.6))
+        run = localize(log, filter=name, start=start, sensor=sensor, noise=NOISE)
+        error = np.hypot(*(run.poses[-1] - log.truth.at(run.times[-1]))[:2])
+        silent += bool(run) and error > 0.5
+        assert bool(run) or "contradict the filter" in run.reason
+        assert not (run and run.rejected[-30:].mean() > 0.8)
+    assert silent == 0
+    log = log_of(20)
+    r = log.readings
+    for right in (4, 6, 9):  # every fourth reading fits, or fewer
+        moved = r.range + np.where((r.times > 10.0) & (np.arange(len(r)) % right > 0), 2.5, 0.0)
+        run = localize(
+            replace(log, readings=replace(r, range=moved)), filter=name, sensor=SENSOR, noise=NOISE
+        )
+        assert not run
+        assert not run.lost[run.times < 10.0].any()
+        assert run.lost[run.times > 20.0].all()
+    for seed in range(6):  # of which a third of the readings are false, at the right place
+        log = log_of(seed)
+        r, rng = log.readings, np.random.default_rng(seed)
+        false = np.where(rng.random(len(r)) < 1 / 3, rng.uniform(0.5, 6.0, len(r)), r.range)
+        run = localize(
+            replace(log, readings=replace(r, range=false)), filter=name, sensor=SENSOR, noise=NOISE
+        )
+        assert run, seed
+
+
 def test_landmarks_known_badly_widen_the_innovation():
     log = log_of(13, 5.0)
     m = log.landmarks

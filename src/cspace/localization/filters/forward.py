@@ -18,7 +18,10 @@ from cspace.localization.filters.timeline import Timeline
 from cspace.localization.filters.updates import Innovation, Update, measure_innovation
 
 REJECTIONS: Final = 10
-"""Rejections in a row after which the filter counts as lost, and its covariance is inflated."""
+"""Rejections in a row after which the covariance is inflated, and sum of them from which a filter is lost."""
+REDEEMED: Final = 2
+"""Rejections that an accepted measurement makes up for: a filter is lost if it rejects more than two thirds
+for a while, though some fit by chance, and until it has made up for all (a cumulative sum, Page 1954)."""
 INFLATION: Final = 4.0
 """By how much: twice the standard deviations."""
 ANCHORS_PER_LOOK: Final = 64
@@ -62,7 +65,8 @@ class Pass:
         self.nis, self.innovations = np.full(k, np.nan), np.full((k, 2), np.nan)
         self.dof, self.accepted = np.zeros(k, dtype=np.int64), np.zeros(k, dtype=bool)
         self.inflated: list[int] = []
-        self.rejected = 0
+        self.rejected = self.contradictions = 0
+        self.is_lost = False
 
     def run(self, pose: Array, P: Array, read: Read) -> Passed:
         """The filter from a pose (3,) with covariance (3, 3)."""
@@ -79,11 +83,11 @@ class Pass:
                 pose, P = self.predict(begin, anchor + 1, pose, P)
             else:
                 self.poses[0], self.covariances[0] = self.before[0], self.covariances_before[0] = pose, P
-            self.lost[begin : anchor + 1] = self.rejected >= REJECTIONS
+            self.lost[begin : anchor + 1] = self.is_lost
             for number in range(first[k], last[k]):
                 pose, P = self.measure(number, anchor, pose, P, read)
             self.poses[anchor], self.covariances[anchor] = pose, P
-            self.lost[anchor] = self.rejected >= REJECTIONS
+            self.lost[anchor] = self.is_lost
         return Passed(
             self.poses,
             self.covariances,
@@ -122,6 +126,8 @@ class Pass:
             return self.reject(node, pose, P)
         self.accepted[number] = True
         self.rejected = 0
+        self.contradictions = max(0, self.contradictions - REDEEMED)
+        self.is_lost &= self.contradictions > 0
         return self.update(pose, P, measurement)
 
     def record(self, number: int, innovation: Innovation) -> None:
@@ -133,6 +139,8 @@ class Pass:
     def reject(self, node: int, pose: Array, P: Array) -> tuple[Array, Array]:
         """Counts a rejection; each tenth in a row inflates the covariance."""
         self.rejected += 1
+        self.contradictions = min(self.contradictions + 1, REJECTIONS)
+        self.is_lost |= self.contradictions == REJECTIONS
         if self.rejected % REJECTIONS:
             return pose, P
         self.inflated.append(node)

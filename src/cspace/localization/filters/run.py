@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace.arrays import Array, positive_number
 from cspace.errors import InputError, check_kind, check_known
 from cspace.localization.filters.backward import smooth_interval, smooth_lag
-from cspace.localization.filters.forward import REJECTIONS, Passed
+from cspace.localization.filters.forward import Passed
 from cspace.localization.filters.rows import find_twist
 from cspace.localization.filters.timeline import Timeline
 from cspace.localization.log import Ids, Mask
@@ -99,9 +99,10 @@ class Localization(EstimatedPoses):
 
     times (n,) [s], those of the odometry and of the measurements. poses (n, 3): x, y [m], θ [rad].
     covariances (n, 3, 3) of the disturbance ξ of T exp ξ, in base. filter: the name of what made it. status:
-    "localised", or "lost" after ten measurements in a row that contradict the filter, or without any. lost
-    (n,): where that was so. Per measurement: nis (k,) and its degrees of freedom dof (k,), innovations (k, 2)
-    with NaN for a second number that is not there, rejected (k,), measured (k,): the row of each in `times`.
+    "localised", or "lost" where more than two thirds of the last measurements contradict the filter, or
+    without any. lost (n,): where that was so. Per measurement: nis (k,) and its degrees of freedom dof (k,),
+    innovations (k, 2) with NaN for a second number that is not there, rejected (k,), measured (k,): the row
+    of each in `times`.
     """
 
     lost: Mask
@@ -121,7 +122,8 @@ class Localization(EstimatedPoses):
         if self.status == "lost":
             if not s.updates:
                 return "no measurement was used; the poses are dead reckoning"
-            return f"the last {REJECTIONS} measurements or more contradict the filter"
+            total = s.updates + s.rejected
+            return f"most of the last measurements contradict the filter; of all {s.rejected} of {total} do"
         return f"{s.updates} measurements used, {s.rejected} rejected, mean NIS per dof {s.mean_nis:.2f}"
 
     def smoothed(self, *, lag: float | None = None) -> Localization:
