@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
 from scipy.linalg import expm
 
 import cspace as cs
@@ -277,6 +278,50 @@ def test_consistency(linearization, consistent):
     mean = np.mean(values, axis=0)
     inside = ((mean > 2.54) & (mean < 3.50)).mean() >= 0.9 and mean.min() > 2.14 and mean.max() < 4.05
     assert inside == consistent
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_fast_slam_is_consistent_with_the_error_of_its_start(version):
+    """Resampling loses what is drawn into particles, but not the start, which no reading corrects."""
+    xi = np.random.default_rng(5).standard_normal((60, 3))
+    xi = xi @ np.linalg.inv(np.linalg.cholesky(xi.T @ xi / 60)).T @ np.sqrt(P0)
+    values = []
+    for seed, error in enumerate(xi):
+        log = log_of(1000 + seed, 30.0, 1.0)
+        start = cs.to_xytheta(cs.pose_2d(xytheta=log.truth.poses[0]) @ cs.exp_se2(-error))
+        run = run_fast_slam(
+            log,
+            version=version,
+            n=500,
+            rng=seed,
+            start=start,
+            start_covariance=P0,
+            sensor=SENSOR,
+            noise=NOISE,
+            gate=1 - 1e-12,
+        )
+        values.append(run.nees(log.truth))
+    mean = np.mean(values, axis=0)
+    low, high = stats.chi2.ppf([0.025, 0.975], 3 * len(xi)) / len(xi)
+    assert ((mean > low) & (mean < high)).mean() >= 0.9
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_the_start_moves_all_of_fast_slam_as_one_body(version):
+    """Poses and landmarks have the covariances of EKF-SLAM where the error of the start is all there is."""
+    log = log_of(4, 20.0, 1.0)
+    wide, narrow = np.array([[0.3, 0.1, 0.02], [0.1, 0.2, -0.01], [0.02, -0.01, 0.05]]), 1e-12 * np.eye(3)
+    options = {"sensor": SENSOR, "noise": NOISE, "start": log.truth.poses[0]}
+    cloud, sharp = (
+        run_fast_slam(log, version=version, rng=3, start_covariance=P, **options) for P in (wide, narrow)
+    )
+    assert np.array_equal(cloud.poses, sharp.poses)
+    kalman = [run_ekf_slam(log, start_covariance=P, **options) for P in (wide, narrow)]
+    more = cloud.covariances - sharp.covariances
+    np.testing.assert_allclose(more, kalman[0].covariances - kalman[1].covariances, atol=0.02 * more.max())
+    spread = cloud.landmarks.covariances - sharp.landmarks.covariances
+    of_kalman = kalman[0].landmarks.covariances - kalman[1].landmarks.covariances
+    np.testing.assert_allclose(spread, of_kalman, atol=0.02 * spread.max())
 
 
 @pytest.mark.parametrize("method", [run_ekf_slam, run_fast_slam])

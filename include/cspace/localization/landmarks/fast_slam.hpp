@@ -5,6 +5,10 @@
 // right does not depend on the pose. Version 1 draws the pose from it and weighs by the readings. Version 2
 // draws from it given the readings, and weighs by their density with the pose unknown:
 // N(ν; 0, H P Hᵀ + A Σ Aᵀ + R). Several readings are taken in turn, each given those before it.
+//
+// Particles begin at one pose. Readings of unknown landmarks tell nothing of the error of the start, which
+// moves poses and landmarks like one rigid body; it is added to their covariances as it is. Drawn into the particles
+// it would be lost a little with each resampling.
 #pragma once
 
 #include <cstdint>
@@ -52,12 +56,13 @@ class FastSlam {
 
     FastSlam(const FastSlamRule& rule, const Vector3& start, const Covariance3& covariance)
         : rule_(rule),
-          poses_(rule.particles, PlanarSpace::read_pose(start.data())),
+          start_(PlanarSpace::read_pose(start.data())),
+          start_covariance_(covariance),
+          poses_(rule.particles, start_),
           log_weights_(rule.particles),
           shares_(rule.particles, 1.0 / double(rule.particles)),
           counts_of_(rule.particles),
           chunks_(rule.particles),
-          pending_noise_(covariance),
           gate_(rule.landmarks.gate),
           pair_gate_(rule.landmarks.pair_share),
           new_gate_(rule.landmarks.new_share) {}
@@ -93,8 +98,11 @@ class FastSlam {
     // The mean pose, and the covariance of the disturbance on its right.
     Pose pose() const { return PlanarSpace::compose(mean_pose(), pending_); }
     Covariance3 base_covariance() const {
-        Covariance3 P = carry(PlanarSpace::adjoint(PlanarSpace::inverse(pending_)), spread(mean_pose()));
-        for (std::size_t k = 0; k < 9; ++k) P[k] += pending_noise_[k];
+        const Pose mean = mean_pose();
+        const Pose since = PlanarSpace::between(start_, PlanarSpace::compose(mean, pending_));
+        Covariance3 P = carry(PlanarSpace::adjoint(PlanarSpace::inverse(pending_)), spread(mean));
+        const Covariance3 first = carry(PlanarSpace::adjoint(PlanarSpace::inverse(since)), start_covariance_);
+        for (std::size_t k = 0; k < 9; ++k) P[k] += pending_noise_[k] + first[k];
         return P;
     }
     // The landmarks: with names the means over all particles, without them those of the heaviest one.
@@ -111,7 +119,7 @@ class FastSlam {
             const ParticleLandmark& landmark = chunks_.read(k, slot);
             found.push_back(
                 {std::int64_t(slot), landmark.point, landmark.point, landmark.seen, landmark.missed});
-            covariances.push_back(landmark.covariance);
+            covariances.push_back(add_start(landmark.point, landmark.covariance));
         }
         return found;
     }
@@ -135,12 +143,14 @@ class FastSlam {
     static constexpr std::size_t none = std::size_t(-1);
 
     FastSlamRule rule_;
+    Pose start_;
+    Covariance3 start_covariance_;
     std::vector<Pose> poses_;
     std::vector<double> log_weights_, shares_;
     std::vector<std::size_t> counts_of_;  // landmarks of each particle, without names
     LandmarkChunks chunks_;
     Pose pending_;
-    Covariance3 pending_noise_;
+    Covariance3 pending_noise_{};
     Covariance3 noise_{};  // of the particles in this update
     ChiSquareGate gate_, pair_gate_, new_gate_;
     bool is_named_ = true;
@@ -574,7 +584,21 @@ class FastSlam {
             const double outer[] = {x * x, x * y, y * y};
             for (std::size_t c = 0; c < 3; ++c) C[c] += shares_[k] * (landmark.covariance[c] + outer[c]);
         }
-        found.push_back(mean), covariances.push_back(C);
+        found.push_back(mean), covariances.push_back(add_start(mean.point, C));
+    }
+    // The covariance of a point of the map with that of the start, which turns it about the start.
+    Symmetric2 add_start(const Vector2& point, Symmetric2 C) const {
+        const double x = point[0] - start_.x, y = point[1] - start_.y;
+        const double by_start[2][3] = {{start_.c, -start_.s, -y}, {start_.s, start_.c, x}};
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                const double covariance = start_covariance_[3 * i + j];
+                C[0] += by_start[0][i] * covariance * by_start[0][j];
+                C[1] += by_start[0][i] * covariance * by_start[1][j];
+                C[2] += by_start[1][i] * covariance * by_start[1][j];
+            }
+        }
+        return C;
     }
 };
 
