@@ -32,6 +32,9 @@ rest."""
 DOUBLINGS: Final = 60
 """Of a duration that is too short."""
 
+SAMPLES_AT_ONCE: Final = 5000
+"""Samples between two steps at which an interrupt is heeded."""
+
 HALVINGS: Final = 40
 """Of the interval between a duration that is too short and one that is not: to twelve digits."""
 
@@ -55,11 +58,27 @@ def state_polynomials(states: Array, h: Array) -> Array:
 
 
 def connect_samples(times: Array, states: Array, joint_names: Sequence[str] | None) -> PolynomialTrajectory:
-    """The polynomials through states (k, m, dof) at times (k,), from 0 on."""
+    """The polynomials through states (k, m, dof) at times (k,), from 0 on.
+
+    Raises InputError for samples whose polynomial exceeds the range of numbers.
+    """
     if len(times) == 1:
         return connect_states(states[[0, 0]], 0.0, joint_names)
-    pieces = state_polynomials(np.stack([states[:-1], states[1:]], axis=1), np.diff(times))
-    parts = attain_end(times, np.swapaxes(pieces, 0, 1), states[-1])
+    _, m, dof = states.shape
+    pieces = np.empty((dof, len(times) - 1, 2 * m))
+    for begin in range(0, len(times) - 1, SAMPLES_AT_ONCE):  # an interrupt comes between two steps
+        rows = slice(begin, begin + SAMPLES_AT_ONCE + 1)
+        ends = np.stack([states[rows][:-1], states[rows][1:]], axis=1)
+        with np.errstate(all="ignore"):
+            made = state_polynomials(ends, np.diff(times[rows]))
+        if not np.isfinite(made).all():
+            k = begin + int(np.argwhere(~np.isfinite(made))[0][0])
+            raise InputError(
+                f"the motion from sample {k} at {times[k]:g} s to the next exceeds the range of numbers;"
+                " they are too large, or too close in time"
+            )
+        pieces[:, begin : begin + len(made)] = np.swapaxes(made, 0, 1)
+    parts = attain_end(times, pieces, states[-1])
     return PolynomialTrajectory(*parts, joint_names=joint_names)
 
 

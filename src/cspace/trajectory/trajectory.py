@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, one_number, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
+from cspace.model.values import read_joint_names
 from cspace.tables import count_things, one_line, show_fields, shown
 from cspace.tolerances import CONTINUITY_ROUNDING, LEAST_FACTOR, TIME_ROUNDING
 from cspace.trajectory.limit_check import (
@@ -88,10 +89,8 @@ class Trajectory(ABC):
     ) -> None:
         self.dof = dof
         self.duration = duration
-        self.joint_names = None if joint_names is None else tuple(joint_names)
+        self.joint_names = read_joint_names(joint_names, dof)
         self.reason = reason
-        if self.joint_names is not None and len(self.joint_names) != dof:
-            raise InputError(f"joint_names has {len(self.joint_names)} names, the trajectory {dof} joints")
 
     @property
     @abstractmethod
