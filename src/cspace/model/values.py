@@ -40,9 +40,7 @@ def name_of(value: object, subject: str) -> str:
     if not value.strip():
         raise InputError(f"the name of a {subject} is empty")
     if any("\ud800" <= letter <= "\udfff" for letter in value):
-        raise InputError(
-            f"the name {value!r} of a {subject} holds half of a character, which no file can hold"
-        )
+        raise InputError(f"the name {value!r} of a {subject} contains half of a character; leave it out")
     return value
 
 
@@ -56,7 +54,7 @@ def read_joint_names(names: Sequence[str] | None, count: int | None = None) -> t
         return None
     if isinstance(names, str) or not isinstance(names, Iterable):
         raise InputTypeError(f"joint_names is a {type(names).__name__}; give a list of texts")
-    made = tuple(name_of(name, "joint") for name in names)
+    made = tuple(name_of(name, "joint in joint_names") for name in names)
     if count is not None and len(made) != count:
         raise InputError(f"joint_names has {len(made)} names, expected {count}")
     if len(set(made)) < len(made):

@@ -14,12 +14,13 @@ from cspace.arrays import Array, as_floats, guard_memory, leading_axes, whole_nu
 from cspace.errors import InputError, InputTypeError, check_known
 from cspace.model.values import read_joint_names
 from cspace.tables import one_line
-from cspace.tolerances import FARTHEST
+from cspace.tolerances import FARTHEST, LEAST_FACTOR
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.states import (
     AxisLimits,
     check_accelerations,
     check_goal,
+    check_length,
     read_duration,
     read_states,
 )
@@ -179,6 +180,7 @@ def state_to_state(
         first, last, limits, asked, shape, read_duration(cycle, "cycle"), synchronize, threads
     )
     batch.joint_names = names
+    check_length(float(batch.durations.max(initial=0.0)))
     return batch if shape else batch[0]
 
 
@@ -197,6 +199,8 @@ def move_plain_states(
     if made is None or (joint_names is not None and len(joint_names) != len(made[0][0])):
         return None
     pieces, duration, keeps_within = made
+    if not duration <= 1.0 / LEAST_FACTOR:
+        return None
     return PolynomialTrajectory._trusted(*pieces, duration, joint_names, ""), keeps_within
 
 
@@ -210,7 +214,7 @@ def read_durations(duration: ArrayLike | None, cycle: float | None, synchronize:
         raise InputTypeError("duration= and cycle= do not go together; give one of them")
     if synchronize == "none":
         raise InputTypeError("duration= does not go with synchronize='none'; use 'time'")
-    asked = as_floats(duration, "duration")
+    asked = as_floats(duration, "duration", largest=1.0 / LEAST_FACTOR)
     if (asked < 0.0).any():
         raise InputError(f"duration is {float(asked.min()):g} s; it must not be negative")
     return asked

@@ -15,7 +15,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.tables import join_words
-from cspace.tolerances import FARTHEST, LIMIT_ROUNDING, TIMED_WITHIN
+from cspace.tolerances import FARTHEST, LEAST_LIMIT, LIMIT_ROUNDING, TIMED_WITHIN
 from cspace.trajectory.jerk_timed_path import JerkTimedPath
 from cspace.trajectory.jerk_timing import (
     JerkLimits,
@@ -399,6 +399,10 @@ def _read_limit(
             raise InputError(f"{name} has shape {row.shape}, expected () or ({n},), one per joint")
         if not (row >= 0.0).all():
             raise InputError(f"{name} contains {float(row[~(row >= 0.0)].flat[0]):g}; it must be 0 or more")
+        if (bad := row[(row > 0.0) & (row < LEAST_LIMIT) | np.isfinite(row) & (row > FARTHEST)]).size:
+            raise InputError(
+                f"{name} contains {bad.flat[0]:g}; it must be from {LEAST_LIMIT:g} to {FARTHEST:g}, 0 or inf"
+            )
         return np.full(n, row) if row.ndim == 0 else np.array(row)
     if limits is None:
         own = np.full(n, np.inf)
@@ -456,6 +460,8 @@ def _read_frame(
     fastest, turns, held = (
         np.inf if value is None else positive_number(value, name, rule) for name, value in given.items()
     )
+    if (least := min(fastest, turns, held)) < LEAST_LIMIT:
+        raise InputError(f"speed=, turn_rate= or feed= is {least:g}; they must be {LEAST_LIMIT:g} or more")
     if speed is not None and held < np.inf and held > fastest:
         raise InputError(f"feed is {held:g}, more than speed, which is {fastest:g}; leave one of them out")
     return FrameLimits(robot, frame, min(fastest, held), turns, held < np.inf)

@@ -12,8 +12,9 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Limits
-from cspace.tolerances import LIMIT_ROUNDING
+from cspace.tolerances import FARTHEST, LIMIT_ROUNDING
 from cspace.trajectory.polynomials import PolynomialTrajectory, attain_end
+from cspace.trajectory.states import check_length
 
 BOUNDARY_ORDERS: Final = {"cubic": 2, "quintic": 3, "septic": 4, "minimum_jerk": 3}
 """How many derivatives each polynomial attains at both ends, the position among them. Of all motions with
@@ -40,7 +41,8 @@ HALVINGS: Final = 40
 
 
 def state_polynomials(states: Array, h: Array) -> Array:
-    """The coefficients (..., dof, 2 m) of the polynomials that attain states at both ends.
+    """The coefficients (..., dof, 2 m) of the polynomials that attain states at both ends; inf or NaN where
+    they exceed the range of numbers.
 
     states (..., 2, m, dof): derivatives 0 … m − 1 at times 0 and h (...).
     """
@@ -51,7 +53,8 @@ def state_polynomials(states: Array, h: Array) -> Array:
     binomials = np.array([[math.comb(i, k) for i in range(n)] for k in range(m)], dtype=float)
     high = np.linalg.inv(binomials[:, m:]) @ (ends - binomials[:, :m] @ low)
     powers = h[..., None, None] ** np.arange(n)
-    coefficients: Array = np.swapaxes(np.concatenate([low, high], axis=-2), -1, -2) / powers
+    with np.errstate(over="ignore", invalid="ignore"):
+        coefficients: Array = np.swapaxes(np.concatenate([low, high], axis=-2), -1, -2) / powers
     factorials = np.array([math.factorial(k) for k in range(m)], dtype=float)
     coefficients[..., :m] = np.swapaxes(states[..., 0, :, :], -1, -2) / factorials  # without rounding
     return coefficients
@@ -69,10 +72,11 @@ def connect_samples(times: Array, states: Array, joint_names: Sequence[str] | No
     for begin in range(0, len(times) - 1, SAMPLES_AT_ONCE):  # an interrupt comes between two steps
         rows = slice(begin, begin + SAMPLES_AT_ONCE + 1)
         ends = np.stack([states[rows][:-1], states[rows][1:]], axis=1)
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"):  # of times that are anything
             made = state_polynomials(ends, np.diff(times[rows]))
-        if not np.isfinite(made).all():
-            k = begin + int(np.argwhere(~np.isfinite(made))[0][0])
+        beyond = ~np.isfinite(made).all(axis=(1, 2)) | (np.abs(ends) > FARTHEST).any(axis=(1, 2, 3))
+        if beyond.any():
+            k = begin + int(np.argmax(beyond))
             raise InputError(
                 f"the motion from sample {k} at {times[k]:g} s to the next exceeds the range of numbers;"
                 " they are too large, or too close in time"
@@ -89,6 +93,7 @@ def connect_states(
 
     states (2, m, dof): derivatives 0 … m − 1 at both ends.
     """
+    check_length(h)
     m, dof = states.shape[1:]
     if h == 0.0:
         still = np.zeros((dof, 1, 4))
@@ -107,7 +112,8 @@ def find_rest_duration(profile: str, displacement: Array, limits: Limits) -> flo
     size, longest = np.abs(displacement), 0.0
     kinds = (limits.velocity, limits.acceleration, limits.jerk)
     for k, (peak, limit) in enumerate(zip(PEAKS[profile], kinds, strict=True), 1):
-        longest = max(longest, float(np.max((peak * size / limit) ** (1.0 / k), initial=0.0)))
+        with np.errstate(over="ignore"):
+            longest = max(longest, float(np.max((peak * size / limit) ** (1.0 / k), initial=0.0)))
     return longest
 
 
@@ -121,7 +127,8 @@ def find_duration(profile: str, states: Array, limits: Limits, labels: Sequence[
     if not states[:, 1:].any():
         return h
     check_boundary(states, limits, labels)
-    speeds = np.abs(states[:, 1]) / limits.acceleration
+    with np.errstate(over="ignore"):
+        speeds = np.abs(states[:, 1]) / limits.acceleration
     low, high = 0.0, max(h, float(speeds.max(initial=0.0)), LIMIT_ROUNDING)
     for _ in range(DOUBLINGS):
         if connect_states(states, high, None).check(limits):
