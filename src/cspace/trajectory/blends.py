@@ -80,7 +80,8 @@ def _read_deviations(deviation: ArrayLike, given: int, kept: int) -> Array:
     """The deviations at the inner waypoints."""
     allowed = as_floats(deviation, "deviation", finite=False)
     if not (allowed >= 0.0).all():
-        raise InputError("deviation must be 0 or more; 0 stops at the corner")
+        bad = float(allowed[~(allowed >= 0.0)].flat[0])
+        raise InputError(f"deviation contains {bad:g}; it must be 0 or more, and 0 stops at the corner")
     if allowed.ndim == 0:
         return np.full(kept - 2, float(allowed))
     if allowed.shape != (given,):

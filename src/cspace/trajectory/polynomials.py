@@ -35,7 +35,7 @@ class PolynomialTrajectory(Trajectory):
         joint_names: Sequence[str] | None = None,
         reason: str = "",
     ) -> None:
-        c = as_floats(coefficients, "coefficients", last=(None, None, None))
+        c = as_floats(coefficients, "coefficients")
         t = as_floats(knots, "knots")
         if c.ndim != 3 or t.shape not in ((c.shape[1] + 1,), (c.shape[0], c.shape[1] + 1)) or c.size == 0:
             raise InputError(

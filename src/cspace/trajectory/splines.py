@@ -140,7 +140,7 @@ def b_spline(control_points: ArrayLike, degree: int = 3, *, length: float | None
     Source: de Boor 1978, chapter X.
     """
     degree = whole_number(degree, "degree", 1, HIGHEST_DEGREE)
-    q = as_floats(control_points, "control_points", last=(None, None), largest=FARTHEST_WAYPOINT)
+    q = as_floats(control_points, "control_points", largest=FARTHEST_WAYPOINT)
     if q.ndim != 2 or len(q) <= degree or q.shape[1] == 0:
         raise InputError(
             f"control_points has shape {q.shape}; a B-spline of degree {degree} needs"

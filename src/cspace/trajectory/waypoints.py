@@ -34,7 +34,7 @@ def read_waypoints(waypoints: ArrayLike) -> Waypoints:
 
     Raises InputError for another shape, NaN, and waypoints that are all the same.
     """
-    given = as_floats(waypoints, "waypoints", last=(None, None), largest=FARTHEST_WAYPOINT)
+    given = as_floats(waypoints, "waypoints", largest=FARTHEST_WAYPOINT)
     if given.ndim != 2 or len(given) < 2 or given.shape[1] == 0:
         raise InputError(f"waypoints has shape {given.shape}, expected (k, dof) with k ≥ 2 and dof ≥ 1")
     least = SAME_WAYPOINT * float(np.linalg.norm(np.diff(given, axis=0), axis=1).sum())
