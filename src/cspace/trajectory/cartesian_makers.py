@@ -113,7 +113,9 @@ def _arc_about(
 def _arc_through(start: Array, goal: Array, via: ArrayLike, rotation: str) -> CartesianPath:
     if not (isinstance(rotation, str) and rotation in ROTATIONS):
         raise InputError(f"rotation is {rotation!r}; expected one of {', '.join(ROTATIONS)}")
-    circle = _circle_through(start[:3, 3], one_array(via, "via", (3,), "a point", largest=FARTHEST_POINT), goal[:3, 3])
+    circle = _circle_through(
+        start[:3, 3], one_array(via, "via", (3,), "a point", largest=FARTHEST_POINT), goal[:3, 3]
+    )
     if circle is None:
         T = np.array(goal)
         if rotation != "interpolate":
@@ -283,8 +285,8 @@ def _circle_through(first: Array, via: Array, last: Array) -> tuple[Array, Array
     if np.linalg.norm(normal) <= COLLINEAR_POINTS * sizes[0] * sizes[2]:
         if a @ (last - via) < 0.0:
             raise InputError(
-                f"via is {sizes[0]:.3g} m from the start, and start and goal lie in the same direction from"
-                f" it, to {COLLINEAR_POINTS:g} rad; give a point between them, or a nearer one"
+                f"via is {sizes[0]:.3g} m from the start and not between start and goal, which lie in one"
+                f" direction from it, to {COLLINEAR_POINTS:g} rad; give a point between them, or a nearer one"
             )
         return None
     squared = float(normal @ normal)
