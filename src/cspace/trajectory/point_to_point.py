@@ -121,6 +121,8 @@ def fit_phases(
     if profile == "trapezoidal":
         if given["jerk"] is not None:
             raise InputTypeError("jerk= does not go with trapezoidal; use profile='double_s'")
+        if first[2].any() or last[2].any():
+            raise InputTypeError("accelerations at the ends do not go with trapezoidal; use 'double_s'")
         kinds = kinds[:2]
     most: dict[str, Any] = {kind: require_limits(robot, kind, given[kind]) for kind in kinds}
     motion = state_to_state(

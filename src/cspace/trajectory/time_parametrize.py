@@ -60,7 +60,7 @@ def time_parametrize(
     feed: float | None = None,
     robot: KinematicModel | None = None,
     frame: str | None = None,
-    gravity: ArrayLike = EARTH,
+    gravity: ArrayLike | None = None,
     start_speed: float = 0.0,
     end_speed: float = 0.0,
     grid: int | None = None,
@@ -80,10 +80,10 @@ def time_parametrize(
     number, (dof,) [N·m or N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest
     ones of the frame of robot, by default its tip. feed [m/s]: the speed that it is to have, wherever the
     limits allow it; `below_feed` lists where they do not. robot: whose dynamics and kinematics those need, by
-    default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends.
-    grid: about so many intervals; by default they are halved until that changes the duration by less than
-    `tolerance`, relative (0.001). Under jerk limits 30 of a piece, 150 or more, unless a tolerance is given.
-    positions: whether the limits of position of limits count, too.
+    default limits. gravity (3,) [m/s²]: for torque, (0, 0, −9.81) unless given. start_speed, end_speed:
+    speeds ds/dt of the parameter at the ends. grid: about so many intervals; by default they are halved until
+    that changes the duration by less than `tolerance`, relative (0.001). Under jerk limits 30 of a piece, 150
+    or more, unless a tolerance is given. positions: whether the limits of position of limits count, too.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits, the path
     leaves those of position, or the speeds at the ends are impossible. Raises InputError for a wrong shape,
@@ -429,9 +429,11 @@ def _read_jerk(jerk: Any, limits: Any, labels: tuple[str, ...]) -> Array | None:
 
 
 def _read_torque(
-    torque: Any, robot: KinematicModel | None, path: Path, gravity: ArrayLike
+    torque: Any, robot: KinematicModel | None, path: Path, gravity: ArrayLike | None
 ) -> TorqueLimits | None:
     if torque is None or torque is False:
+        if gravity is not None:
+            raise InputTypeError("gravity= counts for limits of torque alone; pass torque=, or leave it out")
         return None
     if robot is None:
         raise InputTypeError("torque= needs the dynamics of a robot; pass robot=")
@@ -445,7 +447,7 @@ def _read_torque(
         required=True,
         argument="torque",
     )
-    return TorqueLimits(robot, limit, one_array(gravity, "gravity", (3,)))
+    return TorqueLimits(robot, limit, one_array(EARTH if gravity is None else gravity, "gravity", (3,)))
 
 
 def _read_frame(
@@ -453,6 +455,8 @@ def _read_frame(
 ) -> FrameLimits | None:
     given = {"speed": speed, "turn_rate": turn_rate, "feed": feed}
     if all(value is None for value in given.values()):
+        if frame is not None:
+            raise InputTypeError("frame= needs a limit of its motion; pass speed=, turn_rate= or feed=")
         return None
     if robot is None:
         raise InputTypeError("speed=, turn_rate= and feed= need the kinematics of a robot; pass robot=")
