@@ -740,6 +740,10 @@ of Thrun takes the first turn as zero."""
 LOG_BYTES: Final = 1 << 30
 """Largest log that is read, after decompression: a day of a laser scanner; the numbers take as much again."""
 
+LARGEST_VARIANCE: Final = 1e12
+"""Largest number in the covariance of a start [m², rad²]: beyond it roundings are as large as the variances
+of sensors. A start that may be anywhere is None."""
+
 LARGEST_LOGGED: Final = 1e18
 """Largest number of a log: beyond it squares overflow, and nothing measures so much; stamps in nanoseconds
 are below."""

@@ -43,7 +43,7 @@ def from_json(path: str | os.PathLike[str]) -> Trajectory:
     then needs limits. Raises DescriptionError, with the file, for other contents.
     """
     try:
-        values: Any = json.loads(read_text(path_of(path), "JSON file", LARGEST_FILE, DescriptionError))
+        values: Any = json.loads(read_text(path_of(path), "JSON", LARGEST_FILE, DescriptionError))
     except (ValueError, RecursionError) as error:
         if isinstance(error, DescriptionError):
             raise

@@ -38,6 +38,9 @@ from cspace.trajectory.timed_path import Grid, TimedPath
 MOST_INTERVALS: Final = 10_000_000
 """Of a grid that is given as a number."""
 
+MOST_JERK_GRID: Final = 100_000
+"""Of a grid that is given as a number, under jerk limits: a solution takes some eight seconds."""
+
 MOST_JERK_INTERVALS: Final = 3000
 """From which on grids are not halved further under jerk limits: a solution takes half a second."""
 
@@ -115,7 +118,8 @@ def time_parametrize(
         None if own is None else own.joint_names,
         _read_jerk(jerk, given, labels),
     )
-    count = None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS)
+    most = MOST_INTERVALS if timer.jerk is None else MOST_JERK_GRID
+    count = None if grid is None else whole_number(grid, "grid", 1, most)
     return timer.run(count, given if positions and isinstance(given, Limits) else None)
 
 

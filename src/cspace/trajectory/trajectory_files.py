@@ -54,7 +54,7 @@ def from_csv(path: str | os.PathLike[str]) -> PolynomialTrajectory:
     Returns a PolynomialTrajectory. Raises DescriptionError, with the file and the line, for other columns,
     cells that are no numbers, and times that do not increase from zero.
     """
-    text = read_text(path_of(path), "CSV file", LARGEST_FILE, DescriptionError)
+    text = read_text(path_of(path), "CSV", LARGEST_FILE, DescriptionError)
     rows = csv.reader(io.StringIO(text, newline=""))
     try:
         return _read_table(rows, str(path))

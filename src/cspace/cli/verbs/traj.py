@@ -189,7 +189,7 @@ def read_waypoint_file(path: Path, names: Sequence[str], *, degrees: bool) -> Ar
 
     rows: list[list[float]] = []
     order = list(range(len(names)))
-    lines = read_text(path, "CSV file", LARGEST_FILE, DescriptionError).splitlines()
+    lines = read_text(path, "CSV", LARGEST_FILE, DescriptionError).splitlines()
     for number, line in enumerate(lines, start=1):
         if not line.strip(" \t,;") or line.lstrip().startswith("#"):
             continue
