@@ -203,3 +203,20 @@ def test_as_far_as_possible_is_the_part_that_can_be_followed(name):
         np.testing.assert_allclose(robot.fk(part.path(s)), part.cartesian(s), atol=3e-5)
         assert part.check(cs.Limits(robot.limits.lower, robot.limits.upper))
     assert parts >= 3
+
+
+@pytest.mark.parametrize("turns", [3, 100, 1000])
+def test_an_arc_of_many_turns_ends_at_the_same_place_as_one_turn(turns):
+    """Between the stations of a long path joints move too far; its end is not theirs."""
+    panda = cs.load_robot("panda")
+    start = np.array([0.0, -0.3, 0.0, -1.8, 0.0, 1.5, 0.5])
+    T = panda.fk(start)
+
+    def turn(angle):
+        about = {"center": T[:3, 3], "axis": T[:3, 2], "angle": angle}
+        return panda.move_arc(start=start, rotation="follow", velocity=1.0, acceleration=5.0, **about)
+
+    one, many = turn(2 * np.pi), turn(turns * 2 * np.pi)
+    assert not one and not many
+    assert many.s_end == pytest.approx(one.s_end, abs=1e-3)
+    assert many.reason.partition(":")[2] == one.reason.partition(":")[2]

@@ -118,9 +118,13 @@ def time_parametrize(
         None if own is None else own.joint_names,
         _read_jerk(jerk, given, labels),
     )
-    most = MOST_INTERVALS if timer.jerk is None else MOST_JERK_GRID
-    count = None if grid is None else whole_number(grid, "grid", 1, most)
-    return timer.run(count, given if positions and isinstance(given, Limits) else None)
+    return timer.run(_read_grid(grid, timer.jerk), given if positions and isinstance(given, Limits) else None)
+
+
+def _read_grid(grid: Any, jerk: Array | None) -> int | None:
+    """The number of intervals that is given, if one is."""
+    most = MOST_INTERVALS if jerk is None else MOST_JERK_GRID
+    return None if grid is None else whole_number(grid, "grid", 1, most)
 
 
 class _Timer:
