@@ -188,6 +188,6 @@ def test_a_cell_that_is_too_long_is_named(tmp_path):
 def test_what_could_not_be_read_is_not_written(format, tmp_path):
     path = tmp_path / "poses.txt"
     for times, rows in ((np.zeros(0), np.zeros((0, 3))), (np.arange(2.0), [[0, 0, 0], [1e19, 0, 0]])):
-        with pytest.raises(InputError, match="no poses to write|the largest allowed value"):
+        with pytest.raises(InputError, match=r"no poses to write|the largest allowed value"):
             write_poses(path, TimedPoses(times, rows), format=format)
     assert not path.exists()

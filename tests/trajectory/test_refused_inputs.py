@@ -154,14 +154,15 @@ def test_waypoints_of_any_size_give_paths_or_errors(size):
         lambda w: cs.blend(w, 0.1 * size),
         lambda w: cs.blend(w, 0.1 * size, kind="circular"),
     ):
-        with pytest.raises(InputError, match="the largest allowed|all the same|too close|the least is"):
+        with pytest.raises(InputError, match=r"the largest allowed|all the same|too close|the least is"):
             make(W * size)
 
 
 @pytest.mark.parametrize("deviation", [1e-300, 1e-17, 1e-13])
 def test_a_blend_that_is_too_small_is_a_stop(deviation):
     path = cs.blend(W, deviation)
-    assert len(path.stops) == 2 and "too small" in path.remarks[0]
+    assert len(path.stops) == 2
+    assert "too small" in path.remarks[0]
     poses = np.array([np.eye(4)] * 3)
     poses[1:, :3, 3] = [1, 0, 0], [1, 1, 0]
     assert len(pose_path(poses, deviation=deviation).stops) == 1
@@ -175,7 +176,7 @@ def test_limits_beyond_the_range_of_numbers(value):
             time_parametrize(path, **{**LIMITS, "jerk": 1.0, name: value})
     panda = cs.spline([READY, 0.9 * READY])
     for name in ("speed", "turn_rate", "feed"):
-        with pytest.raises(InputError, match="they must be|largest allowed"):
+        with pytest.raises(InputError, match=r"they must be|largest allowed"):
             time_parametrize(panda, PANDA, **{name: value})
 
 
@@ -184,7 +185,7 @@ def test_limits_beyond_the_range_of_numbers(value):
 def test_motions_beyond_the_range_of_numbers(profile, value):
     goal = 0.9 * READY
     for options in ({"velocity": value}, {"velocity": value, "start_velocity": np.full(7, 0.1)}):
-        with pytest.raises(InputError, match="the motion would last|must be within"):
+        with pytest.raises(InputError, match=r"the motion would last|must be within"):
             PANDA.move_to(goal, start=READY, profile=profile, **options)
     if profile not in ("double_s", "trapezoidal"):
         with pytest.raises(InputError, match="duration is"):
@@ -227,7 +228,7 @@ def test_points_that_are_too_far(far):
         arc_path(near, goal, via=(far, 0.1, 0.0))
     if far > 1e15:
         for make in (line_path, screw_path, lambda a, b: pose_path([a, b, goal])):
-            with pytest.raises(InputError, match="position of .* largest allowed"):
+            with pytest.raises(InputError, match=r"position of .* largest allowed"):
                 make(near, gone)
         for name, value in {"center": (far, 0, 0), "angle": far}.items():
             options = {"center": (1, 0, 0), "axis": (0, 0, 1), "angle": 1.0, name: value}
@@ -274,7 +275,7 @@ def test_wrong_values_are_named():
 
 @pytest.mark.parametrize("start", [[READY, READY], READY[None], ["ready"], ["ready", "ready"]])
 def test_move_takes_one_start(start):
-    with pytest.raises(InputError, match="start has shape .* give one configuration"):
+    with pytest.raises(InputError, match=r"start has shape .* give one configuration"):
         cs.move(PANDA, start, READY)
 
 
@@ -284,7 +285,8 @@ def test_named_poses_are_starts():
     assert PANDA.move_to(goal, start="ready").duration == PANDA.move_to(goal, start=READY).duration
     assert PANDA.move_to("ready", start=goal)
     named, plain = (PANDA.move_linear(T, start=start) for start in ("ready", READY))
-    assert named.duration == plain.duration and bool(named) == bool(plain)
+    assert named.duration == plain.duration
+    assert bool(named) == bool(plain)
     for call in (PANDA.move_to, PANDA.move_linear):
         with pytest.raises(UnknownNameError, match="did you mean 'ready'"):
             call(T if call == PANDA.move_linear else goal, start="redy")
@@ -296,4 +298,7 @@ def test_no_motion_passes_no_check():
     motion = PANDA.move_linear(T, start=READY)
     for each in (motion, motion.timed, motion.reversed()):
         check = each.check(PANDA)
-        assert not motion and not check and check.reason == motion.reason and not check.violations
+        assert not motion
+        assert not check
+        assert check.reason == motion.reason
+        assert not check.violations
