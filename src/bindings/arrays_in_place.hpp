@@ -25,7 +25,7 @@ struct Plain {
     // Whether value is such an array.
     bool read(PyObject* value) {
         auto* given = reinterpret_cast<PyArrayObject*>(value);
-        if (!PyArray_Check(value) ||
+        if (!PyArray_CheckExact(value) ||  // a masked array hides entries
             !PyArray_EquivTypenums(PyArray_TYPE(given), numpy_type<std::remove_const_t<T>>) ||
             !PyArray_ISCARRAY_RO(given) || (!std::is_const_v<T> && !PyArray_ISWRITEABLE(given)))
             return false;

@@ -63,6 +63,7 @@ def shape_of(value: Any, subject: str) -> tuple[int, ...]:
 
 def any_array(value: Any, subject: str) -> npt.NDArray[Any]:
     """The array (...) that numpy reads; InputError for rows of different lengths."""
+    _refuse_masked(value, subject)
     try:
         return np.asarray(value)
     except ValueError:
@@ -204,6 +205,7 @@ def _converted(value: Any, subject: str) -> Array:
         ) from None
     except (TypeError, ValueError) as error:
         raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
+    _refuse_masked(value, subject)
     if _holds_truth(array) or _holds_truth(value):
         what = f"a number, got the truth value {value}" if array.ndim == 0 else "numbers, got truth values"
         raise InputTypeError(f"{subject} must be {what}")
@@ -212,6 +214,19 @@ def _converted(value: Any, subject: str) -> Array:
     if numbers is None:
         raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__} of {array.dtype}")
     return numbers
+
+
+def _refuse_masked(value: Any, subject: str) -> None:
+    """InputError for a masked array with masked entries, also in a list: numpy reads what they hide."""
+    if isinstance(value, (list, tuple)):
+        if not set(map(type, value)) <= {float, int, np.ndarray}:
+            for part in value:
+                _refuse_masked(part, subject)
+    elif isinstance(value, np.ndarray) and type(value) is not np.ndarray:
+        masked = np.argwhere(np.broadcast_to(getattr(value, "mask", False), value.shape))
+        if len(masked):
+            at = f" at index {tuple(map(int, masked[0]))}" if value.ndim else ""
+            raise InputError(f"{subject} has a masked entry{at}; fill the masked entries or leave them out")
 
 
 def _holds_truth(value: Any) -> bool:

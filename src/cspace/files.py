@@ -26,6 +26,7 @@ from cspace.errors import (
 __all__ = [
     "YamlLine",
     "check_target",
+    "name_file",
     "path_of",
     "read_regular",
     "read_text",
@@ -91,6 +92,15 @@ def read_text(path: str | os.PathLike[str], kind: str, most: int, error: type[Fi
         line = data.count(b"\n", 0, fault.start) + 1
         text = f"this is no {kind}: the text is not UTF-8"
         raise error(text, path=os.fspath(path), line=line) from None
+
+
+@contextmanager
+def name_file(path: str, line: int | None = None) -> Iterator[None]:
+    """An InputError or InputTypeError in the block becomes a DescriptionError with the file, and the line."""
+    try:
+        yield
+    except (InputError, InputTypeError) as error:
+        raise DescriptionError(str(error), path=path, line=line) from None
 
 
 def check_target(path: str | os.PathLike[str]) -> Path:

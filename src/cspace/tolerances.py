@@ -602,6 +602,24 @@ SAME_WAYPOINT: Final = 1e-9
 """Distance of neighbouring waypoints, relative to the length of the path, up to which they are one: a spline
 through points so close turns on the spot."""
 
+FARTHEST_WAYPOINT: Final = 1e15
+"""Largest number of a waypoint, of a control point and of the parameter of a path [rad or m]: beyond it
+neighbouring numbers are 0.1 rad apart, and fifth powers leave the range of float64."""
+
+SHORTEST_PIECE: Final = 1e-30
+"""Least length of a piece of a path [rad or m]: fifth powers of its inverse stay in the range of float64."""
+
+LEAST_LIMIT: Final = 1e-25
+"""Least limit above zero of velocity, acceleration, jerk or torque with which a path is timed [SI]: speeds
+and durations stay in the range in which barriers of the timing converge."""
+
+LARGEST_DERIVATIVE: Final = 1e300
+"""Of a motion, by the sum of the magnitudes of all its terms: sums of such numbers fit a double."""
+
+SHORTEST_BLEND: Final = 1e-12
+"""Reach of a blend, relative to the numbers of its path, below which the path stops at the corner: the
+control points of the blend would be one point to rounding."""
+
 PATH_CORNER: Final = 1e-9
 """Jump of a derivative of a path, relative to its size, up to which it is continuous: neighbouring pieces are
 rounded differently."""
@@ -730,6 +748,10 @@ of Thrun takes the first turn as zero."""
 
 LOG_BYTES: Final = 1 << 30
 """Largest log that is read, after decompression: a day of a laser scanner; the numbers take as much again."""
+
+LARGEST_VARIANCE: Final = 1e12
+"""Largest number in the covariance of a start [m², rad²]: beyond it roundings are as large as the variances
+of sensors. A start that may be anywhere is None."""
 
 LARGEST_LOGGED: Final = 1e18
 """Largest number of a log: beyond it squares overflow, and nothing measures so much; stamps in nanoseconds

@@ -261,3 +261,21 @@ def test_polylines_that_are_timed_without_jerk_limits_are_timed_with_them(name):
             assert motion.duration >= plain.duration * (1.0 - 1e-3)  # what their grids differ by
             assert motion.extremes(3).highest.max() <= jerk * (1.0 + 1e-9)
     assert timed >= 4
+
+
+@pytest.mark.parametrize("turns", [3, 100, 1000])
+def test_an_arc_of_many_turns_ends_at_the_same_place_as_one_turn(turns):
+    """Between the stations of a long path joints move too far; its end is not theirs."""
+    panda = cs.load_robot("panda")
+    start = np.array([0.0, -0.3, 0.0, -1.8, 0.0, 1.5, 0.5])
+    T = panda.fk(start)
+
+    def turn(angle):
+        about = {"center": T[:3, 3], "axis": T[:3, 2], "angle": angle}
+        return panda.move_arc(start=start, rotation="follow", velocity=1.0, acceleration=5.0, **about)
+
+    one, many = turn(2 * np.pi), turn(turns * 2 * np.pi)
+    assert not one
+    assert not many
+    assert many.s_end == pytest.approx(one.s_end, abs=1e-3)
+    assert many.reason.partition(":")[2] == one.reason.partition(":")[2]

@@ -7,6 +7,7 @@ import pytest
 
 import cspace as cs
 from cli.run import cspace
+from data import ROOT
 
 
 def write_waypoints(path, rows):
@@ -112,3 +113,24 @@ def test_an_empty_cell_of_a_waypoint_is_refused(tmp_path, row):
     result = cspace(f"traj panda --waypoints {file}")
     assert result.code != 0
     assert "way.csv:2" in result.err
+
+
+@pytest.mark.parametrize(
+    ("words", "fault"),
+    [
+        ("traj panda --from ready --to ready --rate 50", "--rate has no effect without -o"),
+        ("traj panda --from ready --to ready --rate 50 -o {}/a.json", "--rate has no effect without -o"),
+        ("plan panda --from ready --to ready --rate 50", "--rate has no effect without --trajectory"),
+        ("traj panda --waypoints {}", "this is a folder; give the CSV file inside it"),
+        ("traj panda --from ready --line 1e300 0 0.4 --acceleration 5", "the largest allowed value"),
+        ("traj panda --from ready --to ready --profile septic --velocity 1e-300", ""),
+        ("traj panda --from ready --to extended --profile septic --velocity 1e-300", "the motion would last"),
+        ("localize {} --filter histogram --seed 3", "--seed is the seed of --filter mcl"),
+        ("localize {} --filter mcl --smooth", "--smooth is of the Kalman filters"),
+    ],
+)
+def test_options_without_effect_and_hostile_numbers(words, fault, tmp_path):
+    words = words.format(ROOT / "examples/small_drive" if words.startswith("localize") else tmp_path)
+    result = cspace(words)
+    assert result.code in ((2, 3) if fault else (0,)), result.err
+    assert fault in result.err

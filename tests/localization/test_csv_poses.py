@@ -175,3 +175,19 @@ def test_wrong_tables_are_named(tmp_path, text, words):
     path.write_text(text)
     with pytest.raises(LogError, match=words):
         read_log(path)
+
+
+def test_a_cell_that_is_too_long_is_named(tmp_path):
+    path = tmp_path / "poses.csv"
+    path.write_text(f"time,x,y,theta\n0,{'1' * 200_000},0,0\n")
+    with pytest.raises(LogError, match="a cell has more than"):
+        read_poses(path)
+
+
+@pytest.mark.parametrize("format", ["tum", "kitti", "csv"])
+def test_what_could_not_be_read_is_not_written(format, tmp_path):
+    path = tmp_path / "poses.txt"
+    for times, rows in ((np.zeros(0), np.zeros((0, 3))), (np.arange(2.0), [[0, 0, 0], [1e19, 0, 0]])):
+        with pytest.raises(InputError, match=r"no poses to write|the largest allowed value"):
+            write_poses(path, TimedPoses(times, rows), format=format)
+    assert not path.exists()

@@ -434,3 +434,27 @@ def test_mrclam_within_the_bars_of_the_project():
             results.append(np.sqrt(np.nanmean((error[:, :2] ** 2).sum(axis=1))))
     assert np.mean(filtered) < 0.18
     assert np.mean(smoothed) < 0.14
+
+
+@pytest.mark.parametrize("variance", [1e13, 1e20, 1e300])
+@pytest.mark.parametrize("name", ["ekf", "ukf", "information", "mcl"])
+def test_a_start_that_may_be_anywhere_is_refused(name, variance):
+    log = log_of(1)
+    with pytest.raises(InputError, match="start_covariance holds"):
+        localize(log, filter=name, start=(0, 0, 0), start_covariance=variance * np.eye(3), noise=NOISE)
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("ekf", {"rng": 1}),
+        ("ukf", {"n": 100}),
+        ("information", {"most": 100}),
+        ("histogram", {"rng": 1}),
+        ("histogram", {"gate": 0.9}),
+        ("mcl", {"gate": 0.9}),
+    ],
+)
+def test_arguments_that_a_filter_does_not_use_are_refused(name, options):
+    with pytest.raises(InputError, match=f"does not use {next(iter(options))}"):
+        localize(log_of(1), filter=name, **options)

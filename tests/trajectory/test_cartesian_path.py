@@ -148,7 +148,7 @@ def test_points_on_a_line_give_a_line():
         (lambda T, G: arc_path(T, G, via=(9, 0, 0)), "not between"),
         (lambda T, G: arc_path(T, T, via=(0.5, 0, 0)), "full circle"),
         (lambda T, G: arc_path(T, center=(1, 0, 0), axis=(0, 0, 0), angle=1), "axis is zero"),
-        (lambda T, G: arc_path(T, center=(1, 0, 0), axis=(0, 0, 1), angle=0), "angle of the arc is zero"),
+        (lambda T, G: arc_path(T, center=(1, 0, 0), axis=(0, 0, 1), angle=0), "its angle is zero"),
         (lambda T, G: arc_path(T, center=(1, 0, 0), axis=(0, 0, 1), angle=1, rotation="slerp"), "'slerp'"),
         (lambda T, G: arc_path(T, G, via=(0, 1, 0), center=(1, 0, 0)), "needs a goal pose and via="),
         (lambda T, G: line_path(T, G)(1.5), "the path is from 0 to 1"),

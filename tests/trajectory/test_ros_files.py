@@ -188,7 +188,7 @@ POINT = "- {positions: [1], velocities: [0], time_from_start: {sec: 0}}\n"
             "velocities of point 0 must be finite",
         ),
         (f"joint_names: [a]\npoints:\n{POINT.replace('velocities', 'accelerations')}", "need velocities"),
-        (f"joint_names: [a, a]\npoints:\n{POINT}", "joint_names must differ: a, a"),
+        (f"joint_names: [a, a]\npoints:\n{POINT}", "joint_names contains .a. twice"),
         (f"joint_names: [a\npoints:\n{POINT}", r"yaml:\d: the file is no YAML"),
         (f"joint_names: [a]\n  points:\n{POINT}", r"yaml:2: the file is no YAML"),
         (f"joint_names: !!python/object:os.system [a]\npoints:\n{POINT}", r"yaml:1: the file is no YAML"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -23,6 +23,9 @@ STATIONS: Final = (16, 96)
 
 LONGEST_SPACING: Final = 0.1
 """[m or rad] Of them on a longer path: joints move less than LONGEST_STEP between neighbours."""
+
+HALVINGS: Final = 8
+"""Of the interval between two stations in which a chain ends."""
 
 MOST_STATIONS: Final = 1000
 """On any path: the configurations there take a third of a gigabyte."""
@@ -92,12 +95,43 @@ class Stations:
 @dataclass(frozen=True, eq=False)
 class ConfigurationChain:
     """Configurations q (n, dof) and values (n,) at the first stations; all of them unless `reason` says why
-    not, with the cause."""
+    not, with the cause. s_end: the first station that it does not reach, inf for none."""
 
     q: Array
     values: Array
     reason: str = ""
     cause: str = "end"
+    s_end: float = np.inf
+
+
+def find_chain(
+    robot: KinematicModel, freedom: Freedom, path: CartesianPath, bounds: Limits, start: Array | None
+) -> tuple[Stations, ConfigurationChain]:
+    """The chain along a path, and the stations; else how far it goes.
+
+    Its end is placed by bisection along parts of the path. A long path is first searched as far as its
+    stations lie close: between others the joints move too far.
+    """
+    low, tried = 0.0, min(path.length, MOST_STATIONS * LONGEST_SPACING)
+    high, ended = path.length, None
+    for _ in range(HALVINGS + 1):
+        stations = Stations.of(path if tried == path.length else path.part(tried))
+        chain = ChainSearch(robot, freedom, stations, bounds, start).run()
+        if not chain.reason and tried == path.length:
+            return stations, chain
+        if not chain.reason:
+            low = tried
+        else:
+            ended, high = (stations, chain), chain.s_end if chain.s_end > low else tried
+            low = max(low, min(high, chain.s_end) - stations.spacing)
+        if high <= 0.0:
+            break
+        tried = path.length if ended is None else 0.5 * (low + high)
+    assert ended is not None
+    if ended[1].s_end < low:
+        text = f"at s = {low:.6g}: joints move too far between the {MOST_STATIONS} stations of a path so long"
+        return ended[0], replace(ended[1], reason=f"{text}; divide it", s_end=low)
+    return ended
 
 
 class ChainSearch:
@@ -195,11 +229,10 @@ class ChainSearch:
         return np.asarray(out + np.where(moved, TURN * turns, 0.0))
 
     def _explain_end(self, chain: ConfigurationChain, has_next: bool) -> ConfigurationChain:
-        k, s = len(chain.q), self.stations.s
-        where = f"at s = {s[k - 1]:.6g} … {s[k]:.6g}" if k else "at s = 0"
+        s = float(self.stations.s[len(chain.q)])
         whence = "" if self.start is None else " from this start"
         if has_next:
-            text = f"{where}: no chain of configurations that move little leads on{whence}"
-            return ConfigurationChain(chain.q, chain.values, text, "jump")
-        text = f"{where}: no configuration within the limits reaches the path"
-        return ConfigurationChain(chain.q, chain.values, text, "unreachable")
+            text = f"at s = {s:.6g}: no chain of configurations that move little leads on{whence}"
+            return ConfigurationChain(chain.q, chain.values, text, "jump", s)
+        text = f"at s = {s:.6g}: no configuration within the limits reaches the path"
+        return ConfigurationChain(chain.q, chain.values, text, "unreachable", s)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array
-from cspace.cartesian.chain_search import ChainSearch, Stations
+from cspace.cartesian.chain_search import find_chain
 from cspace.cartesian.guided import smooth_rows
 from cspace.cartesian.joint_branches import JointBranch, end_at_limits, make_branch
 from cspace.cartesian.redundant_path import (
@@ -71,16 +71,15 @@ def follow_free_turn(
         )
     tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)
-    stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")
     along = tool_axis(axis)
     if not solver.redundant_joints and not has_freedom(robot, along):
         q = np.zeros((0, robot.dof)) if first is None else first[None]
         return end_of_chain(q, 0.0, "unreachable", f"at s = 0: {NO_FREEDOM}", robot.dof)
     freedom = FreeTurn(robot, solver, along, bounds)
-    chain = ChainSearch(robot, freedom, stations, bounds, first).run()
+    stations, chain = find_chain(robot, freedom, path, bounds, first)
     if chain.reason:
-        return end_of_chain(chain.q, float(stations.s[len(chain.q)]), chain.cause, chain.reason, robot.dof)
+        return end_of_chain(chain.q, chain.s_end, chain.cause, chain.reason, robot.dof)
     angles = np.unwrap(chain.values)[:, None]
     found: JointBranch | None = None
     for weight in SMOOTHINGS:
@@ -201,6 +200,10 @@ class TurnedPath(CartesianPath):
     def _angles(self, piece: Indices, u: Array, order: int) -> Array:
         s = np.minimum(self.breaks[piece] + u, self._angle.length)
         return self._angle(s, order)
+
+    def part(self, end: float) -> TurnedPath:
+        """As of a CartesianPath."""
+        return TurnedPath(self._given.part(end), self._own_axis, self._angle)
 
     def poses_on(self, piece: Indices, u: Array) -> Array:
         """As of a CartesianPath."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -13,15 +14,16 @@ from cspace.cartesian.free_turn import follow_free_turn
 from cspace.cartesian.joint_branches import JointBranch, JointBranches, follow_cartesian
 from cspace.cartesian.redundant_path import follow_redundant
 from cspace.cartesian.scene_check import Touch, find_touches, space_of_curves
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError, suggest
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel
-from cspace.kinematics.batch import check_robot, limits_of
+from cspace.kinematics.batch import check_robot, find_pose, limits_of
 from cspace.model import Limits
 from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike, one_pose
 from cspace.tables import count_things, one_line, shown
 from cspace.tolerances import (
+    FARTHEST,
     LIMIT_ROUNDING,
     PATH_START,
     SHORTENED_PARTS,
@@ -160,9 +162,9 @@ def move_linear(
     """The motion of the tip on a straight line to a pose, its rotation about a fixed axis.
 
     goal (4, 4): T_base_tip; that of the start gives a motion of zero length. start (dof,) [rad or m]: the
-    present configuration. options: as of move_cartesian.
+    present configuration, or a named pose. options: as of move_cartesian.
     """
-    first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    first = _read_call(robot, start, options, "move_linear")
     return _move_along_poses(robot, first, one_pose(goal, "goal pose")[None], options)
 
 
@@ -180,10 +182,10 @@ def move_arc(
 ) -> CartesianMotion:
     """The motion of the tip on a circular arc: to a pose through a point, or about an axis by an angle.
 
-    start (dof,) [rad or m]: the present configuration. goal, via, center, axis, angle, rotation: as of
-    arc_path. options: as of move_cartesian.
+    start (dof,) [rad or m]: the present configuration, or a named pose. goal, via, center, axis, angle,
+    rotation: as of arc_path. options: as of move_cartesian.
     """
-    first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    first = _read_call(robot, start, options, "move_arc")
     if goal is None and angle is not None and one_number(angle, "angle") == 0.0:
         return _stay(robot, first, options)
     arc = arc_path(robot.fk(first), goal, via=via, center=center, axis=axis, angle=angle, rotation=rotation)
@@ -202,15 +204,29 @@ def move_through(
     """The motion of the tip on straight lines through poses, its corners blended.
 
     poses (n, 4, 4): T_base_tip, without that of the start. start (dof,) [rad or m]: the present
-    configuration. deviation [m], turn_deviation [rad]: as of pose_path; 0 stops at each corner. options: as
-    of move_cartesian.
+    configuration, or a named pose. deviation [m], turn_deviation [rad]: as of pose_path; 0 stops at each
+    corner. options: as of move_cartesian.
     """
-    first = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    first = _read_call(robot, start, options, "move_through")
     rows = as_pose(poses, "poses")
     if rows.ndim != 3:
         raise InputError(f"poses has shape {rows.shape}, expected (n, 4, 4)")
     corners = {"deviation": deviation, "turn_deviation": turn_deviation}
     return _move_along_poses(robot, first, rows, options, corners)
+
+
+def _read_call(robot: KinematicModel, start: ArrayLike, options: dict[str, Any], function: str) -> Array:
+    """The configuration of a start; InputTypeError for options that move_cartesian does not have."""
+    known = set(signature(move_cartesian).parameters) - {"robot", "path", "start"}
+    for name in options:
+        if name not in known:
+            raise InputTypeError(str(suggest("option", name, known, owner=function)))
+    return _read_start(robot, start)
+
+
+def _read_start(robot: KinematicModel, start: ArrayLike) -> Array:
+    given = find_pose(robot, start)
+    return one_array(given, "start", (len(robot.joint_names),), "one configuration", largest=FARTHEST)
 
 
 def _move_along_poses(
@@ -267,7 +283,7 @@ def _follow_part(
 
 
 def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, turns: bool) -> Array:
-    q = one_array(start, "start", (len(robot.joint_names),), "one configuration")
+    q = _read_start(robot, start)
     T, first = robot.fk(q), path(0.0)
     off = float(np.linalg.norm(T[:3, 3] - first[:3, 3]))
     turned = 0.0 if turns else float(np.linalg.norm(T[:3, :3] - first[:3, :3]) * np.sqrt(0.5))

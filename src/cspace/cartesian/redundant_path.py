@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array
-from cspace.cartesian.chain_search import ROOMY, ChainSearch, Stations
+from cspace.cartesian.chain_search import ROOMY, find_chain
 from cspace.cartesian.guided import Guided, null_directions, smooth_rows
 from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, end_at_limits, make_branch
 from cspace.cartesian.refine import first_nodes, read_tolerance, refine_branches
@@ -59,11 +59,10 @@ def follow_redundant(
         )
     tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)
-    stations = Stations.of(path)
     first = None if start is None else one_array(start, "start", (robot.dof,), "one configuration")
-    chain = ChainSearch(robot, RedundantJoint.of(solver, bounds), stations, bounds, first).run()
+    stations, chain = find_chain(robot, RedundantJoint.of(solver, bounds), path, bounds, first)
     if chain.reason:
-        return end_of_chain(chain.q, float(stations.s[len(chain.q)]), chain.cause, chain.reason, robot.dof)
+        return end_of_chain(chain.q, chain.s_end, chain.cause, chain.reason, robot.dof)
     rows = np.concatenate([chain.q, null_directions(robot, chain.q)], axis=1)
     piece, u = first_nodes(path)
     found: JointBranch | None = None

@@ -97,6 +97,19 @@ def refuse_infinite(batch: Batch) -> None:
     as_floats(batch.q.reshape((*batch.shape, batch.q.shape[1])), "q", largest=FARTHEST)
 
 
+def find_pose(robot: object, q: Any) -> Any:
+    """The configuration of a named pose of a robot; anything but a name as it is.
+
+    Raises UnknownNameError for another name, InputTypeError for a model without named poses.
+    """
+    if not isinstance(q, str):
+        return q
+    poses: Mapping[str, Array] | None = getattr(robot, "named_poses", None)
+    if poses is None:
+        raise InputTypeError(f"a {type(robot).__name__} has no named poses; give a configuration")
+    return poses[q]
+
+
 def check_robot(robot: object) -> None:
     """Raise InputTypeError for an object that is not a robot, such as its name."""
     if not isinstance(robot, KinematicModel):

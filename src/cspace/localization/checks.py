@@ -27,7 +27,8 @@ def read_pose(pose: npt.ArrayLike, subject: str = "start") -> Array:
 
 def read_covariance(covariance: npt.ArrayLike, subject: str = "start_covariance") -> Array:
     """A covariance (3, 3) of a pose, symmetrised; InputError for one that is none."""
-    P = one_array(covariance, subject, (3, 3), "variances on the diagonal, np.diag(...)")
+    rule = "variances on the diagonal, np.diag(...)"
+    P = one_array(covariance, subject, (3, 3), rule, largest=tolerances.LARGEST_VARIANCE)
     least = float(np.linalg.eigvalsh(P)[0])
     if (
         np.abs(P - P.T).max() > tolerances.COVARIANCE_SYMMETRY * max(1.0, np.abs(P).max())

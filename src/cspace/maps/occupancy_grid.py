@@ -11,7 +11,7 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, guard_memory, one_number, positive_number
+from cspace.arrays import Array, any_array, as_floats, guard_memory, one_number, positive_number
 from cspace.errors import InputError, InputTypeError, shown, suggest
 from cspace.maps.byte_field import ByteField
 from cspace.maps.likelihood_field import LIKELIHOOD_FLOOR, SIGMA, check_hit_model
@@ -239,10 +239,7 @@ def _read_cells(blocked: Any) -> npt.NDArray[np.uint8]:
             f"blocked is {shown(blocked)}, expected an array of cells (rows, columns); to read a file, use"
             " OccupancyGrid.from_image, from_ros or from_movingai"
         )
-    try:
-        cells = np.asarray(blocked)
-    except ValueError:
-        raise InputError("blocked has rows of different lengths; all rows need as many cells") from None
+    cells = any_array(blocked, "blocked")
     if cells.dtype != np.bool_:
         if cells.dtype.kind not in "iuf":
             raise InputTypeError(f"blocked must be boolean, got {type(blocked).__name__} of {cells.dtype}")

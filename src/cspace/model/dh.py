@@ -16,7 +16,7 @@ from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Inertial, Link
 from cspace.model.screws import check_joint_types, joint_rows, link_names, one_freedom_type
-from cspace.model.values import IDENTITY, check_placement, check_size, freeze_array
+from cspace.model.values import IDENTITY, check_placement, check_size, freeze_array, read_joint_names
 from cspace.tables import align_cells, markdown_table, one_line, shown
 
 CONVENTIONS: Final = ("standard", "modified")
@@ -77,7 +77,7 @@ class DHTable:
     joint_types: str
     T_base: Array = field(default_factory=lambda: IDENTITY)
     T_tool: Array = field(default_factory=lambda: IDENTITY)
-    joint_names: tuple[str, ...] = ()
+    joint_names: Sequence[str] = ()
     deviation: float = 0.0
 
     def __post_init__(self) -> None:
@@ -92,10 +92,8 @@ class DHTable:
         store(self, "joint_types", check_joint_types(self.joint_types, n, letters="RPF"))
         store(self, "T_base", check_placement(self.T_base, "T_base"))
         store(self, "T_tool", check_placement(self.T_tool, "T_tool"))
-        names = tuple(self.joint_names) or tuple(f"joint_{i + 1}" for i in range(n))
-        if len(names) != n:
-            raise InputError(f"joint_names has {len(names)} names, expected {n}")
-        store(self, "joint_names", names)
+        numbered = tuple(f"joint_{i + 1}" for i in range(n))
+        store(self, "joint_names", read_joint_names(self.joint_names or numbered, n))
 
     def __len__(self) -> int:
         return len(self.joint_types)
@@ -206,12 +204,11 @@ def from_dh(
         rows = _rows(table)
         types = "R" * len(rows) if joint_types is None else joint_types
         before, after = (IDENTITY if T is None else T for T in (T_base, T_tool))
-        names = () if joint_names is None else tuple(joint_names)
         alpha, a, d, theta = rows.T
         if np.abs(rows[:, [0, 3]]).max(initial=0.0) > TURN:
             text = "the table has angles beyond 2π: they are in radians; np.radians converts degrees"
             warnings.warn(text, stacklevel=2)
-        dh = DHTable(convention, alpha, a, d, theta, types, before, after, names)
+        dh = DHTable(convention, alpha, a, d, theta, types, before, after, joint_names or ())
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk, "effort": effort}
     n = len(dh)
     opposed = {"damping": damping, "friction": friction, "armature": armature}

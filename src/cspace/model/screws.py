@@ -13,7 +13,7 @@ from cspace.errors import InputError
 from cspace.model.description import Description
 from cspace.model.joint import Joint, limit_row
 from cspace.model.link import Link
-from cspace.model.values import check_placement, check_size, translation_by, unit_axis
+from cspace.model.values import check_placement, check_size, read_joint_names, translation_by, unit_axis
 
 
 def from_screws(
@@ -53,7 +53,7 @@ def from_screws(
         )
     end = check_placement(T_zero, "T_zero")
     types = check_joint_types("R" * n if joint_types is None else joint_types, n)
-    names = _joint_names(joint_names, n)
+    names = read_joint_names(joint_names, n) or [f"joint_{i + 1}" for i in range(n)]
     links = link_names(names, base, tip)
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk, "effort": effort}
     rows = joint_rows(n, lower=lower, upper=upper, **limits)
@@ -98,14 +98,6 @@ def joint_rows(n: int, **limits: Any) -> list[dict[str, Any]]:
         limits["lower"] = np.full(n, -np.inf)
     columns = {field: limit_row(value, field, n) for field, value in limits.items()}
     return [{field: float(column[i]) for field, column in columns.items()} for i in range(n)]
-
-
-def _joint_names(names: Sequence[str] | None, n: int) -> list[str]:
-    if names is None:
-        return [f"joint_{i + 1}" for i in range(n)]
-    if len(names) != n or isinstance(names, str):
-        raise InputError(f"joint_names has {len(names)} names, expected {n}")
-    return [str(name) for name in names]
 
 
 def link_names(joints: Sequence[str], base: str, tip: str) -> list[str]:

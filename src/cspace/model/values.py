@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -39,7 +39,28 @@ def name_of(value: object, subject: str) -> str:
         raise InputTypeError(f"the name of a {subject} must be a string, got {type(value).__name__}")
     if not value.strip():
         raise InputError(f"the name of a {subject} is empty")
+    if any("\ud800" <= letter <= "\udfff" for letter in value):
+        raise InputError(f"the name {value!r} of a {subject} contains half of a character; leave it out")
     return value
+
+
+def read_joint_names(names: Sequence[str] | None, count: int | None = None) -> tuple[str, ...] | None:
+    """Names of so many joints as a tuple, each once; None is none.
+
+    Raises InputTypeError for anything but a list of texts, InputError for another number of names, and for
+    one that is empty or there twice.
+    """
+    if names is None:
+        return None
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise InputTypeError(f"joint_names is a {type(names).__name__}; give a list of texts")
+    made = tuple(name_of(name, "joint in joint_names") for name in names)
+    if count is not None and len(made) != count:
+        raise InputError(f"joint_names has {len(made)} names, expected {count}")
+    if len(set(made)) < len(made):
+        doubled = next(name for name in made if made.count(name) > 1)
+        raise InputError(f"joint_names contains {doubled!r} twice; the names must differ")
+    return made
 
 
 def check_number(value: Any, subject: str) -> float:

@@ -9,13 +9,15 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, bounded_number
+from cspace.arrays import Array, bounded_number, shape_of
 from cspace.cartesian.scene_check import bound_bends, find_touches, space_of_curves
 from cspace.collision import Scene
 from cspace.collision.checks import collides
+from cspace.errors import InputError, InputTypeError
 from cspace.plan_motion.goals import GoalLike
 from cspace.plan_motion.plans import Seed, plan
 from cspace.planning import ArmPlanner, ArmSpace, Plan
+from cspace.planning.space import are_names
 from cspace.robot import Robot
 from cspace.tables import one_line, shown
 from cspace.tolerances import LEAST_DEVIATION, MOTION_CHECK_EXCESS, MOTION_CHECK_STEP, PATH_CURVED
@@ -24,6 +26,17 @@ from cspace.trajectory.timed_motion import TimedMotion, stand_still
 
 MOST_CHECKED: Final = 20_000
 """Of them; a longer motion is checked in larger steps."""
+
+
+OF_OTHERS: Final = {
+    "feed": "speed= limits the speed of the tip; move_linear and its like hold a feed",
+    "duration": "scaled(factor) of the motion makes it slower; move_to takes a duration",
+    "cycle": "move_to takes it, without a plan",
+    "profile": "move_to takes it, without a plan",
+    "frame": "speed= and turn_rate= are those of the tip; time_parametrize takes a frame",
+    "grid": "time_parametrize takes it",
+}
+"""Keywords of other functions that make motions, and what goes in their place."""
 
 
 class Motion(TimedMotion):
@@ -78,6 +91,13 @@ def move(
     or the limits cannot be kept. Raises as plan and time_parametrize do.
     """
     bounded_number(deviation, "deviation", 0.0, "it must be 0 or more")
+    for name in options.keys() & OF_OTHERS.keys():
+        raise InputTypeError(f"move has no {name}=; {OF_OTHERS[name]}")
+    if not isinstance(start, str) and (are_names(start) or len(shape_of(start, "start")) > 1):
+        raise InputError(
+            f"start has shape {shape_of(start, 'start')}; give one configuration (dof,) or named pose: plan"
+            " chooses among several, and time_plan times its answer"
+        )
     found = plan(robot, start, goal, scene, planner=planner, margin=margin, rng=rng, **options)
     limits: dict[str, Any] = {
         "velocity": velocity,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TypeGuard
 
@@ -15,7 +15,8 @@ from cspace.arrays import Array, as_floats
 from cspace.collision import Clearance, Edge, RobotGeometry, Scene, clearance, edge
 from cspace.collision.checker import Checker, checker_of
 from cspace.collision.checks import HasGeometry, read_geometry
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError
+from cspace.kinematics.batch import find_pose
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.tables import one_line
 from cspace.tolerances import LARGEST_NUMBER
@@ -99,10 +100,8 @@ class ArmSpace:
 
     def _find_named(self, names: str | Sequence[str]) -> Array:
         """The configurations (n, dof) of named poses of the robot."""
-        poses: Mapping[str, Array] | None = getattr(self.robot, "named_poses", None)
-        if poses is None:
-            raise InputTypeError("a RobotGeometry has no named poses; give configurations")
-        return np.stack([poses[name] for name in ([names] if isinstance(names, str) else names)])
+        each = [names] if isinstance(names, str) else names
+        return np.stack([find_pose(self.robot, name) for name in each])
 
     def describe_violation(self, q: Array) -> str:
         """The first joint that is outside its limits, in words."""

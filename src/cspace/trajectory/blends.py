@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, check_known
 from cspace.tables import count_things
-from cspace.tolerances import REVERSED_TURN, STRAIGHT_TURN
+from cspace.tolerances import REVERSED_TURN, SHORTEST_BLEND, STRAIGHT_TURN
 from cspace.trajectory.path import Path, hermite_quintics, raise_degree
 from cspace.trajectory.waypoints import read_waypoints
 
@@ -53,6 +53,9 @@ def blend(waypoints: ArrayLike, deviation: ArrayLike, *, kind: str = "quintic") 
     half = 0.5 * np.minimum(given.distances[:-1], given.distances[1:])
     reach = _blend_reach(turns, allowed, kind)
     blended = (turns > STRAIGHT_TURN) & (turns < np.pi - REVERSED_TURN) & (reach > 0.0)
+    size = max(float(given.distances.sum()), float(np.abs(given.q).max()))
+    tiny = blended & (reach < SHORTEST_BLEND * size)
+    blended &= ~tiny
     reach = np.where(blended, np.minimum(reach, half), 0.0)
     pieces = _Pieces()
     at = given.q[0]
@@ -68,6 +71,8 @@ def blend(waypoints: ArrayLike, deviation: ArrayLike, *, kind: str = "quintic") 
     pieces.add_line(at, given.q[-1])
     reversals = int((turns >= np.pi - REVERSED_TURN).sum())
     remarks = given.remarks + ([f"stops at {count_things(reversals, 'turn')} near 180°"] if reversals else [])
+    if tiny.any():
+        remarks.append(f"stops at {count_things(int(tiny.sum()), 'corner')} whose deviation is too small")
     return pieces.make_path(remarks)
 
 
@@ -75,7 +80,8 @@ def _read_deviations(deviation: ArrayLike, given: int, kept: int) -> Array:
     """The deviations at the inner waypoints."""
     allowed = as_floats(deviation, "deviation", finite=False)
     if not (allowed >= 0.0).all():
-        raise InputError("deviation must be 0 or more; 0 stops at the corner")
+        bad = float(allowed[~(allowed >= 0.0)].flat[0])
+        raise InputError(f"deviation contains {bad:g}; it must be 0 or more, and 0 stops at the corner")
     if allowed.ndim == 0:
         return np.full(kept - 2, float(allowed))
     if allowed.shape != (given,):

@@ -8,11 +8,19 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, bounded_number, one_array, one_number
+from cspace.arrays import Array, as_floats, bounded_number, one_array, one_number
 from cspace.errors import InputError
 from cspace.spatial import as_pose, inverse_pose, log_so3, screw_of
 from cspace.spatial.checks import PoseLike, one_pose
-from cspace.tolerances import COLLINEAR_POINTS, NEAR_HALF_TURN, REPEATED_POSE, SMOOTH_CORNER
+from cspace.tolerances import (
+    COLLINEAR_POINTS,
+    FARTHEST,
+    FARTHEST_POINT,
+    NEAR_HALF_TURN,
+    REPEATED_POSE,
+    SHORTEST_BLEND,
+    SMOOTH_CORNER,
+)
 from cspace.trajectory.cartesian_path import DEGREE, CartesianPath, CartesianPiece
 
 ROTATIONS: Final = ("interpolate", "keep", "follow")
@@ -37,7 +45,7 @@ def line_path(T_start: PoseLike, T_goal: PoseLike) -> CartesianPath:
 
     T_start, T_goal (4, 4): T_base_tip. Raises InputError for poses 180° apart: either way is shortest.
     """
-    return pose_path([one_pose(T_start, "start pose"), one_pose(T_goal, "goal pose")])
+    return pose_path([_near_pose(T_start, "start pose"), _near_pose(T_goal, "goal pose")])
 
 
 def screw_path(T_start: PoseLike, T_goal: PoseLike) -> CartesianPath:
@@ -46,7 +54,7 @@ def screw_path(T_start: PoseLike, T_goal: PoseLike) -> CartesianPath:
     T_start, T_goal (4, 4): T_base_tip. Its way does not depend on which point of the tip is followed
     (Chasles).
     """
-    start, goal = one_pose(T_start, "start pose"), one_pose(T_goal, "goal pose")
+    start, goal = _near_pose(T_start, "start pose"), _near_pose(T_goal, "goal pose")
     _check_turn(start, goal, "the start and the goal pose")
     screw = screw_of(goal @ inverse_pose(start))
     if screw.is_translation:
@@ -75,12 +83,12 @@ def arc_path(
     Points on a line give a line. Raises InputError for arguments that do not fit together, and a via point
     that repeats an end.
     """
-    start = one_pose(T_start, "start pose")
+    start = _near_pose(T_start, "start pose")
     by_via = T_goal is not None and via is not None and center is axis is angle is None
     by_axis = T_goal is via is None and center is not None and axis is not None and angle is not None
     if by_via:
         how = "interpolate" if rotation is None else rotation
-        return _arc_through(start, one_pose(T_goal, "goal pose"), via, how)  # type: ignore[arg-type]
+        return _arc_through(start, _near_pose(T_goal, "goal pose"), via, how)  # type: ignore[arg-type]
     if by_axis:
         how = "follow" if rotation is None else rotation
         return _arc_about(start, center, axis, angle, how)  # type: ignore[arg-type]
@@ -92,12 +100,12 @@ def _arc_about(
 ) -> CartesianPath:
     if not (isinstance(rotation, str) and rotation in ("keep", "follow")):
         raise InputError(f"rotation is {rotation!r}; about an axis it is 'keep' or 'follow'")
-    point = one_array(center, "center", (3,), "a point")
-    direction = one_array(axis, "axis", (3,), "a direction")
+    point = one_array(center, "center", (3,), "a point", largest=FARTHEST_POINT)
+    direction = one_array(axis, "axis", (3,), "a direction", largest=FARTHEST)
     size = float(np.linalg.norm(direction))
     if not size > 0.0:
         raise InputError("axis is zero; it needs a direction")
-    turn = one_number(angle, "angle")
+    turn = one_number(angle, "angle", largest=FARTHEST_POINT)
     spin = turn * direction / size if rotation == "follow" else np.zeros(3)
     return _turning_piece(start, direction / size, point, turn, 0.0, spin)
 
@@ -105,7 +113,9 @@ def _arc_about(
 def _arc_through(start: Array, goal: Array, via: ArrayLike, rotation: str) -> CartesianPath:
     if not (isinstance(rotation, str) and rotation in ROTATIONS):
         raise InputError(f"rotation is {rotation!r}; expected one of {', '.join(ROTATIONS)}")
-    circle = _circle_through(start[:3, 3], one_array(via, "via", (3,), "a point"), goal[:3, 3])
+    circle = _circle_through(
+        start[:3, 3], one_array(via, "via", (3,), "a point", largest=FARTHEST_POINT), goal[:3, 3]
+    )
     if circle is None:
         T = np.array(goal)
         if rotation != "interpolate":
@@ -133,6 +143,7 @@ def pose_path(
     Raises InputError for fewer than two different poses, and neighbours 180° apart.
     """
     T = as_pose(poses, "poses")
+    as_floats(T[..., :3, 3], "the position of poses", largest=FARTHEST_POINT)
     if T.ndim != 3 or len(T) < 2:
         raise InputError(f"poses has shape {T.shape}, expected (n, 4, 4) with n of at least 2")
     miss = bounded_number(deviation, "deviation", 0.0, "it must not be negative")
@@ -154,6 +165,13 @@ def pose_path(
             elif legs.changes[k] > SMOOTH_CORNER:
                 stops.append(s)
     return CartesianPath(pieces, stops)
+
+
+def _near_pose(T: PoseLike, subject: str) -> Array:
+    """A pose (4, 4); InputError for one that is too far from the base."""
+    pose = one_pose(T, subject)
+    as_floats(pose[:3, 3], f"the position of the {subject}", largest=FARTHEST_POINT)
+    return pose
 
 
 def is_repeated(T: Array, other: Array) -> bool:
@@ -202,7 +220,8 @@ class _Legs:
                 for d, c in zip((miss, turn_miss), change, strict=True)
                 if c > SMOOTH_CORNER
             ]
-            cut[k] = min(0.5 * self.lengths[k - 1], 0.5 * self.lengths[k], *allowed)
+            reach = min(0.5 * self.lengths[k - 1], 0.5 * self.lengths[k], *allowed)
+            cut[k] = reach if reach > SHORTEST_BLEND * self.lengths.max() else 0.0
         return cut
 
     def make_line(self, k: int, begin: float, end: float) -> CartesianPiece:
@@ -246,7 +265,7 @@ def _turning_piece(
     radius = float(np.linalg.norm(arm - along))
     length = max(abs(angle) * float(np.hypot(radius, pitch)), float(np.linalg.norm(spin)))
     if not length > 0.0:
-        raise InputError("the angle of the arc is zero; a path needs a length")
+        raise InputError("the arc has no length: its angle is zero, or its radius without a rotation")
     way, turn = np.array(NO_POLYNOMIAL), np.array(NO_POLYNOMIAL)
     way[0], way[1] = point + along, angle * pitch / length * axis
     turn[1] = spin / length
@@ -265,7 +284,10 @@ def _circle_through(first: Array, via: Array, last: Array) -> tuple[Array, Array
     normal = np.cross(a, b)
     if np.linalg.norm(normal) <= COLLINEAR_POINTS * sizes[0] * sizes[2]:
         if a @ (last - via) < 0.0:
-            raise InputError("start, via and goal are on a line, and via is not between the others")
+            raise InputError(
+                f"via is {sizes[0]:.3g} m from the start and not between start and goal, which lie in one"
+                f" direction from it, to {COLLINEAR_POINTS:g} rad; give a point between them, or a nearer one"
+            )
         return None
     squared = float(normal @ normal)
     to_center = (np.cross(normal, a) * (b @ b) + np.cross(b, normal) * (a @ a)) / (2.0 * squared)

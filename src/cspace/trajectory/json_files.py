@@ -16,7 +16,7 @@ from cspace.trajectory.path import Path
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.timed_motion import TimedMotion
 from cspace.trajectory.timed_path import Grid, TimedPath
-from cspace.trajectory.trajectory import JoinedTrajectory, Trajectory
+from cspace.trajectory.trajectory import HIGHEST_ORDER, JoinedTrajectory, Trajectory
 
 SCHEMA: Final = "cspace.trajectory/1"
 """The layout of the files."""
@@ -43,7 +43,7 @@ def from_json(path: str | os.PathLike[str]) -> Trajectory:
     then needs limits. Raises DescriptionError, with the file, for other contents.
     """
     try:
-        values: Any = json.loads(read_text(path_of(path), "JSON file", LARGEST_FILE, DescriptionError))
+        values: Any = json.loads(read_text(path_of(path), "JSON", LARGEST_FILE, DescriptionError))
     except (ValueError, RecursionError) as error:
         if isinstance(error, DescriptionError):
             raise
@@ -123,10 +123,14 @@ def _read(values: Any) -> Trajectory:
     path = Path(given["breaks"], given["control_points"], remarks=tuple(map(str, given["remarks"])))
     grid = _read_grid(values["grid"], path)
     read = _read_jerk_timed if kind == "jerk_timed_path" else _read_timed
-    timed = read(values, path, grid)
-    timed.reason = str(values["reason"])
-    if not (np.isfinite(timed.knots).all() and (np.diff(timed.knots) > 0.0).all()):
-        raise InputError("the times of the grid do not increase")
+    with np.errstate(all="ignore"):
+        timed = read(values, path, grid)
+        timed.reason = str(values["reason"])
+        if not (np.isfinite(timed.knots).all() and (np.diff(timed.knots) > 0.0).all()):
+            raise InputError("the times of the grid do not increase")
+        times = np.concatenate([timed.knots, 0.5 * (timed.knots[1:] + timed.knots[:-1])])
+        if not all(np.isfinite(timed._evaluate(times, order)).all() for order in range(HIGHEST_ORDER + 1)):
+            raise InputError("the motion exceeds the range of numbers")
     return timed
 
 

@@ -55,17 +55,21 @@ class Violation:
 
 @dataclass(frozen=True)
 class TrajectoryCheck:
-    """The answer of a check: truthy if no limit is exceeded, else with the violations, earliest first."""
+    """The answer of a check: truthy if no limit is exceeded, else with the violations, earliest first.
+
+    no_motion: why there is no motion to check, which is falsy too; empty if there is one.
+    """
 
     violations: tuple[Violation, ...]
+    no_motion: str = ""
 
     def __bool__(self) -> bool:
-        return not self.violations
+        return not self.reason
 
     @property
     def reason(self) -> str:
-        """The earliest violation in words; empty if there is none."""
-        return str(self.violations[0]) if self.violations else ""
+        """The earliest violation in words, or why there is no motion; empty within all limits."""
+        return str(self.violations[0]) if self.violations else self.no_motion
 
     def __repr__(self) -> str:
         more = len(self.violations) - 1
@@ -77,7 +81,7 @@ class TrajectoryCheck:
         rows = [
             [v.joint, v.limit, shown(v.time), f"{v.excess:.3g}", shown(v.worst_time)] for v in self.violations
         ]
-        return html_table("Limits exceeded" if rows else "Within all limits", titles, rows)
+        return html_table("Limits exceeded" if rows else self.reason or "Within all limits", titles, rows)
 
 
 @dataclass(frozen=True)

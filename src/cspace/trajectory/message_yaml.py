@@ -40,7 +40,16 @@ def _make_loader() -> Any:
     base: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
     class Loader(base):  # type: ignore[misc]
-        pass
+        def flatten_mapping(self, node: Any) -> None:
+            """Before keys are merged: refuses one that is there twice, of which PyYAML takes the last."""
+            known: set[tuple[str, str]] = set()
+            for key, _ in () if hasattr(node, "is_merged") else node.value:
+                if isinstance(key, yaml.ScalarNode) and (key.tag, key.value) in known:
+                    text = f"the key {key.value!r} is there twice"
+                    raise yaml.constructor.ConstructorError(None, None, text, key.start_mark)
+                known.add((key.tag, str(key.value)))
+            node.is_merged = True
+            super().flatten_mapping(node)
 
     Loader.add_implicit_resolver("tag:yaml.org,2002:float", SHORT_REAL, list("-+0123456789"))
     return Loader

@@ -16,7 +16,14 @@ from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
 from cspace.tables import count_things, one_line, shown
-from cspace.tolerances import PATH_CORNER, SAME_WAYPOINT, STILL_JOINT, TIME_ROUNDING
+from cspace.tolerances import (
+    FARTHEST_WAYPOINT,
+    PATH_CORNER,
+    SAME_WAYPOINT,
+    SHORTEST_PIECE,
+    STILL_JOINT,
+    TIME_ROUNDING,
+)
 from cspace.trajectory.piece_roots import find_piece_roots
 
 HIGHEST_DEGREE: Final = 5
@@ -41,7 +48,8 @@ class Path:
     """
 
     def __init__(self, breaks: ArrayLike, control_points: ArrayLike, *, remarks: Sequence[str] = ()) -> None:
-        b, c = as_floats(breaks, "breaks"), as_floats(control_points, "control_points")
+        b = as_floats(breaks, "breaks", largest=FARTHEST_WAYPOINT)
+        c = as_floats(control_points, "control_points", largest=FARTHEST_WAYPOINT)
         if c.ndim != 3 or not 2 <= c.shape[1] <= HIGHEST_DEGREE + 1 or b.shape != (len(c) + 1,) or not c.size:
             raise InputError(
                 f"breaks has shape {b.shape}, control_points {c.shape}; expected (k + 1,) and"
@@ -49,6 +57,8 @@ class Path:
             )
         if b[0] != 0.0 or (np.diff(b) <= 0.0).any():
             raise InputError("breaks must begin at 0 and increase")
+        if (shortest := float(np.diff(b).min())) < SHORTEST_PIECE:
+            raise InputError(f"a piece of the path has length {shortest:g}; the least is {SHORTEST_PIECE:g}")
         self.breaks = freeze_array(np.array(b))
         self.control_points = freeze_array(np.array(c, order="C"))
         self.remarks = tuple(remarks)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, check_known
 from cspace.kinematics import KinematicModel, require_limits
-from cspace.kinematics.batch import check_robot, limits_of
+from cspace.kinematics.batch import check_robot, find_pose, limits_of
 from cspace.model import Limits
 from cspace.trajectory.limit_check import Violation
 from cspace.trajectory.polynomials import PolynomialTrajectory
@@ -47,14 +47,14 @@ def move_to(
 ) -> PolynomialTrajectory:
     """The motion from one configuration to another, in the shortest time that a profile allows.
 
-    q_goal, start (n,): configurations [rad or m]; revolute joints are not moved by multiples of 2π. profile:
-    "double_s" (limited jerk, see state_to_state), "trapezoidal" (limited acceleration), or one polynomial per
-    joint: "cubic", "quintic" or "minimum_jerk", "septic". duration [s]: in place of the shortest. cycle [s]:
-    of which the duration is to be a multiple. velocity, acceleration, jerk () or (n,): in place of the limits
-    of the robot; polynomials need no jerk limit, and with a duration none at all. start_velocity,
-    start_acceleration, goal_velocity, goal_acceleration (n,): zero unless given; trapezoidal and cubic
-    motions attain no accelerations. synchronize: as in state_to_state. limits: of position, True for
-    those of the robot, False for none, or Limits.
+    q_goal, start (n,): configurations [rad or m], or named poses; revolute joints are not moved by multiples
+    of 2π. profile: "double_s" (limited jerk, see state_to_state), "trapezoidal" (limited acceleration), or
+    one polynomial per joint: "cubic", "quintic" or "minimum_jerk", "septic". duration [s]: in place of the
+    shortest. cycle [s]: of which the duration is to be a multiple. velocity, acceleration, jerk () or (n,):
+    in place of the limits of the robot; polynomials need no jerk limit, and with a duration none at all.
+    start_velocity, start_acceleration, goal_velocity, goal_acceleration (n,): zero unless given; trapezoidal
+    and cubic motions attain no accelerations. synchronize: as in state_to_state. limits: of position, True
+    for those of the robot, False for none, or Limits.
 
     Returns a PolynomialTrajectory. It is falsy, with a reason, where the motion leaves the limits of
     position, where a polynomial exceeds a limit in the duration that was asked for or in every duration, and
@@ -65,6 +65,7 @@ def move_to(
     Biagiotti and Melchiorri 2008, chapters 2 and 3.
     """
     check_robot(robot)
+    start, q_goal = find_pose(robot, start), find_pose(robot, q_goal)
     check_known("profile", profile, PROFILES)
     check_known("synchronize", synchronize, SYNCHRONIZE)
     kept = limits_of(robot.limits, limits, robot.name)
@@ -120,6 +121,8 @@ def fit_phases(
     if profile == "trapezoidal":
         if given["jerk"] is not None:
             raise InputTypeError("jerk= does not go with trapezoidal; use profile='double_s'")
+        if first[2].any() or last[2].any():
+            raise InputTypeError("accelerations at the ends do not go with trapezoidal; use 'double_s'")
         kinds = kinds[:2]
     most: dict[str, Any] = {kind: require_limits(robot, kind, given[kind]) for kind in kinds}
     motion = state_to_state(

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.tolerances import LARGEST_DERIVATIVE
 from cspace.trajectory.piece_roots import find_piece_roots
-from cspace.trajectory.trajectory import Trajectory, read_factor
+from cspace.trajectory.trajectory import HIGHEST_ORDER, Trajectory, read_factor
 
 
 class PolynomialTrajectory(Trajectory):
@@ -34,7 +35,7 @@ class PolynomialTrajectory(Trajectory):
         joint_names: Sequence[str] | None = None,
         reason: str = "",
     ) -> None:
-        c = as_floats(coefficients, "coefficients", last=(None, None, None))
+        c = as_floats(coefficients, "coefficients")
         t = as_floats(knots, "knots")
         if c.ndim != 3 or t.shape not in ((c.shape[1] + 1,), (c.shape[0], c.shape[1] + 1)) or c.size == 0:
             raise InputError(
@@ -47,9 +48,24 @@ class PolynomialTrajectory(Trajectory):
         begins = t[:, :-1] if origins is None else as_floats(origins, "origins")
         if begins.shape != c.shape[:2]:
             raise InputError(f"origins has shape {begins.shape}, expected {c.shape[:2]}")
+        self._check_range(t, c, begins)
         self.joint_knots, self.coefficients, self.origins = t, c, begins
         self._turning: dict[int, list[Array]] = {}
         super().__init__(c.shape[0], float(t[0, -1]), joint_names, reason)
+
+    @staticmethod
+    def _check_range(knots: Array, coefficients: Array, origins: Array) -> None:
+        """InputError where a derivative may exceed the range of numbers."""
+        powers = np.arange(coefficients.shape[2])
+        with np.errstate(over="ignore", invalid="ignore"):
+            reach = np.maximum(1.0, np.abs(knots).max() + np.abs(origins).max())
+            sizes = np.maximum(coefficients.max(axis=(0, 1)), -coefficients.min(axis=(0, 1)))
+            most = sizes * reach**powers * (1.0 + powers) ** HIGHEST_ORDER
+        if not most.sum() <= LARGEST_DERIVATIVE:
+            raise InputError(
+                "the motion exceeds the range of numbers: its coefficients times powers of its duration are"
+                f" larger than {LARGEST_DERIVATIVE:g}"
+            )
 
     @property
     def degree(self) -> int:

@@ -10,8 +10,9 @@ from typing import Any, Final, TypeGuard
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import DescriptionError, InputError, shorten
-from cspace.files import path_of, read_text, write_text
+from cspace.errors import DescriptionError, InputError
+from cspace.files import name_file, path_of, read_text, write_text
+from cspace.model.values import read_joint_names
 from cspace.trajectory.message_yaml import read_documents
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.time_scaling import connect_samples
@@ -86,8 +87,8 @@ def from_ros(path: str | os.PathLike[str]) -> PolynomialTrajectory:
     names, points = message.get("joint_names"), message.get("points")
     if not isinstance(names, list) or not names or not all(isinstance(each, str) for each in names):
         raise DescriptionError("joint_names must be a list of names; quote those that are numbers", path=name)
-    if len(set(names)) < len(names):
-        raise DescriptionError(f"joint_names must differ: {shorten(', '.join(names), 80)}", path=name)
+    with name_file(name):
+        read_joint_names(names)
     if not isinstance(points, list) or not points:
         raise DescriptionError("the message has no points", path=name)
     times = np.array([_read_time(point, k, name) for k, point in enumerate(points)])
@@ -98,10 +99,8 @@ def from_ros(path: str | os.PathLike[str]) -> PolynomialTrajectory:
         text = f"time_from_start of point 0 is {times[0]:g} s; begin with the point of the time 0"
         raise DescriptionError(f"{text}, where the arm starts", path=name)
     states = _read_states(points, len(names), name)
-    try:
+    with name_file(name):
         return connect_samples(times, states, names)
-    except InputError as error:
-        raise DescriptionError(f"the trajectory cannot be read: {error}", path=name) from None
 
 
 def _find_message(value: Any, path: str) -> dict[str, Any]:

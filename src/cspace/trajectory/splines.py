@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats, positive_number, whole_number
 from cspace.errors import InputError, check_known
 from cspace.tables import count_things
+from cspace.tolerances import FARTHEST_WAYPOINT
 from cspace.trajectory.path import HIGHEST_DEGREE, Path, hermite_quintics
 from cspace.trajectory.waypoints import read_waypoints
 
@@ -139,7 +140,7 @@ def b_spline(control_points: ArrayLike, degree: int = 3, *, length: float | None
     Source: de Boor 1978, chapter X.
     """
     degree = whole_number(degree, "degree", 1, HIGHEST_DEGREE)
-    q = as_floats(control_points, "control_points", last=(None, None))
+    q = as_floats(control_points, "control_points", largest=FARTHEST_WAYPOINT)
     if q.ndim != 2 or len(q) <= degree or q.shape[1] == 0:
         raise InputError(
             f"control_points has shape {q.shape}; a B-spline of degree {degree} needs"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -12,13 +12,15 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array, as_floats, guard_memory, leading_axes, whole_number
 from cspace.errors import InputError, InputTypeError, check_known
+from cspace.model.values import read_joint_names
 from cspace.tables import one_line
-from cspace.tolerances import FARTHEST
+from cspace.tolerances import FARTHEST, LEAST_FACTOR
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.states import (
     AxisLimits,
     check_accelerations,
     check_goal,
+    check_length,
     read_duration,
     read_states,
 )
@@ -155,7 +157,7 @@ def state_to_state(
     Kröger 2010 states the problem; Berscheid and Kröger 2021 solve it by polynomials of degree six.
     """
     check_known("synchronize", synchronize, SYNCHRONIZE)
-    names = read_names(joint_names)
+    names = read_joint_names(joint_names)
     if synchronize == "time" and duration is cycle is lowest_velocity is lowest_acceleration is None:
         ends = start, start_velocity, start_acceleration, goal, goal_velocity, goal_acceleration
         motion = move_plain_states(ends, (velocity, acceleration, jerk), names)
@@ -165,9 +167,7 @@ def state_to_state(
     dof = first.shape[-1]
     last = read_states(goal, goal_velocity, goal_acceleration, "goal", dof)
     limits = AxisLimits(velocity, acceleration, jerk, lowest_velocity, lowest_acceleration, dof)
-    labels = names if names is not None else tuple(f"joint {j}" for j in range(dof))
-    if len(labels) != dof:
-        raise InputError(f"joint_names has {len(labels)} names, start {dof} joints")
+    labels = read_joint_names(names, dof) or tuple(f"joint {j}" for j in range(dof))
     check_accelerations(limits, labels)
     check_goal(last, limits, labels)
     asked = read_durations(duration, cycle, synchronize)
@@ -180,19 +180,8 @@ def state_to_state(
         first, last, limits, asked, shape, read_duration(cycle, "cycle"), synchronize, threads
     )
     batch.joint_names = names
+    check_length(float(batch.durations.max(initial=0.0)))
     return batch if shape else batch[0]
-
-
-def read_names(names: Sequence[str] | None) -> tuple[str, ...] | None:
-    """Names of joints as a tuple; InputTypeError for anything but texts."""
-    if names is None:
-        return None
-    if isinstance(names, str) or not isinstance(names, Iterable):
-        raise InputTypeError(f"joint_names is a {type(names).__name__}; give a list of texts")
-    made = tuple(names)
-    if not all(isinstance(name, str) for name in made):
-        raise InputTypeError("joint_names must be texts")
-    return made
 
 
 def move_plain_states(
@@ -210,6 +199,8 @@ def move_plain_states(
     if made is None or (joint_names is not None and len(joint_names) != len(made[0][0])):
         return None
     pieces, duration, keeps_within = made
+    if not duration <= 1.0 / LEAST_FACTOR:
+        return None
     return PolynomialTrajectory._trusted(*pieces, duration, joint_names, ""), keeps_within
 
 
@@ -223,7 +214,7 @@ def read_durations(duration: ArrayLike | None, cycle: float | None, synchronize:
         raise InputTypeError("duration= and cycle= do not go together; give one of them")
     if synchronize == "none":
         raise InputTypeError("duration= does not go with synchronize='none'; use 'time'")
-    asked = as_floats(duration, "duration")
+    asked = as_floats(duration, "duration", largest=1.0 / LEAST_FACTOR)
     if (asked < 0.0).any():
         raise InputError(f"duration is {float(asked.min()):g} s; it must not be negative")
     return asked

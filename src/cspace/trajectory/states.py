@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, leading_axes, positive_number
 from cspace.errors import InputError
-from cspace.tolerances import FARTHEST
+from cspace.tolerances import FARTHEST, LEAST_FACTOR
 
 PARTS: Final = ("", "velocity", "acceleration")
 """What the names of arguments end with, by order of the derivative."""
@@ -128,4 +128,18 @@ def check_goal(goal: Array, limits: AxisLimits, labels: Sequence[str]) -> None:
 
 def read_duration(value: Any, subject: str) -> float | None:
     """A duration [s] above zero, or None."""
-    return None if value is None else positive_number(value, subject)
+    if value is None:
+        return None
+    seconds = positive_number(value, subject, largest=1.0 / LEAST_FACTOR)
+    if seconds < LEAST_FACTOR:
+        raise InputError(f"{subject} is {seconds:g} s; it must be {LEAST_FACTOR:g} or more")
+    return seconds
+
+
+def check_length(seconds: float) -> None:
+    """InputError for a motion that is too long or too short for the range of numbers."""
+    if not (seconds == 0.0 or LEAST_FACTOR <= seconds <= 1.0 / LEAST_FACTOR):
+        raise InputError(
+            f"the motion would last {seconds:g} s; give limits and states with which it lasts"
+            f" {LEAST_FACTOR:g} to {1.0 / LEAST_FACTOR:g} s"
+        )

@@ -15,7 +15,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.tables import join_words
-from cspace.tolerances import FARTHEST, LIMIT_ROUNDING, TIMED_WITHIN
+from cspace.tolerances import FARTHEST, LEAST_LIMIT, LIMIT_ROUNDING, TIMED_WITHIN
 from cspace.trajectory.graded_grid import Section
 from cspace.trajectory.jerk_timed_path import JerkTimedPath
 from cspace.trajectory.jerk_timing import (
@@ -40,6 +40,9 @@ from cspace.trajectory.timed_path import Grid, TimedPath
 
 MOST_INTERVALS: Final = 10_000_000
 """Of a grid that is given as a number."""
+
+MOST_JERK_GRID: Final = 100_000
+"""Of a grid that is given as a number, under jerk limits: a solution takes some eight seconds."""
 
 MOST_JERK_INTERVALS: Final = 3000
 """From which on grids are not halved further under jerk limits: a solution takes half a second."""
@@ -66,7 +69,7 @@ def time_parametrize(
     feed: float | None = None,
     robot: KinematicModel | None = None,
     frame: str | None = None,
-    gravity: ArrayLike = EARTH,
+    gravity: ArrayLike | None = None,
     start_speed: float = 0.0,
     end_speed: float = 0.0,
     grid: int | None = None,
@@ -86,10 +89,10 @@ def time_parametrize(
     number, (dof,) [N·m or N], or True for the efforts of the robot. speed [m/s], turn_rate [rad/s]: largest
     ones of the frame of robot, by default its tip. feed [m/s]: the speed that it is to have, wherever the
     limits allow it; `below_feed` lists where they do not. robot: whose dynamics and kinematics those need, by
-    default limits. gravity (3,) [m/s²]. start_speed, end_speed: speeds ds/dt of the parameter at the ends.
-    grid: about so many intervals; by default they are halved until that changes the duration by less than
-    `tolerance`, relative (0.001). Under jerk limits 30 of a piece, 150 or more, unless a tolerance is given.
-    positions: whether the limits of position of limits count, too.
+    default limits. gravity (3,) [m/s²]: for torque, (0, 0, −9.81) unless given. start_speed, end_speed:
+    speeds ds/dt of the parameter at the ends. grid: about so many intervals; by default they are halved until
+    that changes the duration by less than `tolerance`, relative (0.001). Under jerk limits 30 of a piece, 150
+    or more, unless a tolerance is given. positions: whether the limits of position of limits count, too.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits, the path
     leaves those of position, or the speeds at the ends are impossible. Raises InputError for a wrong shape,
@@ -121,8 +124,13 @@ def time_parametrize(
         None if own is None else own.joint_names,
         _read_jerk(jerk, given, labels),
     )
-    count = None if grid is None else whole_number(grid, "grid", 1, MOST_INTERVALS)
-    return timer.run(count, given if positions and isinstance(given, Limits) else None)
+    return timer.run(_read_grid(grid, timer.jerk), given if positions and isinstance(given, Limits) else None)
+
+
+def _read_grid(grid: Any, jerk: Array | None) -> int | None:
+    """The number of intervals that is given, if one is."""
+    most = MOST_INTERVALS if jerk is None else MOST_JERK_GRID
+    return None if grid is None else whole_number(grid, "grid", 1, most)
 
 
 class _Timer:
@@ -429,6 +437,10 @@ def _read_limit(
             raise InputError(f"{name} has shape {row.shape}, expected () or ({n},), one per joint")
         if not (row >= 0.0).all():
             raise InputError(f"{name} contains {float(row[~(row >= 0.0)].flat[0]):g}; it must be 0 or more")
+        if (bad := row[(row > 0.0) & (row < LEAST_LIMIT) | np.isfinite(row) & (row > FARTHEST)]).size:
+            raise InputError(
+                f"{name} contains {bad.flat[0]:g}; it must be from {LEAST_LIMIT:g} to {FARTHEST:g}, 0 or inf"
+            )
         return np.full(n, row) if row.ndim == 0 else np.array(row)
     if limits is None:
         own = np.full(n, np.inf)
@@ -455,9 +467,11 @@ def _read_jerk(jerk: Any, limits: Any, labels: tuple[str, ...]) -> Array | None:
 
 
 def _read_torque(
-    torque: Any, robot: KinematicModel | None, path: Path, gravity: ArrayLike
+    torque: Any, robot: KinematicModel | None, path: Path, gravity: ArrayLike | None
 ) -> TorqueLimits | None:
     if torque is None or torque is False:
+        if gravity is not None:
+            raise InputTypeError("gravity= counts for limits of torque alone; pass torque=, or leave it out")
         return None
     if robot is None:
         raise InputTypeError("torque= needs the dynamics of a robot; pass robot=")
@@ -471,7 +485,7 @@ def _read_torque(
         required=True,
         argument="torque",
     )
-    return TorqueLimits(robot, limit, one_array(gravity, "gravity", (3,)))
+    return TorqueLimits(robot, limit, one_array(EARTH if gravity is None else gravity, "gravity", (3,)))
 
 
 def _read_frame(
@@ -479,6 +493,8 @@ def _read_frame(
 ) -> FrameLimits | None:
     given = {"speed": speed, "turn_rate": turn_rate, "feed": feed}
     if all(value is None for value in given.values()):
+        if frame is not None:
+            raise InputTypeError("frame= needs a limit of its motion; pass speed=, turn_rate= or feed=")
         return None
     if robot is None:
         raise InputTypeError("speed=, turn_rate= and feed= need the kinematics of a robot; pass robot=")
@@ -486,6 +502,8 @@ def _read_frame(
     fastest, turns, held = (
         np.inf if value is None else positive_number(value, name, rule) for name, value in given.items()
     )
+    if (least := min(fastest, turns, held)) < LEAST_LIMIT:
+        raise InputError(f"speed=, turn_rate= or feed= is {least:g}; they must be {LEAST_LIMIT:g} or more")
     if speed is not None and held < np.inf and held > fastest:
         raise InputError(f"feed is {held:g}, more than speed, which is {fastest:g}; leave one of them out")
     return FrameLimits(robot, frame, min(fastest, held), turns, held < np.inf)

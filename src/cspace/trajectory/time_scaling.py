@@ -12,7 +12,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Limits
-from cspace.tolerances import LIMIT_ROUNDING
+from cspace.tolerances import FARTHEST, LIMIT_ROUNDING
 from cspace.trajectory.piece_roots import find_piece_roots
 from cspace.trajectory.polynomials import (
     PolynomialTrajectory,
@@ -20,6 +20,7 @@ from cspace.trajectory.polynomials import (
     differentiate_polynomials,
     evaluate_polynomials,
 )
+from cspace.trajectory.states import check_length
 
 BOUNDARY_ORDERS: Final = {"cubic": 2, "quintic": 3, "septic": 4, "minimum_jerk": 3}
 """How many derivatives each polynomial attains at both ends, the position among them. Of all motions with
@@ -38,9 +39,13 @@ rest."""
 MOST_JUMPS: Final = 1000
 """Of the search for a duration: it takes five to ten, and more only past windows that just fail to open."""
 
+SAMPLES_AT_ONCE: Final = 5000
+"""Samples between two steps at which an interrupt is heeded."""
+
 
 def state_polynomials(states: Array, h: Array) -> Array:
-    """The coefficients (..., dof, 2 m) of the polynomials that attain states at both ends.
+    """The coefficients (..., dof, 2 m) of the polynomials that attain states at both ends; inf or NaN where
+    they exceed the range of numbers.
 
     states (..., 2, m, dof): derivatives 0 … m − 1 at times 0 and h (...).
     """
@@ -51,18 +56,36 @@ def state_polynomials(states: Array, h: Array) -> Array:
     binomials = np.array([[math.comb(i, k) for i in range(n)] for k in range(m)], dtype=float)
     high = np.linalg.inv(binomials[:, m:]) @ (ends - binomials[:, :m] @ low)
     powers = h[..., None, None] ** np.arange(n)
-    coefficients: Array = np.swapaxes(np.concatenate([low, high], axis=-2), -1, -2) / powers
+    with np.errstate(over="ignore", invalid="ignore"):
+        coefficients: Array = np.swapaxes(np.concatenate([low, high], axis=-2), -1, -2) / powers
     factorials = np.array([math.factorial(k) for k in range(m)], dtype=float)
     coefficients[..., :m] = np.swapaxes(states[..., 0, :, :], -1, -2) / factorials  # without rounding
     return coefficients
 
 
 def connect_samples(times: Array, states: Array, joint_names: Sequence[str] | None) -> PolynomialTrajectory:
-    """The polynomials through states (k, m, dof) at times (k,), from 0 on."""
+    """The polynomials through states (k, m, dof) at times (k,), from 0 on.
+
+    Raises InputError for samples whose polynomial exceeds the range of numbers.
+    """
     if len(times) == 1:
         return connect_states(states[[0, 0]], 0.0, joint_names)
-    pieces = state_polynomials(np.stack([states[:-1], states[1:]], axis=1), np.diff(times))
-    parts = attain_end(times, np.swapaxes(pieces, 0, 1), states[-1])
+    _, m, dof = states.shape
+    pieces = np.empty((dof, len(times) - 1, 2 * m))
+    for begin in range(0, len(times) - 1, SAMPLES_AT_ONCE):  # an interrupt comes between two steps
+        rows = slice(begin, begin + SAMPLES_AT_ONCE + 1)
+        ends = np.stack([states[rows][:-1], states[rows][1:]], axis=1)
+        with np.errstate(all="ignore"):  # of times that are anything
+            made = state_polynomials(ends, np.diff(times[rows]))
+        beyond = ~np.isfinite(made).all(axis=(1, 2)) | (np.abs(ends) > FARTHEST).any(axis=(1, 2, 3))
+        if beyond.any():
+            k = begin + int(np.argmax(beyond))
+            raise InputError(
+                f"the motion from sample {k} at {times[k]:g} s to the next exceeds the range of numbers;"
+                " they are too large, or too close in time"
+            )
+        pieces[:, begin : begin + len(made)] = np.swapaxes(made, 0, 1)
+    parts = attain_end(times, pieces, states[-1])
     return PolynomialTrajectory(*parts, joint_names=joint_names)
 
 
@@ -73,6 +96,7 @@ def connect_states(
 
     states (2, m, dof): derivatives 0 … m − 1 at both ends.
     """
+    check_length(h)
     m, dof = states.shape[1:]
     if h == 0.0:
         still = np.zeros((dof, 1, 4))
@@ -91,7 +115,8 @@ def find_rest_duration(profile: str, displacement: Array, limits: Limits) -> flo
     size, longest = np.abs(displacement), 0.0
     kinds = (limits.velocity, limits.acceleration, limits.jerk)
     for k, (peak, limit) in enumerate(zip(PEAKS[profile], kinds, strict=True), 1):
-        longest = max(longest, float(np.max((peak * size / limit) ** (1.0 / k), initial=0.0)))
+        with np.errstate(over="ignore"):
+            longest = max(longest, float(np.max((peak * size / limit) ** (1.0 / k), initial=0.0)))
     return longest
 
 

@@ -69,6 +69,10 @@ class TimedMotion(Trajectory):
         """The motion from its end to its start."""
         return self.timed.reversed()
 
+    @property
+    def _no_motion(self) -> str:
+        return self.timed._no_motion
+
     def _evaluate(self, times: Array, order: int) -> Array:
         return self.timed._evaluate(times, order)
 

@@ -127,6 +127,10 @@ class TimedPath(Trajectory):
         """The times (k + 1,) [s] of the places of the grid."""
         return self._times
 
+    @property
+    def _no_motion(self) -> str:
+        return "" if len(self.squared_speed) else self.reason
+
     @cached_property
     def grid(self) -> Array:
         """The parameters (k + 1,) of the places of the grid."""

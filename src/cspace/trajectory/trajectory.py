@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, one_number, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
+from cspace.model.values import read_joint_names
 from cspace.tables import count_things, one_line, show_fields, shown
 from cspace.tolerances import CONTINUITY_ROUNDING, LEAST_FACTOR, TIME_ROUNDING
 from cspace.trajectory.limit_check import (
@@ -88,10 +89,8 @@ class Trajectory(ABC):
     ) -> None:
         self.dof = dof
         self.duration = duration
-        self.joint_names = None if joint_names is None else tuple(joint_names)
+        self.joint_names = read_joint_names(joint_names, dof)
         self.reason = reason
-        if self.joint_names is not None and len(self.joint_names) != dof:
-            raise InputError(f"joint_names has {len(self.joint_names)} names, the trajectory {dof} joints")
 
     @property
     @abstractmethod
@@ -112,6 +111,11 @@ class Trajectory(ABC):
         """A derivative of all joints (k, dof) at times (k,)."""
         rows = [self._evaluate_joint(j, times, order, False) for j in range(self.dof)]
         return np.stack(rows, axis=-1) if rows else np.zeros((len(times), 0))
+
+    @property
+    def _no_motion(self) -> str:
+        """Why there is no motion at all; empty where there is one, even if it is not what was asked for."""
+        return ""
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -187,7 +191,8 @@ class Trajectory(ABC):
         return self.sample(rate)
 
     def check(self, limits: Any) -> TrajectoryCheck:
-        """Whether the motion stays within limits, by the roots of its derivatives and not by samples.
+        """Whether there is a motion that stays within limits, by the roots of its derivatives and not by
+        samples.
 
         limits: Limits or a robot; limits of effort are not looked at. A limit counts as exceeded from one
         part in 10⁹ on. Returns a TrajectoryCheck, falsy with the violations.
@@ -195,7 +200,8 @@ class Trajectory(ABC):
         another order.
         """
         check_order(self.joint_names, getattr(limits, "joint_names", None), "the robot")
-        return check_limits(self, read_limits(limits, self.dof))
+        own = read_limits(limits, self.dof)
+        return TrajectoryCheck((), self._no_motion) if self._no_motion else check_limits(self, own)
 
     def binding(self, limits: Any) -> tuple[BindingLimit, ...]:
         """When which joint is at which limit, within one part in 10⁶; earliest first.
@@ -290,6 +296,10 @@ class JoinedTrajectory(Trajectory):
     @property
     def knots(self) -> Array:
         return np.unique(np.concatenate([start + part.knots for start, part in self._placed()]))
+
+    @property
+    def _no_motion(self) -> str:
+        return next((part._no_motion for part in self.parts if part._no_motion), "")
 
     def _placed(self) -> list[tuple[float, Trajectory]]:
         return list(zip(self.starts[:-1].tolist(), self.parts, strict=True))

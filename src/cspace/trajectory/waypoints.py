@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.tables import count_things
-from cspace.tolerances import SAME_WAYPOINT
+from cspace.tolerances import FARTHEST_WAYPOINT, SAME_WAYPOINT, SHORTEST_PIECE
 
 
 class Waypoints(NamedTuple):
@@ -34,7 +34,7 @@ def read_waypoints(waypoints: ArrayLike) -> Waypoints:
 
     Raises InputError for another shape, NaN, and waypoints that are all the same.
     """
-    given = as_floats(waypoints, "waypoints", last=(None, None))
+    given = as_floats(waypoints, "waypoints", largest=FARTHEST_WAYPOINT)
     if given.ndim != 2 or len(given) < 2 or given.shape[1] == 0:
         raise InputError(f"waypoints has shape {given.shape}, expected (k, dof) with k ≥ 2 and dof ≥ 1")
     least = SAME_WAYPOINT * float(np.linalg.norm(np.diff(given, axis=0), axis=1).sum())
@@ -50,4 +50,8 @@ def read_waypoints(waypoints: ArrayLike) -> Waypoints:
     distances = np.linalg.norm(np.diff(q, axis=0), axis=1)
     if len(q) < 2 or not distances.any():
         raise InputError("the waypoints are all the same; a path needs two that differ")
+    if distances.min() < SHORTEST_PIECE:
+        raise InputError(
+            f"waypoints {distances.min():g} apart are too close; the least distance is {SHORTEST_PIECE:g}"
+        )
     return Waypoints(q, distances, len(given) - len(kept))

@@ -7,8 +7,8 @@
 // N(ν; 0, H P Hᵀ + A Σ Aᵀ + R). Several readings are taken in turn, each given those before it.
 //
 // Particles begin at one pose. Readings of unknown landmarks tell nothing of the error of the start, which
-// moves poses and landmarks like one rigid body; it is added to their covariances as it is. Drawn into the particles
-// it would be lost a little with each resampling.
+// moves poses and landmarks like one rigid body; it is added to their covariances as it is. Drawn into the
+// particles it would be lost a little with each resampling.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ from cspace.cli.drives import (
     read_start,
     say_errors,
 )
-from cspace.cli.exits import Exit
+from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Output
 from cspace.cli.progress import show_progress
 
@@ -65,6 +65,10 @@ def run(args: argparse.Namespace, out: Output) -> int:
     with show_progress(f"reading {args.log}"):
         log = read_log(args.log, robot=args.robot)
         world = None if args.map is None else load_map(args.map, args.resolution)
+    if args.seed is not None and args.filter != "mcl":
+        raise UsageError(f"--seed is the seed of --filter mcl, and has no effect with {args.filter}")
+    if args.smooth and args.filter in ("mcl", "histogram"):
+        raise UsageError(f"--smooth is of the Kalman filters, and has no effect with --filter {args.filter}")
     more: dict[str, Any] = {} if args.seed is None else {"rng": args.seed}
     if args.start is not None:
         more["start"] = read_start(args.start, args.deg)

@@ -38,7 +38,7 @@ from cspace.cli.robot import (
     need_chain,
     read_configuration,
 )
-from cspace.cli.samples_files import check_samples_file, write_samples
+from cspace.cli.samples_files import check_rate, check_samples_file, write_samples
 from cspace.cli.verbs.planners import options_given, typed_value
 from cspace.errors import InputError, InputTypeError
 
@@ -123,7 +123,7 @@ def add_timing(parser: argparse.ArgumentParser) -> None:
         "round the corners, time the path, and write the motion: .yaml for ROS (JointTrajectory), .csv, .json"
     )
     add_option(group, "--trajectory FILE", text, Path)
-    add_option(group, "--rate HZ", "samples per second (default: 100)", read_number, default=100.0)
+    add_option(group, "--rate HZ", "samples per second (default: 100)", read_number)
     for name, unit in (("acceleration", "rad/s²"), ("jerk", "rad/s³")):
         text = f"largest {name} of all joints [{unit}, or m] (default: that of the robot)"
         add_option(group, f"--{name} V", text, read_number)
@@ -164,7 +164,8 @@ def check_targets(args: argparse.Namespace) -> None:
         check_writable(args.plot)
     if args.trajectory is not None:
         check_samples_file(args.trajectory, "--trajectory")
-    elif args.acceleration is not None or args.jerk is not None:
+    check_rate(args, args.trajectory, "--trajectory FILE of samples (.yaml, .csv)")
+    if args.trajectory is None and (args.acceleration is not None or args.jerk is not None):
         raise UsageError("--acceleration and --jerk are of --trajectory; give the file it is written to")
     if args.output is not None:
         from cspace.planning.plan_files import check_ending

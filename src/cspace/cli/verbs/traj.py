@@ -31,7 +31,7 @@ from cspace.cli.robot import (
     load_chosen,
     need_chain,
 )
-from cspace.cli.samples_files import check_samples_file, write_samples
+from cspace.cli.samples_files import check_rate, check_samples_file, write_samples
 from cspace.cli.verbs.plan import FILM_DPI, is_film, start_of, typed_configuration
 from cspace.errors import InputError, InputTypeError
 
@@ -81,9 +81,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_option(group, "--turn-rate W", "largest angular velocity of the tip [rad/s]", read_number)
     text = "write samples: .yaml for ROS (JointTrajectory), or .csv; or the motion itself: .json"
     add_option(parser, "-o --output FILE", text, Path)
-    add_option(
-        parser, "--rate HZ", "samples per second of -o and --json (default: 100)", read_number, default=100.0
-    )
+    add_option(parser, "--rate HZ", "samples per second of -o and --json (default: 100)", read_number)
     text = "draw position to jerk, torques and tip speed with the limits (.png, .svg, .pdf), or a film (.gif)"
     add_option(parser, "--plot FILE", text, Path)
     add_degrees(parser)
@@ -118,6 +116,9 @@ def check_files(args: argparse.Namespace) -> None:
         check_writable(args.plot)
     if args.output is not None:
         check_samples_file(args.output, "-o")
+    check_rate(
+        args, Path("stdout") if args.json else args.output, "-o FILE of samples (.yaml, .csv) or --json"
+    )
 
 
 def find_motion(args: argparse.Namespace, robot: Robot) -> Trajectory:
@@ -188,7 +189,7 @@ def read_waypoint_file(path: Path, names: Sequence[str], *, degrees: bool) -> Ar
 
     rows: list[list[float]] = []
     order = list(range(len(names)))
-    lines = read_text(path, "CSV file", LARGEST_FILE, DescriptionError).splitlines()
+    lines = read_text(path, "CSV", LARGEST_FILE, DescriptionError).splitlines()
     for number, line in enumerate(lines, start=1):
         if not line.strip(" \t,;") or line.lstrip().startswith("#"):
             continue

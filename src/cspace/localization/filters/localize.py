@@ -26,6 +26,7 @@ from cspace.localization.log import UNKNOWN, Landmarks, Log
 from cspace.localization.sensors import Compass, Gps, LaserScanner, RangeBearing, read_sensor, read_share
 from cspace.mobile import MotionNoise
 from cspace.mobile.noise import read_noise
+from cspace.tables import join_words
 
 if TYPE_CHECKING:
     from cspace.localization.particles import MapLocalization
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 MAP_FILTERS: Final = ("mcl", "histogram")
 """Those that may have several modes."""
 FILTERS = (*UPDATES, *MAP_FILTERS)
+GATE: Final = 0.999
+"""The share of χ² beyond which a measurement is rejected unless given."""
 START_DEVIATIONS = (0.01, 0.01, 0.01)
 """Standard deviations of a start [m, m, rad] unless given: one that somebody measured."""
 
@@ -48,7 +51,7 @@ def localize(
     compass: Compass | None = None,
     gps: Gps | None = None,
     noise: MotionNoise | None = None,
-    gate: float = 0.999,
+    gate: float | None = None,
     n: int | None = None,
     most: int | None = None,
     threads: int = 1,
@@ -64,19 +67,23 @@ def localize(
     for the others. start_covariance (3, 3) of ξ in T exp ξ; unless given, 1 cm and 0.01 rad, 10 cm and 0.05
     rad for "mcl" and "histogram". sensor, compass, gps: models of readings or scans, headings and fixes.
     noise: of the odometry, a RandomWalk unless given. gate: the share of χ² beyond which a measurement is
-    rejected. Readings without a name are associated with the landmark that most likely made them. n, most,
-    rng: particles, as of ParticleFilter. threads: at most, for "mcl" and "histogram". time_limit [s]:
-    TimeLimitError beyond it. Raises InputError for a log without odometry, a start that is unknown, or a
-    landmark that is not on the map. Source: Thrun, Burgard & Fox 2005, chapters 3, 7 and 8.
+    rejected, 0.999 unless given. Readings without a name are associated with the landmark that most likely
+    made them. n, most, rng: particles, as of ParticleFilter. threads: at most, for "mcl" and "histogram".
+    time_limit [s]: TimeLimitError beyond it. Raises InputError for a log without odometry, a start that is
+    unknown, a landmark that is not on the map, and an argument that the filter does not use. Source: Thrun,
+    Burgard & Fox 2005, chapters 3, 7 and 8.
     """
     begun = perf_counter()
     if not isinstance(log, Log):
         raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
     check_known("filter", filter, FILTERS)
-    if filter != "mcl" and (n is not None or most is not None):
-        raise InputError(f"filter={filter!r} has no particles; leave n and most out, or give filter='mcl'")
-    if filter in MAP_FILTERS and (compass is not None or gps is not None):
-        raise InputError(f"filter={filter!r} uses neither compass nor gps; the Kalman filters do")
+    of_particles = {"n": n, "most": most, "rng": rng} if filter != "mcl" else {}
+    of_kalman = {"compass": compass, "gps": gps, "gate": gate} if filter in MAP_FILTERS else {}
+    for options, users in ((of_particles, "filter='mcl' uses"), (of_kalman, "the Kalman filters use")):
+        if idle := [name for name, value in options.items() if value is not None]:
+            raise InputError(
+                f"filter={filter!r} does not use {join_words(idle)}, which {users}; leave it out"
+            )
     known = landmarks if landmarks is not None else log.landmarks
     limit = None if time_limit is None else positive_number(time_limit, "time_limit")
     if not len(log.odometry.times):
@@ -92,7 +99,7 @@ def localize(
     reader = Reader(log, known, model, read_sensor(compass, Compass, "compass"), read_sensor(gps, Gps, "gps"))
     timeline = lay_timeline(log, model, read_noise(noise))
     reader.timeline = timeline
-    run = Pass(timeline, UPDATES[filter], read_share(gate, "gate"), limit)
+    run = Pass(timeline, UPDATES[filter], read_share(GATE if gate is None else gate, "gate"), limit)
     passed = run.run(pose, P, reader.read)
     return report_run(filter, timeline, passed, perf_counter() - begun)
 

@@ -157,7 +157,10 @@ def split_rows(lines: Lines, heading: Heading) -> Iterator[tuple[int, list[str]]
             continue
         cells = split_line(line, heading.separator)
         if cells is None:
-            raise lines.error(number, "the quotes of the line do not match")
+            most = csv.field_size_limit()
+            is_long = len(line) > most
+            text = f"a cell has more than {most} characters" if is_long else "the quotes do not match"
+            raise lines.error(number, f"the line cannot be split: {text}")
         if len(cells) != count:
             raise lines.error(number, f"the line has {len(cells)} columns; the heading names {count}")
         yield number, cells

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array
+from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, LogError, check_known
 from cspace.files import path_of, write_text
 from cspace.localization.graph.checks import read_poses as read_pose_rows
@@ -18,6 +18,7 @@ from cspace.localization.logs.csv_poses import find_heading, read_csv_poses
 from cspace.localization.logs.lines import Lines, is_number, read_lines
 from cspace.mobile import TimedPoses
 from cspace.spatial import to_xyzw
+from cspace.tolerances import LARGEST_LOGGED
 
 FORMATS = ("tum", "kitti", "csv")
 
@@ -70,7 +71,7 @@ def write_poses(path: str | os.PathLike[str], poses: Any, *, format: str = "tum"
     "tum" (time, position, quaternion), "kitti" (twelve numbers without time; planar poses become x, z of a
     camera), or "csv" (time, x, y, theta, and of poses (n, 4, 4) time, position, quaternion, under their
     names). Numbers are written with all their digits. Raises InputError for poses without times, but of
-    KITTI.
+    KITTI, for none, and for numbers that are too large to be read.
     """
     check_known("format", format, FORMATS)
     rows = read_pose_rows(getattr(poses, "poses", poses), "poses")
@@ -85,6 +86,9 @@ def write_poses(path: str | os.PathLike[str], poses: Any, *, format: str = "tum"
         stamps = TimedPoses(times, np.zeros((len(rows), 3))).times
         is_table = format == "csv" and rows.ndim == 2
         numbers = np.column_stack([stamps, rows if is_table else list_quaternions(rows)])
+    if not len(numbers):
+        raise InputError("there are no poses to write; a file needs one at least")
+    as_floats(numbers, "the table of poses", largest=LARGEST_LOGGED)
     separator, heading = " ", ""
     if format == "csv":
         separator = ","
