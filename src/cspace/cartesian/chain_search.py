@@ -120,8 +120,8 @@ class ChainSearch:
         self.half = np.where(self.narrow, 0.5 * (bounds.upper - bounds.lower), 1.0)
         self.middle = np.where(self.narrow, bounds.lower + self.half, 0.0)
 
-    def run(self) -> ConfigurationChain:
-        """The chain with continuous angles, or how far it goes."""
+    def run(self, *, refines: bool = True) -> ConfigurationChain:
+        """The chain with continuous angles, or how far it goes; refines: searches around it once more."""
         values = self.freedom.spread_values()
         step = values[1] - values[0]
         if self.start is not None:  # one of the values is that of the start
@@ -131,6 +131,8 @@ class ChainSearch:
         coarse = self._search(every, self.freedom.is_ring, REACH)
         if coarse.reason:
             return coarse
+        if not refines:
+            return ConfigurationChain(self._unwrap(coarse.q), coarse.values)
         parts = step / FINER * np.arange(-FINER, FINER + 1)
         finer = self._search(coarse.values[:, None] + parts, False, 2 * FINER)
         chain = coarse if finer.reason else finer

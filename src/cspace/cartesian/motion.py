@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array, one_number
-from cspace.cartesian.free_turn import follow_free_turn
-from cspace.cartesian.joint_branches import JointBranch, JointBranches, follow_cartesian
-from cspace.cartesian.redundant_path import follow_redundant
+from cspace.cartesian.free_turn import find_free_turns, tool_axis
+from cspace.cartesian.joint_branches import JointBranch, JointBranches
+from cspace.cartesian.redundant_path import follow_poses
 from cspace.cartesian.scene_check import find_touches, space_of_curves
 from cspace.errors import InputError
-from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_robot, limits_of
 from cspace.model import Limits
@@ -34,6 +33,10 @@ if TYPE_CHECKING:
 
 RANKING_GRID: Final = 100
 """Intervals with which branches are compared: their durations are off by a few percent, alike for all."""
+
+CLOSE_RANKING: Final = 0.05
+"""Part of a duration on this grid by which the branches of a free turn may be in the wrong order: they are of
+different shapes, and those so near to the fastest are timed exactly."""
 
 
 HALVINGS: Final = 5
@@ -115,14 +118,22 @@ def move_cartesian(
     """
     check_robot(robot)
     check_cartesian_path(path)
-    first = None if start is None else _check_start(robot, path, start, free_axis is not None)
+    axis = None if free_axis is None else tool_axis(free_axis)
+    first = None if start is None else _check_start(robot, path, start, axis)
     if first is not None and (outside := _explain_outside(robot, first, limits)):
         return _refuse(robot, path, (), first, outside, 0.0)
-    found = _follow(robot, path, first, free_axis, limits, tolerance)
+
+    def follow(part: CartesianPath) -> JointBranches:
+        if axis is None:
+            return follow_poses(robot, part, first, limits, tolerance)
+        options: Any = {"limits": limits, "tolerance": tolerance, "always_searches": scene is not None}
+        return find_free_turns(robot, part, axis, first, **options)
+
+    found = follow(path)
     stopped_by, whole = "", path
     if not found and as_far_as_possible:
         stopped_by = found.reason
-        path, found = _follow_part(robot, path, first, free_axis, limits, tolerance, found)
+        path, found = _follow_part(path, follow, found)
     if not found:
         place = max((branch.s_end for branch in found.branches), default=0.0)
         q = found.branches[0].q_start if found.branches else robot.limits.lower * 0.0
@@ -136,7 +147,8 @@ def move_cartesian(
         "turn_rate": turn_rate,
         "feed": feed,
     }
-    motion = _take_fastest(robot, path, found.branches, options, grid, scene, margin)
+    close = 0.0 if axis is None else CLOSE_RANKING
+    motion = _take_fastest(robot, path, found.branches, options, grid, scene, margin, close)
     if stopped_by:
         motion.cartesian, motion.stopped_by, motion.s_end = whole, stopped_by, path.length
     return motion
@@ -221,41 +233,37 @@ def _stay(robot: KinematicModel, q: Array, options: dict[str, Any]) -> Cartesian
 
 
 def _follow_part(
-    robot: KinematicModel,
-    path: CartesianPath,
-    start: Array | None,
-    free_axis: str | ArrayLike | None,
-    limits: bool | Limits,
-    tolerance: float,
-    found: JointBranches,
+    path: CartesianPath, follow: Callable[[CartesianPath], JointBranches], found: JointBranches
 ) -> tuple[CartesianPath, JointBranches]:
     """The part of a path that the farthest branch follows, and its branches; shorter where rounding asks."""
     end = max((branch.s_end for branch in found.branches), default=0.0)
 
-    def follow(share: float) -> JointBranches | None:
+    def try_without(share: float) -> JointBranches | None:
         if not end * (1.0 - share) > SHORTEST_PATH_PIECE:
             return None
-        return _follow(robot, path.part(end * (1.0 - share)), start, free_axis, limits, tolerance) or None
+        return follow(path.part(end * (1.0 - share))) or None
 
-    tried = ((share, follow(share)) for share in SHORTENED_PARTS)
+    tried = ((share, try_without(share)) for share in SHORTENED_PARTS)
     high, best = next(((share, each) for share, each in tried if each), (1.0, None))
     if best is None:
         return path, found
     low = max((share for share in SHORTENED_PARTS if share < high), default=0.0)
     for _ in range(HALVINGS if high > low else 0):
         middle = 0.5 * (low + high)
-        if followed := follow(middle):
+        if followed := try_without(middle):
             high, best = middle, followed
         else:
             low = middle
     return path.part(end * (1.0 - high)), best
 
 
-def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, turns: bool) -> Array:
+def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, axis: Array | None) -> Array:
+    """The start (dof,) at the first pose, up to a turn about an axis (3,) of the tip if there is one."""
     q = one_array(start, "start", (len(robot.joint_names),), "one configuration")
     T, first = robot.fk(q), path(0.0)
     off = float(np.linalg.norm(T[:3, 3] - first[:3, 3]))
-    turned = 0.0 if turns else float(np.linalg.norm(T[:3, :3] - first[:3, :3]) * np.sqrt(0.5))
+    apart = T[:3, :3] - first[:3, :3]
+    turned = float(np.linalg.norm(apart) * np.sqrt(0.5) if axis is None else np.linalg.norm(apart @ axis))
     if max(off, turned) > PATH_START:
         raise InputError(
             f"start is {off:.3g} m and {turned:.3g} rad from the begin of the path; move there first, or"
@@ -277,26 +285,6 @@ def _explain_outside(robot: KinematicModel, q: Array, limits: bool | Limits) -> 
     )
 
 
-def _follow(
-    robot: KinematicModel,
-    path: CartesianPath,
-    start: Array | None,
-    free_axis: str | ArrayLike | None,
-    limits: bool | Limits,
-    tolerance: float,
-) -> JointBranches:
-    if free_axis is not None:
-        branch = follow_free_turn(robot, path, free_axis, start, limits=limits, tolerance=tolerance)
-        return JointBranches((branch,), False, branch.reason)
-    if len(as_solver(robot).redundant_joints) == 1:
-        branch = follow_redundant(robot, path, start, limits=limits, tolerance=tolerance)
-        if branch:
-            return JointBranches((branch,), False, "")
-        least = follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
-        return least if least else JointBranches((branch,), False, branch.reason)
-    return follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
-
-
 def _take_fastest(
     robot: KinematicModel,
     path: CartesianPath,
@@ -305,7 +293,10 @@ def _take_fastest(
     grid: int | None,
     scene: Scene | None,
     margin: float,
+    close: float,
 ) -> CartesianMotion:
+    """The motion along the fastest branch that is free; those within a share `close` of the first one on the
+    coarse grid are timed exactly."""
     durations = np.full(len(branches), np.nan)
     arrived = [k for k, branch in enumerate(branches) if branch]
     refused: list[str] = []
@@ -317,15 +308,21 @@ def _take_fastest(
             )
             durations[k] = timed.duration if timed else np.inf
         arrived.sort(key=lambda k: durations[k])
+    best: CartesianMotion | None = None
     for k in arrived:
+        if best is not None and not durations[k] < (1.0 + close) * durations[best.chosen]:
+            break
         joints = _joints(branches[k])
         if space is not None and (touches := find_touches(space, joints, first=True)):
             refused.append(f"at s = {touches[0].s:.6g}: {touches[0].text}")
             continue
         timed = time_parametrize(joints, robot, grid=grid, positions=False, **options)
-        if timed:
-            return CartesianMotion(timed, path, branches, k, durations)
-        refused.append(timed.reason)
+        if not timed:
+            refused.append(timed.reason)
+        elif best is None or timed.duration < best.duration:
+            best = CartesianMotion(timed, path, branches, k, durations)
+    if best is not None:
+        return best
     q = _joints(branches[arrived[0]]).start
     return _refuse(robot, path, branches, q, "; ".join(dict.fromkeys(refused)), np.nan, durations)
 
