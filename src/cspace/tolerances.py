@@ -659,7 +659,7 @@ CHAIN_AT_LIMIT: Final = 1e-3
 CHAIN_LEAST_VOLUME: Final = 1e-6
 """Of the best determinant: nearer to singularities all are equally bad."""
 
-CHAIN_RELAXED: Final = 1e-3
+CHAIN_RELAXED: Final = 3e-3
 """[rad or m] Largest step of a joint at which a chain counts as one of least motion: its poses are corrected
 afterwards."""
 

@@ -19,7 +19,7 @@ from cspace.cartesian.relax_chain import ChainMotion
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
-from cspace.kinematics import KinematicModel
+from cspace.kinematics import KinematicModel, assemble_chain
 from cspace.kinematics.batch import check_robot, limits_of
 from cspace.kinematics.manipulability import generic_rank
 from cspace.math.wrapping import TURN
@@ -62,7 +62,9 @@ def follow_free_turn(
     found = find_free_turns(robot, path, axis, start, limits=limits, tolerance=tolerance)
     arrived = [branch for branch in found.branches if branch]
     s = Stations.of(path).s
-    return min(arrived, key=lambda each: measure_motion(each, s)) if arrived else found.branches[-1]
+    return (
+        min(arrived, key=lambda each: measure_motion(each, s)) if arrived else find_farthest(found.branches)
+    )
 
 
 def find_free_turns(
@@ -78,8 +80,9 @@ def find_free_turns(
     """The joint paths that are compared where the turn of the tip about an axis is free.
 
     Those whose turn stays as it is at the start, those of least motion near them (ChainMotion), and the one
-    near the cheapest chain (ChainSearch). always_searches: for that chain of a redundant arm too, although
-    others arrive; it takes ten times as long. Other arguments as of follow_free_turn.
+    near the cheapest chain (ChainSearch); where none arrives, all that end before. always_searches: for that
+    chain of a redundant arm too, although others arrive; it takes ten times as long. Other arguments as of
+    follow_free_turn.
     """
     check_robot(robot)
     check_cartesian_path(path)
@@ -98,9 +101,16 @@ def find_free_turns(
     branches = [*kept, *relaxed]
     if always_searches or not branches or not solver.redundant_joints:
         found = planner.search()
-        if found or not branches:
-            branches.append(found)
-    return JointBranches(tuple(branches), False, "" if any(branches) else branches[-1].reason)
+        branches += filter(None, found)
+    if branches:
+        return JointBranches(tuple(branches), False, "")
+    ended = (*held.branches, *found)
+    return JointBranches(ended, False, find_farthest(ended).reason)
+
+
+def find_farthest(branches: Sequence[JointBranch]) -> JointBranch:
+    """The branch that ends last; of several the last one."""
+    return max(reversed(branches), key=lambda branch: branch.s_end)
 
 
 def measure_motion(branch: JointBranch, s: Array) -> float:
@@ -124,9 +134,10 @@ class FreeTurnPlanner:
         return Stations.of(self.path)
 
     @cached_property
-    def extended(self) -> Solver:
+    def extended(self) -> KinematicModel:
         """The arm with the joint that takes the turn back."""
-        return Solver(self.turn.solver.chain.append("free turn", "R", self.turn.axis))
+        longer = self.turn.solver.chain.append("free turn", "R", self.turn.axis)
+        return KinematicModel(assemble_chain(longer), self.turn.robot.name)
 
     @cached_property
     def bounds(self) -> Limits:
@@ -170,26 +181,25 @@ class FreeTurnPlanner:
         found = follow_chain(self.extended, self.path, s, q, freedom, smoothings, bounds, self.tolerance)
         return without_turn(found)
 
-    def search(self) -> JointBranch:
-        """The branch near the cheapest chain, or how far one goes."""
+    def search(self) -> list[JointBranch]:
+        """The branch near the cheapest chain, or how far one goes; every branch of an arm without freedom."""
         if not self.freedom:
-            return self.follow_single()
+            return self.follow_single_turns()
         robot, s = self.turn.robot, self.stations.s
         chain = ChainSearch(robot, self.turn, self.stations, self.turn.bounds, self.start).run(refines=False)
         if chain.reason:
-            return end_of_chain(chain.q, float(s[len(chain.q)]), chain.cause, chain.reason, robot.dof)
+            return [end_of_chain(chain.q, float(s[len(chain.q)]), chain.cause, chain.reason, robot.dof)]
         q = np.append(chain.q, -np.unwrap(chain.values)[:, None], axis=1)
-        return self.relax(q) or self.follow(q, SMOOTHINGS)
+        return [self.relax(q) or self.follow(q, SMOOTHINGS)]
 
-    def follow_single(self) -> JointBranch:
-        """The branch of an arm that reaches each pose at single turns."""
+    def follow_single_turns(self) -> list[JointBranch]:
+        """The branches of an arm that reaches each pose at single turns; one that ends at once for none."""
         start = None if self.start is None else np.append(self.start, -self.start_turn)
-        found = follow_cartesian(
-            self.extended, self.path, start, limits=self.bounds, tolerance=self.tolerance
-        )
-        if not found.branches:
-            return end_of_chain(np.zeros((0, 0)), 0.0, "unreachable", found.reason, self.turn.robot.dof)
-        return without_turn(max(found.branches, key=lambda branch: branch.s_end))
+        options: Any = {"limits": self.bounds, "tolerance": self.tolerance}
+        found = follow_cartesian(Solver(self.extended.chain), self.path, start, **options)
+        if found.branches:
+            return [without_turn(branch) for branch in found.branches]
+        return [end_of_chain(np.zeros((0, 0)), 0.0, "unreachable", found.reason, self.turn.robot.dof)]
 
 
 def without_turn(branch: JointBranch) -> JointBranch:

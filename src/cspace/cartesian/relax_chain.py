@@ -26,6 +26,15 @@ LEAST_SHARE: Final = 0.02
 KEPT_ROOM: Final = 0.9
 """Of the distance from a limit that a step may take."""
 
+DECREASE: Final = 0.9
+"""Of the longest step from one round to the next; where it is less, damping grows."""
+
+DAMPING_GROWTH: Final = 4.0
+"""And where it is more, damping is divided by this."""
+
+LEAST_DAMPING: Final = 0.1
+"""Share of the stiffness of the chain, once there is any."""
+
 LIMIT_WEIGHT: Final = 0.02
 """Of x²/(1 − x²), x the distance from the middle of the limits in half ranges, against joints that move by 1
 rad per unit of the path: it keeps joints off their limits and does not turn them elsewhere."""
@@ -50,14 +59,19 @@ class ChainMotion:
     def relax(self, q: Array, *, keeps_start: bool) -> Array:
         """The chain (n, dof) of least motion near a chain; keeps_start: its first row stays as it is."""
         limited, first = self._find_limited(q), int(keeps_start)
+        damping, longest = 0.0, np.inf
         for _ in range(ROUNDS):
             correction, null = self._linearise(q)
             correction[:first] = 0.0
-            inner = self._solve(q, correction, null, limited, first)
+            inner = self._solve(q, correction, null, limited, first, damping)
             step = correction + np.einsum("ka,kaj->kj", inner, null)
             q = q + self._shorten(q, step, limited) * step
-            if not np.abs(step).max() > CHAIN_RELAXED:
+            size = float(np.abs(step).max())
+            if not size > CHAIN_RELAXED:
                 break
+            grows = size > DECREASE * longest
+            damping = max(DAMPING_GROWTH * damping, LEAST_DAMPING) if grows else damping / DAMPING_GROWTH
+            longest = size
         return q
 
     def _find_limited(self, q: Array) -> NDArray[np.bool_]:
@@ -78,10 +92,16 @@ class ChainMotion:
         return np.einsum("kj,kji->ki", parts, right[:, :rank]), right[:, rank:]
 
     def _solve(
-        self, q: Array, correction: Array, null: Array, limited: NDArray[np.bool_], first: int
+        self,
+        q: Array,
+        correction: Array,
+        null: Array,
+        limited: NDArray[np.bool_],
+        first: int,
+        damping: float,
     ) -> Array:
         """The coordinates (n, freedom) of the step in the null spaces, by which the motion is least; none of
-        the stations before the first."""
+        the stations before the first. damping: share of the stiffness that holds the chain (Marquardt)."""
         pace = 1.0 / np.diff(self.s)
         share = np.zeros(len(q))  # of the path, around each station
         share[1:] += 0.5 / pace
@@ -94,7 +114,9 @@ class ChainMotion:
         stiffness = np.zeros(len(q))
         stiffness[1:] += pace
         stiffness[:-1] += pace
-        diagonal = (1.0 + CHAIN_HELD) * self.weights * stiffness[:, None] + 0.5 * share[:, None] * bend
+        diagonal = (1.0 + CHAIN_HELD + damping) * self.weights * stiffness[:, None] + 0.5 * share[
+            :, None
+        ] * bend
         blocks = np.einsum("kai,ki,kbi->kab", null, diagonal, null)
         beside = -np.einsum("kai,i,kbi->kab", null[:-1], self.weights, null[1:]) * pace[:, None, None]
         inner: Array = -np.einsum("kai,ki->ka", null, gradient)
@@ -122,16 +144,25 @@ class ChainMotion:
 
 
 def solve_block_tridiagonal(blocks: Array, beside: Array, right: Array) -> Array:
-    """x (n, k) of the symmetric system whose rows have blocks (n, k, k) on the diagonal and (n − 1, k, k)
-    above it, by elimination (Golub and Van Loan 2013, section 4.5)."""
-    if not right.shape[1]:
-        return right
-    x, upper = np.empty_like(right), np.empty_like(beside)
-    x[0] = np.linalg.solve(blocks[0], right[0])
-    for k in range(1, len(blocks)):
-        upper[k - 1] = np.linalg.solve(blocks[k - 1], beside[k - 1])
-        blocks[k] -= beside[k - 1].T @ upper[k - 1]
-        x[k] = np.linalg.solve(blocks[k], right[k] - beside[k - 1].T @ x[k - 1])
-    for k in range(len(blocks) - 2, -1, -1):
-        x[k] -= upper[k] @ x[k + 1]
+    """x (n, k) of the symmetric system with blocks (n, k, k) on the diagonal and (n − 1, k, k) above it, by
+    cyclic reduction: every other row is eliminated (Golub and Van Loan 2013, section 4.5)."""
+    if len(blocks) == 1 or not right.shape[1]:
+        return np.asarray(np.linalg.solve(blocks, right[..., None])[..., 0])
+    k, odd = right.shape[1], len(blocks) // 2
+    before, behind = beside[0::2], beside[1::2]  # of the odd rows
+    padded = np.zeros((odd, k, k))
+    padded[: len(behind)] = behind
+    sides = [np.swapaxes(before, 1, 2), padded, right[1::2, :, None]]
+    parts = np.linalg.solve(blocks[1::2], np.concatenate(sides, axis=2))
+    kept, rest = blocks[0::2].copy(), right[0::2].copy()
+    along = before @ parts
+    back = np.swapaxes(behind, 1, 2) @ parts[: len(behind)]
+    kept[:odd] -= along[..., :k]
+    rest[:odd] -= along[..., -1]
+    kept[1:] -= back[..., k : 2 * k]
+    rest[1:] -= back[..., -1]
+    x = np.empty_like(right)
+    x[0::2] = even = solve_block_tridiagonal(kept, -along[: len(behind), :, k : 2 * k], rest)
+    x[1::2] = parts[..., -1] - np.einsum("nij,nj->ni", parts[..., :k], even[:odd])
+    x[1::2][: len(behind)] -= np.einsum("nij,nj->ni", parts[: len(behind), :, k : 2 * k], even[1:])
     return x
