@@ -26,15 +26,12 @@ from cspace.math.wrapping import TURN
 from cspace.model import Limits
 from cspace.spatial import exp_so3, log_so3
 from cspace.spatial.vectors import AXES, length_and_direction
-from cspace.tolerances import PATH_START
+from cspace.tolerances import CHAIN_TURN_WEIGHT, PATH_START
 from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
 
 MOST_RELAXED: Final = 2
 """Of the branches with a turn that stays, those of least motion."""
-
-TURN_WEIGHT: Final = 1e-3
-"""Of the free turn against the joints, where a joint can turn the tip alone: then it rests."""
 
 ANGLES: Final = 48
 """Of the free turn that are tried at each station: 7.5° apart."""
@@ -170,7 +167,7 @@ class FreeTurnPlanner:
 
     def relax(self, q: Array) -> JointBranch:
         """The branch of least motion near a chain (n, dof + 1)."""
-        weights = np.append(np.ones(self.turn.robot.dof), TURN_WEIGHT)
+        weights = np.append(np.ones(self.turn.robot.dof), CHAIN_TURN_WEIGHT)
         s, T = self.stations.s, self.stations.T
         motion = ChainMotion(self.extended, s, T, self.freedom, weights, self.bounds)
         return self.follow(motion.relax(q, keeps_start=self.start is not None), (0.0,))

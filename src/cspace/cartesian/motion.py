@@ -104,12 +104,12 @@ def move_cartesian(
     path: such as of line_path. start (dof,) [rad or m]: the configuration at its begin, whose branch alone
     is followed. speed [m/s], turn_rate [rad/s]: of the tip, at most; feed [m/s]: held where the limits
     allow it. velocity, acceleration, jerk, torque, grid: as of time_parametrize. free_axis: an axis of the
-    tip about which it may turn freely ("z", or a direction (3,) in its frame). scene: obstacles; branches
-    that touch them or the arm itself are left out, proved with `margin` [m] to spare. limits: True for
-    those of the robot, False for none, or Limits. tolerance [m and rad]: the largest distance of the tip
-    from the path, checked at five places of each piece of the joint path. as_far_as_possible: where no
-    branch arrives, the motion along the part of the path that the farthest one follows; stopped_by says
-    what ends it, and s_end where.
+    tip about which it may turn freely ("z", or a direction (3,) in its frame), never slower than without.
+    scene: obstacles; branches that touch them or the arm itself are left out, proved with `margin` [m] to
+    spare. limits: True for those of the robot, False for none, or Limits. tolerance [m and rad]: the largest
+    distance of the tip from the path, checked at five places of each piece of the joint path.
+    as_far_as_possible: where no branch arrives, the motion along the part of the path that the farthest one
+    follows; stopped_by says what ends it, and s_end where.
 
     Returns a CartesianMotion; falsy, with reason and place s, where no branch arrives (limit, singularity,
     jump, unreachable), each touches something, or the limits cannot be kept. Near singular configurations the
@@ -122,13 +122,7 @@ def move_cartesian(
     first = None if start is None else _check_start(robot, path, start, axis)
     if first is not None and (outside := _explain_outside(robot, first, limits)):
         return _refuse(robot, path, (), first, outside, 0.0)
-
-    def follow(part: CartesianPath) -> JointBranches:
-        if axis is None:
-            return follow_poses(robot, part, first, limits, tolerance)
-        options: Any = {"limits": limits, "tolerance": tolerance, "always_searches": scene is not None}
-        return find_free_turns(robot, part, axis, first, **options)
-
+    follow = _make_follower(robot, first, axis, limits, tolerance, scene is not None)
     found = follow(path)
     stopped_by, whole = "", path
     if not found and as_far_as_possible:
@@ -230,6 +224,21 @@ def _stay(robot: KinematicModel, q: Array, options: dict[str, Any]) -> Cartesian
     if outside := _explain_outside(robot, q, options.get("limits", True)):
         return _refuse(robot, path, (), q, outside, 0.0)
     return CartesianMotion(stand_still(q, 1.0, "", np.nan, robot.joint_names), path, (), -1, np.zeros(0))
+
+
+def _make_follower(
+    robot: KinematicModel,
+    start: Array | None,
+    axis: Array | None,
+    limits: bool | Limits,
+    tolerance: float,
+    has_scene: bool,
+) -> Callable[[CartesianPath], JointBranches]:
+    """The function that finds the branches along a path; axis (3,) of the tip, of a free turn."""
+    if axis is None:
+        return lambda path: follow_poses(robot, path, start, limits, tolerance)
+    options: Any = {"limits": limits, "tolerance": tolerance, "always_searches": has_scene}
+    return lambda path: find_free_turns(robot, path, axis, start, **options)
 
 
 def _follow_part(
