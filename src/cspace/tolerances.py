@@ -686,6 +686,21 @@ CHAIN_AT_LIMIT: Final = 1e-3
 CHAIN_LEAST_VOLUME: Final = 1e-6
 """Of the best determinant: nearer to singularities all are equally bad."""
 
+CHAIN_TURN_WEIGHT: Final = 1e-3
+"""Of a free turn against the joints in the motion of a chain: a joint that only turns the tip about its free
+axis rests, and the turn costs nothing else."""
+
+CHAIN_RELAXED: Final = 3e-3
+"""[rad or m] Largest step of a joint at which a chain counts as one of least motion: its poses are corrected
+afterwards."""
+
+CHAIN_CORRECTION: Final = 1e-4
+"""Singular value below which a chain is not corrected towards its poses: the joints would have to jump."""
+
+CHAIN_HELD: Final = 1e-6
+"""Share of the stiffness of a chain that holds it where nothing else does: one joint that turns the tip about
+its free axis may be anywhere."""
+
 POSE_ROUNDING: Final = 1e-13
 """[m or rad] Of a pose that is reached."""
 

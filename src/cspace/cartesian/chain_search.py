@@ -10,6 +10,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.kinematics import KinematicModel
+from cspace.kinematics.manipulability import generic_rank
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.model import Limits
 from cspace.tolerances import CHAIN_AT_LIMIT, CHAIN_LEAST_VOLUME
@@ -45,6 +46,9 @@ rad per unit of the path: a few degrees of detour keep a joint away from its lim
 
 SINGULAR_WEIGHT: Final = 0.02
 """Of the inverse of det(J Jᵀ), relative to the best one on the path."""
+
+FULL_RANK: Final = 6
+"""Of the Jacobian of an arm that moves in all directions."""
 
 ROOMY: Final = TURN + 2.0
 """[rad] Range of a joint of which multiples of 2π count as one configuration; its limits are looked at
@@ -153,9 +157,10 @@ class ChainSearch:
         self.narrow = np.isfinite(bounds.lower) & np.isfinite(bounds.upper) & ~self.wide
         self.half = np.where(self.narrow, 0.5 * (bounds.upper - bounds.lower), 1.0)
         self.middle = np.where(self.narrow, bounds.lower + self.half, 0.0)
+        self.moves_freely = generic_rank(robot) == FULL_RANK
 
-    def run(self) -> ConfigurationChain:
-        """The chain with continuous angles, or how far it goes."""
+    def run(self, *, refines: bool = True) -> ConfigurationChain:
+        """The chain with continuous angles, or how far it goes; refines: searches around it once more."""
         values = self.freedom.spread_values()
         step = values[1] - values[0]
         if self.start is not None:  # one of the values is that of the start
@@ -165,6 +170,8 @@ class ChainSearch:
         coarse = self._search(every, self.freedom.is_ring, REACH)
         if coarse.reason:
             return coarse
+        if not refines:
+            return ConfigurationChain(self._unwrap(coarse.q), coarse.values)
         parts = step / FINER * np.arange(-FINER, FINER + 1)
         finer = self._search(coarse.values[:, None] + parts, False, 2 * FINER)
         chain = coarse if finer.reason else finer
@@ -201,9 +208,12 @@ class ChainSearch:
         return np.asarray(np.where(self.revolute & self.narrow, wrap_near(q, self.middle), q))
 
     def _measure_cost(self, q: Array) -> Array:
-        """Of the distance from the middle of the limits and from singularities."""
+        """Of the distance from the middle of the limits and, for arms that move in all six directions, from
+        singularities: the determinant of others is rounding."""
         off = np.where(self.narrow, (q - self.middle) / self.half, 0.0) ** 2
         cost = LIMIT_WEIGHT * np.sum(off / (1.0 + CHAIN_AT_LIMIT - np.minimum(off, 1.0)), axis=1)
+        if not self.moves_freely:
+            return np.asarray(cost * self.stations.spacing**2)
         J = self.robot.jacobian(q)
         volume = np.empty(len(q))
         _core._square_volumes(J, volume)

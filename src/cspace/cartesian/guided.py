@@ -42,26 +42,33 @@ def smooth_rows(s: Array, rows: Array, weight: float) -> Path:
     return Path(s, quintic_controls(np.diff(s), smooth, "natural"))
 
 
-def null_directions(robot: KinematicModel, q: Array) -> Array:
-    """The unit vectors (n, dof) of the null space of the Jacobian along a chain q (n, dof), of one sign."""
-    null = np.linalg.svd(robot.jacobian(q))[2][:, -1]
-    null[1:] *= np.cumprod(np.where(np.sum(null[1:] * null[:-1], axis=1) < 0, -1.0, 1.0))[:, None]
+def null_bases(robot: KinematicModel, q: Array, count: int) -> Array:
+    """Orthonormal bases (n, count, dof) of the null spaces of the Jacobian along a chain q (n, dof), each
+    turned as near to the one before it as it can be (Schönemann 1966)."""
+    null: Array = np.linalg.svd(robot.jacobian(q))[2][:, robot.dof - count :]
+    if count == 1:
+        null[1:] *= np.cumprod(np.where(np.sum(null[1:] * null[:-1], axis=2) < 0, -1.0, 1.0), axis=0)[:, None]
+        return null
+    for k in range(1, len(null) if count else 0):
+        left, _, right = np.linalg.svd(null[k - 1] @ null[k].T)
+        null[k] = left @ right @ null[k]
     return null
 
 
 @dataclass(frozen=True, eq=False)
 class Guided:
-    """Corrects with d · (q − r) = 0 besides the pose, for a guiding curve (r, d)(s) of 2 dof values."""
+    """Corrects with d · (q − r) = 0 besides the pose, for a guiding curve r(s) and one or more directions
+    d(s), all of them the rows of `curve`."""
 
     robot: KinematicModel
     path: CartesianPath
     curve: Path
 
     def guide(self, piece: Indices, u: Array, order: int) -> tuple[Array, Array]:
-        """Derivatives of r and d (n, dof) of that order."""
+        """Derivatives of r (n, dof) and of the directions (n, count, dof) of that order."""
         s = np.minimum(self.path.breaks[piece] + u, self.curve.length)
-        values = self.curve(s, order)
-        return values[:, : self.robot.dof], values[:, self.robot.dof :]
+        values = self.curve(s, order).reshape(len(s), -1, self.robot.dof)
+        return values[:, 0], values[:, 1:]
 
     def __call__(self, piece: Indices, u: Array, T: Array, guess: Array) -> Nodes:
         """Newton's method; then J q' = t and J q'' = t' − J' q', with the derivatives of the last row.
@@ -90,9 +97,15 @@ class Guided:
         return Nodes(q, slope, bend, np.where(lost, np.inf, left))
 
     def _solve(self, q: Array, direction: Array, task: Array, last: Array) -> Array:
-        """x with J x = task and direction · x = last, for each row; NaN where it is singular."""
-        matrix = np.concatenate([self.robot.jacobian(q), direction[:, None, :]], axis=1)
-        right = np.concatenate([task, last[:, None]], axis=1)
+        """x with J x = task and d · x = last, for each row; NaN where it is singular.
+
+        An arm that cannot move in all six directions is solved by least squares: the path asks for none of
+        the others.
+        """
+        matrix = np.concatenate([self.robot.jacobian(q), direction], axis=1)
+        right = np.concatenate([task, last], axis=1)
+        if matrix.shape[1] != matrix.shape[2]:
+            return np.stack([_solve_least_squares(*row) for row in zip(matrix, right, strict=True)])
         try:
             return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
         except np.linalg.LinAlgError:
@@ -118,5 +131,13 @@ def _solve_one(matrix: Array, right: Array) -> Array:
         return np.full_like(right, np.nan)
 
 
+def _solve_least_squares(matrix: Array, right: Array) -> Array:
+    """x with matrix x as near to right as it can be; NaN where a number is none."""
+    if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
+        return np.full(matrix.shape[1], np.nan)
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])
+
+
 def _dot(a: Array, b: Array) -> Array:
-    return np.asarray(np.sum(a * b, axis=1))
+    """Directions a (n, count, dof) times vectors b (n, dof)."""
+    return np.asarray(np.einsum("nij,nj->ni", a, b))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from inspect import signature
 from typing import TYPE_CHECKING, Any, Final
 
@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array, one_number
-from cspace.cartesian.free_turn import follow_free_turn
-from cspace.cartesian.joint_branches import JointBranch, JointBranches, follow_cartesian
-from cspace.cartesian.redundant_path import follow_redundant
+from cspace.cartesian.free_turn import find_free_turns, tool_axis
+from cspace.cartesian.joint_branches import JointBranch, JointBranches
+from cspace.cartesian.redundant_path import follow_poses
 from cspace.cartesian.scene_check import Touch, find_touches, space_of_curves
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_robot, find_pose, limits_of
 from cspace.model import Limits
@@ -43,6 +42,10 @@ if TYPE_CHECKING:
 
 RANKING_GRID: Final = 100
 """Intervals with which branches are compared: their durations are off by a few percent, alike for all."""
+
+CLOSE_RANKING: Final = 0.05
+"""Part of a duration on this grid by which the branches of a free turn may be in the wrong order: they are of
+different shapes, and those so near to the fastest are timed exactly."""
 
 
 class CartesianMotion(TimedMotion):
@@ -106,12 +109,12 @@ def move_cartesian(
     path: such as of line_path. start (dof,) [rad or m]: the configuration at its begin, whose branch alone
     is followed. speed [m/s], turn_rate [rad/s]: of the tip, at most; feed [m/s]: held where the limits
     allow it. velocity, acceleration, jerk, torque, grid: as of time_parametrize. free_axis: an axis of the
-    tip about which it may turn freely ("z", or a direction (3,) in its frame). scene: obstacles; branches
-    that touch them or the arm itself are left out, proved with `margin` [m] to spare. limits: True for
-    those of the robot, False for none, or Limits. tolerance [m and rad]: the largest distance of the tip
-    from the path, checked at five places of each piece of the joint path. as_far_as_possible: where no
-    branch arrives, the motion along the part of the path that the farthest one follows; stopped_by says
-    what ends it, and s_end where.
+    tip about which it may turn freely ("z", or a direction (3,) in its frame), never slower than without.
+    scene: obstacles; branches that touch them or the arm itself are left out, proved with `margin` [m] to
+    spare. limits: True for those of the robot, False for none, or Limits. tolerance [m and rad]: the largest
+    distance of the tip from the path, checked at five places of each piece of the joint path.
+    as_far_as_possible: where no branch arrives, the motion along the part of the path that the farthest one
+    follows; stopped_by says what ends it, and s_end where.
 
     Returns a CartesianMotion; falsy, with reason and place s, where no branch arrives (limit, singularity,
     jump, unreachable), each touches something, or the limits cannot be kept. Near singular configurations the
@@ -120,14 +123,16 @@ def move_cartesian(
     """
     check_robot(robot)
     check_cartesian_path(path)
-    first = None if start is None else _check_start(robot, path, start, free_axis is not None)
+    axis = None if free_axis is None else tool_axis(free_axis)
+    first = None if start is None else _check_start(robot, path, start, axis)
     if first is not None and (outside := _explain_outside(robot, first, limits)):
         return _refuse(robot, path, (), first, outside, 0.0)
-    found = _follow(robot, path, first, free_axis, limits, tolerance)
+    follow = _make_follower(robot, first, axis, limits, tolerance, scene is not None)
+    found = follow(path)
     stopped_by, whole = "", path
     if not found and as_far_as_possible:
         stopped_by = found.reason
-        path, found = _follow_part(robot, path, first, free_axis, limits, tolerance, found)
+        path, found = _follow_part(path, follow, found)
     if not found:
         place = max((branch.s_end for branch in found.branches), default=0.0)
         q = found.branches[0].q_start if found.branches else robot.limits.lower * 0.0
@@ -143,7 +148,8 @@ def move_cartesian(
     }
     options["grid"] = grid
     space = None if scene is None else space_of_curves(robot, scene, margin)
-    motion, touches = _take_fastest(robot, path, found.branches, options, space)
+    close = 0.0 if axis is None else CLOSE_RANKING
+    motion, touches = _take_fastest(robot, path, found.branches, options, space, close)
     if as_far_as_possible and touches:
         k, touch = max(touches.items(), key=lambda each: each[1].s)
         if touch.s > SHORTEST_PATH_PIECE:
@@ -248,14 +254,23 @@ def _stay(robot: KinematicModel, q: Array, options: dict[str, Any]) -> Cartesian
     return CartesianMotion(stand_still(q, 1.0, "", np.nan, robot.joint_names), path, (), -1, np.zeros(0))
 
 
-def _follow_part(
+def _make_follower(
     robot: KinematicModel,
-    path: CartesianPath,
     start: Array | None,
-    free_axis: str | ArrayLike | None,
+    axis: Array | None,
     limits: bool | Limits,
     tolerance: float,
-    found: JointBranches,
+    has_scene: bool,
+) -> Callable[[CartesianPath], JointBranches]:
+    """The function that finds the branches along a path; axis (3,) of the tip, of a free turn."""
+    if axis is None:
+        return lambda path: follow_poses(robot, path, start, limits, tolerance)
+    options: Any = {"limits": limits, "tolerance": tolerance, "always_searches": has_scene}
+    return lambda path: find_free_turns(robot, path, axis, start, **options)
+
+
+def _follow_part(
+    path: CartesianPath, follow: Callable[[CartesianPath], JointBranches], found: JointBranches
 ) -> tuple[CartesianPath, JointBranches]:
     """The part of a path that can be followed, and its branches.
 
@@ -263,30 +278,32 @@ def _follow_part(
     """
     end = max((branch.s_end for branch in found.branches), default=0.0)
 
-    def follow(share: float) -> JointBranches | None:
+    def try_without(share: float) -> JointBranches | None:
         if not end * (1.0 - share) > SHORTEST_PATH_PIECE:
             return None
-        return _follow(robot, path.part(end * (1.0 - share)), start, free_axis, limits, tolerance) or None
+        return follow(path.part(end * (1.0 - share))) or None
 
-    tried = ((share, follow(share)) for share in SHORTENED_PARTS)
+    tried = ((share, try_without(share)) for share in SHORTENED_PARTS)
     high, best = next(((share, each) for share, each in tried if each), (1.0, None))
     if best is None:
         return path, found
     low = max((share for share in SHORTENED_PARTS if share < high), default=0.0)
     while high - low > SHORTENED_WITHIN:
         middle = 0.5 * (low + high)
-        if followed := follow(middle):
+        if followed := try_without(middle):
             high, best = middle, followed
         else:
             low = middle
     return path.part(end * (1.0 - high)), best
 
 
-def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, turns: bool) -> Array:
+def _check_start(robot: KinematicModel, path: CartesianPath, start: ArrayLike, axis: Array | None) -> Array:
+    """The start (dof,) at the first pose, up to a turn about an axis (3,) of the tip if there is one."""
     q = _read_start(robot, start)
     T, first = robot.fk(q), path(0.0)
     off = float(np.linalg.norm(T[:3, 3] - first[:3, 3]))
-    turned = 0.0 if turns else float(np.linalg.norm(T[:3, :3] - first[:3, :3]) * np.sqrt(0.5))
+    apart = T[:3, :3] - first[:3, :3]
+    turned = float(np.linalg.norm(apart) * np.sqrt(0.5) if axis is None else np.linalg.norm(apart @ axis))
     if max(off, turned) > PATH_START:
         raise InputError(
             f"start is {off:.3g} m and {turned:.3g} rad from the begin of the path; move there first, or"
@@ -308,35 +325,18 @@ def _explain_outside(robot: KinematicModel, q: Array, limits: bool | Limits) -> 
     )
 
 
-def _follow(
-    robot: KinematicModel,
-    path: CartesianPath,
-    start: Array | None,
-    free_axis: str | ArrayLike | None,
-    limits: bool | Limits,
-    tolerance: float,
-) -> JointBranches:
-    if free_axis is not None:
-        branch = follow_free_turn(robot, path, free_axis, start, limits=limits, tolerance=tolerance)
-        return JointBranches((branch,), False, branch.reason)
-    if len(as_solver(robot).redundant_joints) == 1:
-        branch = follow_redundant(robot, path, start, limits=limits, tolerance=tolerance)
-        if branch:
-            return JointBranches((branch,), False, "")
-        least = follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
-        farther = any(each.s_end >= branch.s_end for each in least.branches)
-        return least if farther else JointBranches((branch,), False, branch.reason)
-    return follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
-
-
 def _take_fastest(
     robot: KinematicModel,
     path: CartesianPath,
     branches: Sequence[JointBranch],
     options: dict[str, Any],
     space: ArmSpace | None,
+    close: float,
 ) -> tuple[CartesianMotion, dict[int, Touch]]:
-    """The motion of the fastest branch that touches nothing; without one where each touches something."""
+    """The motion along the fastest branch that touches nothing, or none and what each touches.
+
+    Branches within a share `close` of the fastest on the coarse grid are timed exactly.
+    """
     durations = np.full(len(branches), np.nan)
     arrived = [k for k, branch in enumerate(branches) if branch]
     refused: list[str] = []
@@ -347,16 +347,22 @@ def _take_fastest(
             timed = time_parametrize(_joints(branches[k]), robot, positions=False, **coarse)
             durations[k] = timed.duration if timed else np.inf
         arrived.sort(key=lambda k: durations[k])
+    best: CartesianMotion | None = None
     for k in arrived:
+        if best is not None and not durations[k] < (1.0 + close) * durations[best.chosen]:
+            break
         joints = _joints(branches[k])
         if space is not None and (found := find_touches(space, joints, first=True)):
             touches[k] = found[0]
             refused.append(_say_where(found[0]))
             continue
         timed = time_parametrize(joints, robot, positions=False, **options)
-        if timed:
-            return CartesianMotion(timed, path, branches, k, durations), {}
-        refused.append(timed.reason)
+        if not timed:
+            refused.append(timed.reason)
+        elif best is None or timed.duration < best.duration:
+            best = CartesianMotion(timed, path, branches, k, durations)
+    if best is not None:
+        return best, {}
     q = _joints(branches[arrived[0]]).start
     reason = "; ".join(dict.fromkeys(refused))
     return _refuse(robot, path, branches, q, reason, np.nan, durations), touches

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -10,8 +11,15 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array
 from cspace.cartesian.chain_search import ROOMY, find_chain
-from cspace.cartesian.guided import Guided, null_directions, smooth_rows
-from cspace.cartesian.joint_branches import NO_DEVIATION, JointBranch, end_at_limits, make_branch
+from cspace.cartesian.guided import Guided, null_bases, smooth_rows
+from cspace.cartesian.joint_branches import (
+    NO_DEVIATION,
+    JointBranch,
+    JointBranches,
+    end_at_limits,
+    follow_cartesian,
+    make_branch,
+)
 from cspace.cartesian.refine import first_nodes, read_tolerance, refine_branches
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
@@ -63,18 +71,51 @@ def follow_redundant(
     stations, chain = find_chain(robot, RedundantJoint.of(solver, bounds), path, bounds, first)
     if chain.reason:
         return end_of_chain(chain.q, chain.s_end, chain.cause, chain.reason, robot.dof)
-    rows = np.concatenate([chain.q, null_directions(robot, chain.q)], axis=1)
+    return follow_chain(robot, path, stations.s, chain.q, 1, SMOOTHINGS, bounds, tolerance)
+
+
+def follow_chain(
+    robot: KinematicModel,
+    path: CartesianPath,
+    s: Array,
+    q: Array,
+    freedom: int,
+    smoothings: Sequence[float],
+    bounds: Limits,
+    tolerance: float,
+) -> JointBranch:
+    """The joint path beside a chain q (n, dof) at parameters s (n,), in the null spaces of the Jacobian.
+
+    freedom: their dimensions. smoothings: weights of the second differences, tried in this order.
+    """
+    bases = null_bases(robot, q, freedom).reshape(len(q), -1)
+    rows = np.concatenate([q, bases], axis=1)
     piece, u = first_nodes(path)
     found: JointBranch | None = None
-    for weight in SMOOTHINGS:
-        guided = Guided(robot, path, smooth_rows(stations.s, rows, weight))
+    for weight in smoothings:
+        guided = Guided(robot, path, smooth_rows(s, rows, weight))
         guess = guided.guide(piece, u, 0)[0]
-        found = make_branch(chain.q[0], refine_branches(robot, path, guided, guess[None], tolerance)[0])
+        found = make_branch(q[0], refine_branches(robot, path, guided, guess[None], tolerance)[0])
         found = end_at_limits(found, bounds, robot)
         if found:
             return found
     assert found is not None
     return found
+
+
+def follow_poses(
+    robot: KinematicModel, path: CartesianPath, start: Array | None, limits: bool | Limits, tolerance: float
+) -> JointBranches:
+    """The joint paths of any arm along a Cartesian path: planned at once where one joint is redundant, and by
+    least motion otherwise, or where the plan ends before the path does."""
+    if len(as_solver(robot).redundant_joints) != 1:
+        return follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
+    branch = follow_redundant(robot, path, start, limits=limits, tolerance=tolerance)
+    if branch:
+        return JointBranches((branch,), False, "")
+    least = follow_cartesian(robot, path, start, limits=limits, tolerance=tolerance)
+    farther = any(each.s_end >= branch.s_end for each in least.branches)
+    return least if farther else JointBranches((branch,), False, branch.reason)
 
 
 @dataclass(frozen=True, eq=False)
