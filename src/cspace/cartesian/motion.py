@@ -116,10 +116,9 @@ def move_cartesian(
     as_far_as_possible: where no branch arrives, the motion along the part of the path that the farthest one
     follows; stopped_by says what ends it, and s_end where.
 
-    Returns a CartesianMotion; falsy, with reason and place s, where no branch arrives (limit, singularity,
-    jump, unreachable), each touches something, or the limits cannot be kept. Near singular configurations the
-    joints slow the tip down, and `binding` says which. Raises InputError for wrong shapes, NaN, and a start
-    that is not at the begin of the path.
+    Returns a CartesianMotion; falsy, with reason and place s, where no branch arrives, each touches
+    something, or the limits cannot be kept. Near singular configurations the joints slow the tip down, and
+    `binding` says which. Raises InputError for wrong shapes, NaN, and a start that is not on the path.
     """
     check_robot(robot)
     check_cartesian_path(path)
@@ -134,9 +133,7 @@ def move_cartesian(
         stopped_by = found.reason
         path, found = _follow_part(path, follow, found)
     if not found:
-        place = max((branch.s_end for branch in found.branches), default=0.0)
-        q = found.branches[0].q_start if found.branches else robot.limits.lower * 0.0
-        return _refuse(robot, path, found.branches, q, found.reason, place)
+        return _refuse_branches(robot, path, found)
     options: dict[str, Any] = {
         "velocity": velocity,
         "acceleration": acceleration,
@@ -145,20 +142,14 @@ def move_cartesian(
         "speed": speed,
         "turn_rate": turn_rate,
         "feed": feed,
+        "grid": grid,
     }
-    options["grid"] = grid
     space = None if scene is None else space_of_curves(robot, scene, margin)
-    close = 0.0 if axis is None else CLOSE_RANKING
-    motion, touches = _take_fastest(robot, path, found.branches, options, space, close)
+    motion, touches = _take_fastest(robot, path, found.branches, options, space, axis is not None)
     if as_far_as_possible and touches:
-        k, touch = max(touches.items(), key=lambda each: each[1].s)
-        if touch.s > SHORTEST_PATH_PIECE:
-            joints = _joints(found.branches[k]).part(touch.s)
-            timed = time_parametrize(joints, robot, positions=False, **options)
-            motion = CartesianMotion(timed, path, found.branches, k, motion.durations)
-            path, stopped_by = path.part(touch.s), _say_where(touch)
+        motion, stopped_by = _stop_before(robot, motion, touches, options) or (motion, stopped_by)
     if stopped_by:
-        motion.cartesian, motion.stopped_by, motion.s_end = whole, stopped_by, path.length
+        motion.cartesian, motion.stopped_by, motion.s_end = whole, stopped_by, motion.path.length
     return motion
 
 
@@ -331,12 +322,13 @@ def _take_fastest(
     branches: Sequence[JointBranch],
     options: dict[str, Any],
     space: ArmSpace | None,
-    close: float,
+    turns: bool,
 ) -> tuple[CartesianMotion, dict[int, Touch]]:
     """The motion along the fastest branch that touches nothing, or none and what each touches.
 
-    Branches within a share `close` of the fastest on the coarse grid are timed exactly.
+    turns: branches of a free turn that are nearly as fast on the coarse grid are timed exactly.
     """
+    close = CLOSE_RANKING if turns else 0.0
     durations = np.full(len(branches), np.nan)
     arrived = [k for k, branch in enumerate(branches) if branch]
     refused: list[str] = []
@@ -368,6 +360,19 @@ def _take_fastest(
     return _refuse(robot, path, branches, q, reason, np.nan, durations), touches
 
 
+def _stop_before(
+    robot: KinematicModel, refused: CartesianMotion, touches: dict[int, Touch], options: dict[str, Any]
+) -> tuple[CartesianMotion, str] | None:
+    """The motion along the branch that is free farthest, up to what it touches, and that; None from there."""
+    k, touch = max(touches.items(), key=lambda each: each[1].s)
+    if not touch.s > SHORTEST_PATH_PIECE:
+        return None
+    joints = _joints(refused.branches[k]).part(touch.s)
+    timed = time_parametrize(joints, robot, positions=False, **options)
+    motion = CartesianMotion(timed, refused.cartesian, refused.branches, k, refused.durations)
+    return motion, _say_where(touch)
+
+
 def _say_where(touch: Touch) -> str:
     return f"at s = {touch.s:.6g}: {touch.text}"
 
@@ -375,6 +380,13 @@ def _say_where(touch: Touch) -> str:
 def _joints(branch: JointBranch) -> Path:
     assert branch.path is not None
     return branch.path
+
+
+def _refuse_branches(robot: KinematicModel, path: CartesianPath, found: JointBranches) -> CartesianMotion:
+    """No motion, as no branch arrives: it stays at the start of the first."""
+    place = max((branch.s_end for branch in found.branches), default=0.0)
+    q = found.branches[0].q_start if found.branches else robot.limits.lower * 0.0
+    return _refuse(robot, path, found.branches, q, found.reason, place)
 
 
 def _refuse(

@@ -58,9 +58,8 @@ def move_to(
 
     Returns a PolynomialTrajectory. It is falsy, with a reason, where the motion leaves the limits of
     position, where a polynomial exceeds a limit in the duration that was asked for or in every duration, and
-    where double-S or trapezoidal motions do not exist in that duration; the motion then has the next
-    possible one.
-    Raises InputError for limits that are missing, by name, and as state_to_state.
+    where double-S or trapezoidal motions do not exist in that duration; the motion then has the next possible
+    one. Raises InputError for limits that are missing, by name, and as state_to_state.
 
     Biagiotti and Melchiorri 2008, chapters 2 and 3.
     """
