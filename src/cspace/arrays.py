@@ -67,7 +67,7 @@ def any_array(value: Any, subject: str) -> npt.NDArray[Any]:
     try:
         return np.asarray(value)
     except ValueError:
-        raise InputError(f"{subject} has rows of different lengths; all need as many entries") from None
+        raise InputError(f"{subject} has rows of different lengths; all rows need as many entries") from None
 
 
 def truth_value(value: Any, subject: str) -> bool:
