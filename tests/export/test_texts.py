@@ -153,6 +153,12 @@ def test_names_of_joints_stay_literals(name):
     assert compile(robot.export("python").text, "arm.py", "exec")
 
 
+def test_half_characters_are_no_names():
+    for options in ({"name": "\ud800"}, {"joint_names": ["\udfff"]}):
+        with pytest.raises(InputError, match="half of a character"):
+            cs.Robot.from_screws([[0, 0, 1]], [[0, 0, 0]], np.eye(4), **options)
+
+
 def test_the_language_follows_the_ending(tmp_path):
     robot = cs.load_robot("planar_2r")
     assert robot.export(path=tmp_path / "a.hpp").language == "cpp"
