@@ -228,7 +228,7 @@ class _Timer:
     def time(self, grid: Grid | None) -> TimedPath:
         """The fastest motion; on a grid of its own without one, on which a feed is held."""
         timed = self.time_on(grid)
-        for _ in range(FEED_ROUNDS if grid is None else 0):
+        for _ in range(FEED_ROUNDS if grid is None and self.has_feed else 0):
             parts = timed._divide_for_feed()
             if not timed or (parts == 1).all():
                 break
@@ -271,7 +271,7 @@ class _Timer:
             if abs(last - timed.duration) <= self.tolerance * timed.duration:
                 timed.converged = True
                 break
-        for _ in range(FEED_ROUNDS if count is None else 0):
+        for _ in range(FEED_ROUNDS if count is None and self.has_feed else 0):
             parts = timed._divide_for_feed()
             if not timed or (parts == 1).all() or len(parts) > MOST_JERK_INTERVALS:
                 break
@@ -322,6 +322,11 @@ class _Timer:
             joint_names=self.joint_names,
             proved=self.sampled is None,
         )
+
+    @property
+    def has_feed(self) -> bool:
+        """Whether the tip is to have a speed."""
+        return self.sampled is not None and self.sampled.frame is not None and self.sampled.frame.is_feed
 
     @property
     def within(self) -> float:
