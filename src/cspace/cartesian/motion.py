@@ -148,7 +148,7 @@ def move_cartesian(
     motion, touches = _take_fastest(robot, path, found.branches, options, space, axis is not None)
     if as_far_as_possible and touches:
         motion, stopped_by = _stop_before(robot, motion, touches, options) or (motion, stopped_by)
-    if stopped_by:
+    if stopped_by and motion:
         motion.cartesian, motion.stopped_by, motion.s_end = whole, stopped_by, motion.path.length
     return motion
 
