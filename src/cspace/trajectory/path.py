@@ -229,6 +229,11 @@ class Path:
             most = np.maximum(most, np.maximum(q - high, low - q).max(axis=0))
         return freeze_array(most)
 
+    @cached_property
+    def _hull(self) -> tuple[Array, Array]:
+        """The least and the largest control values (dof,): the path lies between them."""
+        return self.control_points.min(axis=(0, 1)), self.control_points.max(axis=(0, 1))
+
     def first_beyond(self, lower: Array, upper: Array) -> tuple[int, float, float] | None:
         """The joint, the place s and the value where the path is first beyond bounds (dof,), if it is.
 

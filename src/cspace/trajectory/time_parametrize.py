@@ -169,6 +169,9 @@ class _Timer:
 
     def find_position_left(self, limits: Limits) -> TimedPath | None:
         """The answer where the path leaves the limits of position."""
+        low, high = self.path._hull
+        if (low >= limits.lower).all() and (high <= limits.upper).all():
+            return None
         lower, upper = (
             bound + side * LIMIT_ROUNDING * np.maximum(1.0, np.abs(np.where(np.isinf(bound), 0.0, bound)))
             for side, bound in ((-1.0, limits.lower), (1.0, limits.upper))
