@@ -97,16 +97,17 @@ Sampler make_sampler(const nb::object& sample, int joints) {
 }
 
 const char* name_of(TimingOutcome outcome) {
-    static constexpr const char* names[] = {"timed", "blocked", "start", "end"};
+    static constexpr const char* names[] = {"timed", "blocked", "stands", "start", "end"};
     return names[int(outcome)];
 }
-using Answer = std::tuple<const char*, std::size_t, double, double, GridArrays, Doubles, bool>;
+using Answer = std::tuple<const char*, std::size_t, double, double, std::optional<GridArrays>, Doubles, bool>;
 Answer show(const Timing& timing) {
+    const bool own = timing.grid.size() > 0;
     return {name_of(timing.outcome),
             timing.where,
             timing.least,
             timing.most,
-            show_grid(timing.grid),
+            own ? std::optional(show_grid(timing.grid)) : std::nullopt,
             Doubles({npy_intp(timing.squared_speed.size())}, timing.squared_speed.data()),
             timing.converged};
 }
@@ -144,8 +145,19 @@ void bind_trajectory_timing(nb::module_& m) {
         },
         "controls"_a, "lengths"_a, "stops"_a, "velocity"_a, "acceleration"_a, "start"_a, "end"_a,
         "tolerance"_a, "grid"_a.none(), "sample"_a.none(),
-        "Outcome, the interval that blocks, speeds that are possible, grid, squared speeds, whether "
-        "converged.");
+        "Outcome, the interval that is at fault, speeds that are possible, grid unless given, squared "
+        "speeds, whether converged.");
+    m.def(
+        "sum_times",
+        [](const ConstDoubles& lengths, const ConstDoubles& squared_speed) {
+            require_size(squared_speed.size == lengths.size + 1);
+            Doubles times({squared_speed.size});
+            sum_times({lengths.data, std::size_t(lengths.size)},
+                      {squared_speed.data, std::size_t(squared_speed.size)}, times.data);
+            return times;
+        },
+        "lengths"_a, "squared_speed"_a,
+        "Seconds (k + 1,) to the places of a grid with intervals of lengths (k,), squared speeds (k + 1,).");
     m.def(
         "examine_path",
         [](const ConstDoubles& controls, const ConstDoubles& lengths, double gap, double jump, double slope) {

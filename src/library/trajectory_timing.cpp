@@ -277,7 +277,28 @@ Seconds measure(const PathTimer& timer, const std::vector<double>& x) {
     return seconds;
 }
 
+// Whether the motion stands at both ends of an interval: it would never pass it.
+void find_stand(Timing& timing) {
+    const std::vector<double>& x = timing.squared_speed;
+    const auto standing = std::adjacent_find(x.begin(), x.end(), [](double begin, double end) {
+        return begin == 0.0 && end == 0.0;
+    });
+    if (standing == x.end()) return;
+    timing.outcome = TimingOutcome::stands;
+    timing.where = size_t(standing - x.begin());
+}
+
 }  // namespace
+
+void sum_times(std::span<const double> lengths, std::span<const double> squared_speed, double* times) {
+    double speed = std::sqrt(squared_speed[0]);
+    times[0] = 0.0;
+    for (size_t i = 0; i < lengths.size(); ++i) {
+        const double last = speed;
+        speed = std::sqrt(squared_speed[i + 1]);
+        times[i + 1] = times[i] + 2.0 * lengths[i] / (last + speed);
+    }
+}
 
 TimingGrid divide_evenly(const TimingPath& path, std::size_t intervals) {
     double whole = 0.0;
@@ -293,7 +314,7 @@ Timing time_on_grid(const TimingPath& path, const TimingLimits& limits, const Ti
     PathTimer timer(path, limits, options);
     timer.set_grid(grid, sample);
     Timing timing = timer.solve();
-    timing.grid = grid;
+    find_stand(timing);
     return timing;
 }
 
@@ -320,6 +341,7 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
         timing.converged = known && !now.stands && changed <= options.tolerance * now.total;
         if (timing.converged || round == most_rounds) {
             timing.grid = std::move(halved.grid);
+            find_stand(timing);
             return timing;
         }
         // A motion that stands, or none at all, may come of a coarse grid.
@@ -330,6 +352,7 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
         });
         if (next.grid.size() == halved.grid.size() || (!timed && round >= 6)) {
             timing.grid = std::move(halved.grid);
+            find_stand(timing);
             return timing;
         }
         last = std::move(now);

@@ -36,15 +36,15 @@ struct TimingOptions {
     double tolerance;
 };
 
-// What came of it: "timed" alone has speeds. blocked: no speed passes interval `where`. start, end: the speed
-// there is not in [least, most].
-enum class TimingOutcome { timed, blocked, start, end };
+// What came of it: "timed" alone is a motion. blocked: no speed passes interval `where`. stands: it stands at
+// both ends of interval `where`. start, end: the speed there is not in [least, most].
+enum class TimingOutcome { timed, blocked, stands, start, end };
 
 struct Timing {
     TimingOutcome outcome;
     std::size_t where;
     double least, most;  // path speeds
-    TimingGrid grid;
+    TimingGrid grid;       // empty if one was given
     std::vector<double> squared_speed;  // (intervals + 1,)
     bool converged;                     // the halving ended before its limits
 };
@@ -58,5 +58,9 @@ Timing time_on_grid(const TimingPath& path, const TimingLimits& limits, const Ti
 // The same on a grid that is halved where this changes the duration.
 Timing time_path(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options,
                  const Sampler& sample);
+
+// Seconds from the start to each place of a grid (intervals + 1,): intervals of these lengths between squared
+// speeds (intervals + 1,).
+void sum_times(std::span<const double> lengths, std::span<const double> squared_speed, double* times);
 
 }  // namespace cspace::trajectory

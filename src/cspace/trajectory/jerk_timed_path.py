@@ -47,7 +47,6 @@ class JerkTimedPath(TimedPath):
         self.squared_speed = freeze_array(np.append(squares[:, 0], squares[-1, 2]))
         self.proved, self.converged = proved, False
         self.place, self.speed_range, self._ratios = np.nan, None, ratios
-        self._speeds = np.sqrt(self.squared_speed)
         self._lengths = intervals.lengths(path)
         seconds = _seconds_between(squares, self._lengths, np.zeros(len(squares)), np.ones(len(squares)))
         launched = law != QUADRATIC

@@ -230,6 +230,11 @@ class Path:
         return freeze_array(most)
 
     @cached_property
+    def always_moves(self) -> bool:
+        """Whether every joint moves on every piece."""
+        return bool(self.moving.all())
+
+    @cached_property
     def _hull(self) -> tuple[Array, Array]:
         """The least and the largest control values (dof,): the path lies between them."""
         return self.control_points.min(axis=(0, 1)), self.control_points.max(axis=(0, 1))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
 from cspace.arrays import Array
 from cspace.dynamics import inverse_dynamics
+from cspace.dynamics.mechanics import find_resistances
 from cspace.kinematics import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.tolerances import LIMIT_ROUNDING, STANDING_SPEED, TIGHTENED_LEAST
@@ -31,38 +31,27 @@ TIGHTENED: Final = 1.5
 class TorqueLimits:
     """Torques of joints that are linear in the acceleration and the squared speed of a path.
 
-    robot: with masses. limit (dof,) [N·m or N]. gravity (3,) [m/s²].
+    robot: with masses. limit (dof,) [N·m or N]. gravity (3,) [m/s²]. damping, dry: of the joints (dof,), the
+    second the friction that does not depend on the speed. is_dry: whether there is any. resists: whether any
+    of both.
     """
 
     robot: KinematicModel
     limit: Array
     gravity: Array
 
-    @cached_property
-    def resists(self) -> bool:
-        """Whether joints have damping or dry friction."""
-        rest, moving = np.zeros((1, self.robot.dof)), np.ones((1, self.robot.dof))
-        with_friction, without = (self._torque(rest, moving, rest, each) for each in (True, False))
-        return not np.array_equal(with_friction, without)
+    def __post_init__(self) -> None:
+        self.damping, self.dry = find_resistances(self.robot)
+        self.is_dry = bool(self.dry.any())
+        self.resists = self.is_dry or bool(self.damping.any())
 
-    @cached_property
-    def dry(self) -> Array:
-        """The dry friction (dof,) of joints, which acts against their velocities."""
-        rest, moving = np.zeros((2, self.robot.dof)), np.array([[1.0], [2.0]]) + np.zeros(self.robot.dof)
-        once, twice = self._torque(rest, moving, rest, True) - self._torque(rest, moving, rest)
-        dry: Array = np.maximum(2.0 * once - twice, 0.0)
-        return dry
-
-    def _torque(self, q: Array, qd: Array, qdd: Array, friction: bool = False) -> Array:
-        return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity, friction=friction)
-
-    def torques(self, q: Array, qd: Array, qdd: Array) -> Array:
+    def torques(self, q: Array, qd: Array, qdd: Array, friction: bool = True) -> Array:
         """The torques (m, dof) of a motion (m, dof)."""
-        return self._torque(q, qd, qdd, friction=True)
+        return inverse_dynamics(self.robot, q, qd, qdd, gravity=self.gravity, friction=friction)
 
     def find_reversals(self, path: Path, grid: Grid) -> Any:
         """In which intervals which joints may reverse (k, dof), so that their dry friction jumps."""
-        if not self.resists or not self.dry.any():
+        if not self.is_dry:
             return np.zeros((len(grid.piece), path.dof), dtype=bool)
         slopes = path.slope_controls(grid.piece, grid.begin, grid.end)
         return (slopes.min(axis=1) <= 0.0) & (slopes.max(axis=1) >= 0.0) & (self.dry > 0.0)
@@ -73,7 +62,7 @@ class TorqueLimits:
         signs: of the velocities. Where a motion stands the dry friction is that beside it, and where a joint
         may reverse (k, dof) it acts both ways.
         """
-        if not self.resists or not self.dry.any():
+        if not self.is_dry:
             return np.abs(tau)
         beside = signs.copy()
         beside[0], beside[-1] = signs[1], signs[-2]
@@ -103,16 +92,12 @@ class TorqueLimits:
         """
         rest = np.zeros_like(q)
         rates = np.stack([rest, rest, slope]), np.stack([rest, slope, bend])
-        weight, along, across = self._torque(q, *rates)
+        weight, along, across = self.torques(q, *rates, friction=False)
         along -= weight
         across -= weight
         if not self.resists:
             return along, across, weight
-        once, twice = (
-            self._torque(q, k * slope, bend, friction=True) - self._torque(q, k * slope, bend)
-            for k in (1.0, 2.0)
-        )
-        damping, dry = twice - once, (1.0 - spread) * (2.0 * once - twice)
+        damping, dry = self.damping * slope, (1.0 - spread) * self.dry * np.sign(slope)
         x = squared_speed[:, None]
         root = np.sqrt(np.maximum(x, STANDING_SPEED * squared_speed.max(initial=1.0)))
         return along, across + 0.5 * damping / root, weight + dry + 0.5 * damping * root

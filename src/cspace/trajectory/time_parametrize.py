@@ -189,19 +189,20 @@ class _Timer:
 
     def find_locked_joint(self) -> TimedPath | None:
         """The answer where a joint moves whose limit is zero, or nothing limits the motion."""
-        limits = {"velocity": self.velocity, "acceleration": self.acceleration}
-        if self.jerk is not None:
-            limits["jerk"] = self.jerk
-        moves = self.path.moving
-        for name, limit in limits.items():
-            if limit.all():
+        moves, always_moves = self.path.moving, self.path.always_moves
+        for name, limit in (
+            ("velocity", self.velocity),
+            ("acceleration", self.acceleration),
+            ("jerk", self.jerk),
+        ):
+            if limit is None or np.count_nonzero(limit) == self.path.dof:
                 continue
             locked = np.argwhere(moves & (limit == 0.0))
             if locked.size:
                 piece, j = map(int, locked[0])
                 s = float(self.path.breaks[piece])
                 return self._refuse(f"{self.labels[j]} moves from s = {s:.6g} on; its {name} limit is 0", s)
-        if not moves.all() and (standing := np.flatnonzero(~moves.any(axis=1))).size:
+        if not always_moves and (standing := np.flatnonzero(~moves.any(axis=1))).size:
             s = float(self.path.breaks[standing[0]])
             return self._refuse(f"nothing moves from s = {s:.6g} on; leave such pieces out of the path", s)
         if self.path.turning_places.size:
@@ -212,7 +213,7 @@ class _Timer:
                 s,
             )
         limited = np.isfinite(self.velocity) | np.isfinite(self.acceleration)
-        if limited.all() and moves.all():
+        if always_moves and np.count_nonzero(limited) == self.path.dof:
             return None
         free = ~(moves & limited).any(axis=1)
         if self.sampled is None and free.any():
@@ -337,27 +338,26 @@ class _Timer:
         return TIMED_WITHIN if self.tolerance is None else self.tolerance
 
     def _solve(self, grid: Grid | None, sample: SampledLimits | None, tolerance: float) -> TimedPath:
-        outcome, where, least, most, intervals, squared_speed, converged = time_path(
+        outcome, where, least, most, own, squared_speed, converged = time_path(
             *self.arrays,
             self.velocity,
             self.acceleration,
             *self.ends,
             tolerance,
-            None if grid is None else (grid.piece, grid.begin, grid.end),
+            grid,
             sample,
         )
-        used = Grid(*intervals)
+        used = grid or Grid(*(own or EMPTY_GRID))
         if outcome == "blocked":
             return self._explain_block(used, where, sample)
+        if outcome == "stands":
+            s = self._parameter(used, where)
+            return self._refuse(f"the motion stands at s = {s:.6g}; pass a finer grid=", s)
         if outcome != "timed":
             speed = self.ends[outcome == "end"]
             reason = f"{outcome}_speed is {speed:.6g}; from {least:.6g} to {most:.6g} are possible"
             s = 0.0 if outcome == "start" else self.path.length
             return self._refuse(reason, s, (least, most))
-        rests = squared_speed == 0.0
-        if (rests[:-1] & rests[1:]).any():
-            s = self._parameter(used, int(np.flatnonzero(rests[:-1] & rests[1:])[0]))
-            return self._refuse(f"the motion stands at s = {s:.6g}; pass a finer grid=", s)
         return TimedPath(
             self.path,
             used,
@@ -443,13 +443,15 @@ def _read_limit(
         row = as_floats(value, name, finite=False)
         if row.shape not in ((), (n,)):
             raise InputError(f"{name} has shape {row.shape}, expected () or ({n},), one per joint")
+        if row.ndim and all(LEAST_LIMIT <= limit <= FARTHEST for limit in row.tolist()):
+            return np.array(row)
         if not (row >= 0.0).all():
             raise InputError(f"{name} contains {float(row[~(row >= 0.0)].flat[0]):g}; it must be 0 or more")
         if (bad := row[(row > 0.0) & (row < LEAST_LIMIT) | np.isfinite(row) & (row > FARTHEST)]).size:
             raise InputError(
                 f"{name} contains {bad.flat[0]:g}; it must be from {LEAST_LIMIT:g} to {FARTHEST:g}, 0 or inf"
             )
-        return np.full(n, row) if row.ndim == 0 else np.array(row)
+        return np.full(n, row)
     if limits is None:
         own = np.full(n, np.inf)
     elif isinstance(limits, Limits):

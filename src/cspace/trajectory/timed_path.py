@@ -9,6 +9,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from cspace._core import sum_times
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
@@ -111,21 +112,24 @@ class TimedPath(Trajectory):
         self.proved, self.converged = proved, converged
         self.place, self.speed_range = place, speed_range
         self._ratios = ratios
-        self._speeds = np.sqrt(self.squared_speed)
-        lengths = intervals.lengths(path)
-        if len(squared_speed):
-            twice = 2.0 * lengths
-            self._accelerations = (self.squared_speed[1:] - self.squared_speed[:-1]) / twice
-            self._times = np.zeros(len(squared_speed))
-            np.cumsum(twice / (self._speeds[:-1] + self._speeds[1:]), out=self._times[1:])
-        else:
-            self._times = np.zeros(1)
+        self._lengths = intervals.lengths(path)
+        self._times = sum_times(self._lengths, self.squared_speed) if len(squared_speed) else np.zeros(1)
         super().__init__(path.dof, float(self._times[-1]), joint_names, reason)
 
     @property
     def knots(self) -> Array:
         """The times (k + 1,) [s] of the places of the grid."""
         return self._times
+
+    @cached_property
+    def _speeds(self) -> Array:
+        """The speeds (k + 1,) of the parameter."""
+        return np.sqrt(self.squared_speed)
+
+    @cached_property
+    def _accelerations(self) -> Array:
+        """The accelerations (k,) of the parameter."""
+        return np.asarray(np.diff(self.squared_speed) / (2.0 * self._lengths))
 
     @property
     def _no_motion(self) -> str:
