@@ -81,7 +81,7 @@ def cartesian_table(measured: Results) -> str:
             [
                 f"whole paths of {name}",
                 f"{part['planned']} of {part['lines']} (least motion: {part['least_motion']})",
-                cell(part["ms"]),
+                f"{cell(part['ms'])}; on the clock of the wall {cell(part['wall_ms'])}",
             ]
             for name, part in measured["redundant"].items()
         ),

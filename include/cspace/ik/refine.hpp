@@ -251,14 +251,23 @@ inline double make_unit6(double* v) {
     return size;
 }
 
-// Of a Jacobian of six columns that is not decomposed.
-inline WeakDirection weak_direction(const PoseSvd& jacobian) {
+// Of a Jacobian of six columns that is not decomposed. Where sigma is certainly above `enough`, a bound below
+// it is returned, without directions: the five other singular values multiply to at most the fifth power of
+// their mean square's root.
+inline WeakDirection weak_direction(const PoseSvd& jacobian,
+                                    double enough = std::numeric_limits<double>::infinity()) {
     const auto& columns = jacobian.us;
     double A[6][6], diagonal[6], factor[6];
     for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j) A[i][j] = columns[j][i];
     linear::factor_qr(A, diagonal, factor);
-    double floor = 0;
+    double squares = 0, determinant = 1, floor = 0;
+    for (int j = 0; j < 6; ++j) {
+        squares += dot_n(columns[j], columns[j], 6) / 5;
+        determinant *= std::fabs(diagonal[j]);
+    }
+    const double bound = determinant / (squares * squares * std::sqrt(squares));
+    if (bound > enough) return {bound, {}, {}};
     for (const double d : diagonal) floor = max(floor, tolerance::last_digits * std::fabs(d));
     for (double& d : diagonal)
         if (std::fabs(d) < floor) d = std::copysign(floor, d);

@@ -12,7 +12,7 @@ from cspace.arrays import Array
 from cspace.cartesian.refine import Nodes
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.jacobian import jacobian_dot
-from cspace.spatial import log_so3
+from cspace.spatial.rotations import rotvec_of_matrix
 from cspace.tolerances import POSE_ROUNDING
 from cspace.trajectory.cartesian_path import CartesianPath, Indices
 from cspace.trajectory.path import Path
@@ -113,7 +113,7 @@ class Guided:
 
     def _measure_error(self, q: Array, T: Array) -> tuple[Array, Array]:
         reached = self.robot.fk(q)
-        turned = log_so3(T[:, :3, :3] @ np.swapaxes(reached[:, :3, :3], 1, 2))
+        turned = rotvec_of_matrix(T[:, :3, :3] @ np.swapaxes(reached[:, :3, :3], 1, 2))
         error = np.concatenate([T[:, :3, 3] - reached[:, :3, 3], turned], axis=1)
         return error, np.abs(error).max(axis=1)
 

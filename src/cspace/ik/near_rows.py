@@ -79,6 +79,7 @@ def solve_locked_redundant(solver: Solver, T: Array, values: Array) -> tuple[Arr
     q = pooled_array((n, room, solver.dof))
     count, status = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.uint8)
     branch, self_motion = np.empty((n, room), dtype=np.int8), np.empty((n, room), dtype=bool)
-    rows = q, branch, self_motion, count, status, 1
+    threads = int(_core._ik_has_closed_form(solver))  # closed forms take less than it takes to begin another
+    rows = q, branch, self_motion, count, status, threads
     _core._ik_locked_rows(solver, joints, at, np.ascontiguousarray(T), NO_SEED, *rows)
     return q, count

@@ -111,7 +111,7 @@ inline bool find_near_double(const GeneralPlan& plan, const Posed& goal, const d
     PoseError error;
     const double length = 1.0;
     measure_error(plan.chain, goal, length, q, error);
-    const WeakDirection weak = weak_direction(error.jacobian);
+    const WeakDirection weak = weak_direction(error.jacobian, most);
     if (weak.sigma > most) return false;
     constexpr double h = 1e-3;
     double bend = 2 * dot_n(weak.u, error.e, 6);

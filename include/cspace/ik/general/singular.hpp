@@ -14,7 +14,7 @@ inline void mark_self_motions(const GeneralPlan& plan, const Posed& goal, Soluti
     for (int k = 0; k < out.count; ++k) {
         PoseError error;
         measure_error(plan.chain, goal, 1, out.q[k], error);
-        if (weak_direction(error.jacobian).sigma > hardly) continue;
+        if (weak_direction(error.jacobian, hardly).sigma > hardly) continue;
         decompose(error.jacobian);
         out.self_motion[k] =
             find_self_motion(plan.chain, goal, 1, out.q[k], error.jacobian, out.direction[k]);

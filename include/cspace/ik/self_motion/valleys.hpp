@@ -18,7 +18,7 @@ inline bool lies_in_valley(const Chain& chain, const Posed& goal, double length,
     constexpr double hardly = 1e-7, stride = 0.02, next_to_nothing = 1e-10;
     PoseError at;
     measure_error(chain, goal, length, q, at);
-    if (chain.n == 6 && weak_direction(at.jacobian).sigma > hardly) return false;
+    if (chain.n == 6 && weak_direction(at.jacobian, hardly).sigma > hardly) return false;
     decompose(at.jacobian);
     const int weak = weakest_direction(at.jacobian);
     if (at.jacobian.sigma[weak] > hardly || leaves_goal(chain, goal, length, q, at.jacobian, next_to_nothing))

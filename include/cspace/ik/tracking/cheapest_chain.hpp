@@ -16,7 +16,8 @@ inline double squared_step(const Layers& layers, std::size_t a, std::size_t b) {
     double sum = 0;
     for (std::size_t j = 0; j < layers.dof; ++j) {
         double move = to[j] - from[j];
-        if (layers.period[j] > 0) move -= layers.period[j] * std::nearbyint(move / layers.period[j]);
+        if (const double period = layers.period[j]; period > 0 && 2 * std::abs(move) > period)
+            move -= period * std::nearbyint(move / period);
         if (!(std::abs(move) <= layers.stride[j])) return std::numeric_limits<double>::infinity();
         sum += move * move;
     }
@@ -57,8 +58,8 @@ inline bool extend_chains(const Layers& layers, std::size_t layer, ChainTable& t
     for (int v = 0; v < layers.values; ++v)
         for (std::size_t s = here[v]; s < here[v + 1]; ++s) {
             double best = layer ? never : 0.0;
-            for (int w = v - reach; layer && w <= v + reach; ++w) {
-                const int value = neighbour_value(layers, w);
+            for (int k = 0; layer && k <= 2 * reach; ++k) {  // the nearest first: they leave little to try
+                const int value = neighbour_value(layers, v + (k % 2 ? (k + 1) / 2 : -k / 2));
                 if (value >= 0) try_parents(layers, before + value, s, table, best);
             }
             table.total[s] = best + layers.cost[s];
