@@ -8,19 +8,22 @@
 // A rejected edge comes back where χ² rises little with it: eᵀ (W⁻¹ + J Σ Jᵀ)⁻¹ e, its gate (Bar-Shalom et
 // al. 2001).
 //
-// True measurements pull as χ² says, times a scale of the information. Where their tails are heavier, the
-// limit is the pull that one in a hundred exceeds.
+// True measurements pull as χ² says, times scales of the covariances. Where their tails are heavier, the
+// scale of the edges themselves is such that one in 200 exceeds its limit. That of the poses, which are
+// sums of many measurements, stays near χ² per degree of freedom. So an edge that nothing else measures well
+// may not pull far, though others of the graph have large errors (`edge_test.hpp`).
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "cspace/localization/graph/doubted_measurements.hpp"
+#include "cspace/localization/graph/edge_test.hpp"
 #include "cspace/localization/graph/loop_groups.hpp"
 #include "cspace/localization/graph/optimizer.hpp"
 
@@ -28,11 +31,15 @@ namespace cspace::localization {
 
 namespace loop_tests {
 
-inline constexpr double heavy_tail = 0.01;     // of true edges, that may exceed the limit
+inline constexpr double heavy_tail = 0.005;    // of true edges, that may exceed the limit
 inline constexpr double belief = 0.05;         // in a scale of 1, in numbers per unknown one
+inline constexpr double most_belief = 10;      // in numbers: what it may weigh at most
 inline constexpr std::size_t least_group = 3;  // edges; smaller ones are found edge by edge
+inline constexpr double group_rank = 0.5;      // where one edge and a group disagree, the edge goes
 inline constexpr int most_rounds = 100, most_cycles = 6;
-inline constexpr double same_scale = 0.9;   // of the last one: false edges made that larger
+inline constexpr double most_tail = 10;     // scale of edges, in that of the poses
+inline constexpr double scale_step = 1.01;  // to which it is found
+inline constexpr double same_scale = 0.97;  // of the last one: false edges made that larger
 inline constexpr int tests_per_solve = 16;  // of groups, at most, for each factorisation until then
 
 }  // namespace loop_tests
@@ -62,9 +69,12 @@ class LoopSelection {
         use(answer, answer.is_used);
         for (int cycle = 0; cycle < loop_tests::most_cycles; ++cycle) {
             if (!invert_equations(answer)) break;
-            const double scale = find_scale(answer);
-            if (cycle > 0 && scale > loop_tests::same_scale * answer.scale && !was_taken_) break;
-            answer.scale = std::min(answer.scale, scale);
+            const ErrorScales scales = find_scales(answer);
+            if (cycle > 0 && !was_taken_ && scales.own > loop_tests::same_scale * scales_.own &&
+                scales.graph > loop_tests::same_scale * scales_.graph)
+                break;
+            scales_ = {std::min(scales_.own, scales.own), std::min(scales_.graph, scales.graph)};
+            answer.scale = scales_.own;
             drop_pulling(answer);
             was_taken_ = take_back(answer);
         }
@@ -102,32 +112,49 @@ class LoopSelection {
         return true;
     }
 
-    // The scale of the limits: χ² per degree of freedom, towards 1 where few numbers were measured, or that
-    // of the heavier tail.
-    double find_scale(const RobustAnswer<Space>& answer) {
+    // The scale of the poses: χ² per degree of freedom, towards 1 where few numbers were measured. That of
+    // the edges is no less, and that of the heavier tail.
+    ErrorScales find_scales(const RobustAnswer<Space>& answer) {
         double numbers = -unknowns_;
-        std::vector<double> pulls;
+        std::vector<TestedEdge> tested;
         for (std::size_t k = 0; k < answer.is_used.size(); ++k) {
-            if (!answer.is_used[k]) continue;
-            numbers += k < graph_.edges.size() ? Space::freedom : Space::dimension;
-            if (k < graph_.edges.size() && is_doubted(k))
-                pulls.push_back(measure_pull(answer.state, k) / limits_[k]);
+            const bool is_used = answer.is_used[k], is_edge = k < graph_.edges.size();
+            if (is_used) numbers += is_edge ? Space::freedom : Space::dimension;
+            // Edges that were dropped alone may be of the tail too.
+            if (!is_edge || !is_doubted(k) || !(is_used || was_alone_[k])) continue;
+            const PairCovariance S = is_used ? read_covariance(k) : solve_covariance(k);
+            tested.push_back({whiten(answer.state, k, S), limits_[k], is_used});
         }
-        if (!(numbers > 0) || !(cost_ > 0)) return answer.scale;
-        const double mean =
-            std::exp(numbers * std::log(cost_ / numbers) / (numbers + loop_tests::belief * unknowns_));
-        if (pulls.empty()) return mean;
-        // Edges that were dropped alone may be of the tail too.
-        double alone = 0;
-        for (std::size_t k = 0; k < was_alone_.size(); ++k) alone += was_alone_[k] && !answer.is_used[k];
-        const auto above =
-            std::ptrdiff_t(std::max(0.0, loop_tests::heavy_tail * (double(pulls.size()) + alone) - alone));
-        std::nth_element(pulls.begin(), pulls.begin() + above, pulls.end(), std::greater<>());
-        return std::max(mean, pulls[std::size_t(above)]);
+        if (!(numbers > 0) || !(cost_ > 0)) return {answer.scale, answer.scale};
+        const double believed = std::min(loop_tests::belief * unknowns_, loop_tests::most_belief);
+        const double mean = std::exp(numbers * std::log(cost_ / numbers) / (numbers + believed));
+        return widen_scales(mean, tested);
+    }
+    struct TestedEdge {
+        WhiteError<n> white;
+        double limit;
+        bool is_used;
+    };
+    // The least scales with which no more edges exceed their limits than heavy tails have.
+    static ErrorScales widen_scales(double mean, const std::vector<TestedEdge>& tested) {
+        const auto above = std::ptrdiff_t(loop_tests::heavy_tail * double(tested.size()));
+        const auto suffices = [&](double own) {
+            return std::count_if(tested.begin(), tested.end(), [&](const TestedEdge& edge) {
+                       return (edge.is_used ? measure_pull(edge.white, {own, mean})
+                                            : measure_rise(edge.white, {own, mean})) > edge.limit;
+                   }) <= above;
+        };
+        if (suffices(mean)) return {mean, mean};
+        double low = mean, high = loop_tests::most_tail * mean;
+        while (high > loop_tests::scale_step * low) {
+            const double middle = std::sqrt(low * high);
+            (suffices(middle) ? high : low) = middle;
+        }
+        return {high, mean};
     }
 
     struct Suspect {
-        double share = 1;  // of its limit
+        double rank = 0;  // the share of its limit, that of groups times `group_rank`
         std::vector<std::size_t> edges;
     };
 
@@ -155,9 +182,10 @@ class LoopSelection {
         pulls_.assign(graph_.edges.size(), 0.0);
         for (std::size_t k = 0; k < graph_.edges.size(); ++k) {
             if (!is_doubted(k) || !answer.is_used[k]) continue;
-            pulls_[k] = measure_pull(answer.state, k);
-            const double share = pulls_[k] / (answer.scale * limits_[k]);
-            if (share > worst.share) worst = {share, {k}};
+            const WhiteError<n> white = whiten(answer.state, k, read_covariance(k));
+            pulls_[k] = measure_pull(white, {});
+            const double share = measure_pull(white, scales_) / limits_[k];
+            if (share > 1 && share > worst.rank) worst = {share, {k}};
         }
         return worst;
     }
@@ -173,24 +201,30 @@ class LoopSelection {
             return evaluate_edge(graph_.edges[k], answer.state, options_.residual).e;
         };
         // Half the square of a difference is χ² of one error.
-        std::vector<std::vector<std::size_t>> groups =
-            find_loop_groups(ends, [&](std::size_t a, std::size_t b) {
-                typename Space::Twist between = error(numbers[a]);
-                const typename Space::Twist other = error(numbers[b]);
-                for (std::size_t i = 0; i < n; ++i) between[i] -= other[i];
-                return weigh_residual(between, graph_.edges[numbers[a]].W) <=
-                       2 * answer.scale * limits_[numbers[a]];
+        const auto agree = [&](std::size_t a, std::size_t b) {
+            typename Space::Twist between = error(numbers[a]);
+            const typename Space::Twist other = error(numbers[b]);
+            for (std::size_t i = 0; i < n; ++i) between[i] -= other[i];
+            return weigh_residual(between, graph_.edges[numbers[a]].W) <=
+                   2 * scales_.graph * limits_[numbers[a]];
+        };
+        std::vector<std::pair<double, std::vector<std::size_t>>> order;
+        for (int sense : {1, -1}) {
+            auto groups = find_loop_groups(ends, [&](std::size_t a, std::size_t b) {
+                const int along = ends[b].first - ends[a].first, across = ends[b].second - ends[a].second;
+                return sense * along * across >= 0 && agree(a, b);
             });
-        std::erase_if(groups, [](const auto& group) { return group.size() < loop_tests::least_group; });
-        std::vector<std::pair<double, std::size_t>> order;
-        for (std::size_t g = 0; g < groups.size(); ++g) {
-            double most = 0;
-            for (std::size_t& k : groups[g]) k = numbers[k], most = std::max(most, pulls_[k]);
-            order.push_back({-most, g});
+            for (auto& group : groups) {
+                if (group.size() < loop_tests::least_group) continue;
+                double most = 0;
+                for (std::size_t& k : group) k = numbers[k], most = std::max(most, pulls_[k]);
+                order.push_back({-most, std::move(group)});
+            }
         }
         std::sort(order.begin(), order.end());
+        order.erase(std::unique(order.begin(), order.end()), order.end());
         std::vector<std::vector<std::size_t>> sorted;
-        for (const auto& [most, g] : order) sorted.push_back(std::move(groups[g]));
+        for (auto& [most, group] : order) sorted.push_back(std::move(group));
         return sorted;
     }
     // Tests the suspected groups, of which those far below their limit are suspected no more.
@@ -201,25 +235,80 @@ class LoopSelection {
             if (tests_left_-- <= 0) break;
             if (std::any_of(group.begin(), group.end(), [&](std::size_t k) { return !answer.is_used[k]; }))
                 continue;
-            const double limit = answer.scale * quantile_999_of_many(double(n * group.size()));
-            const double share = measure_group_pull(answer, group) / limit;
-            if (share > worst.share) worst = {share, group};
+            const double share = measure_group(answer, group) / limit_group(answer, group.size());
+            if (share > 1 && loop_tests::group_rank * share > worst.rank)
+                worst = {loop_tests::group_rank * share, group};
             if (share > harmless) still.push_back(std::move(group));
         }
         suspected_ = std::move(still);
     }
-    // What χ² loses without a group, by a step of Gauss–Newton.
-    double measure_group_pull(const RobustAnswer<Space>& answer, const std::vector<std::size_t>& group) {
+    // A group of most edges goes only where all its errors together would exceed their limit: most are true.
+    double limit_group(const RobustAnswer<Space>& answer, std::size_t size) const {
+        std::size_t doubted = 0;
+        for (std::size_t k = 0; k < graph_.edges.size(); ++k) doubted += is_doubted(k) && answer.is_used[k];
+        return 2 * size > doubted ? quantile_999_of_many(double(n * size)) : quantile_999(int(n));
+    }
+    // The squared error that all edges of a group have in common, at the poses that others and the shape of
+    // the group make. Where the group hides what others say, at the poses without it; zero where there are
+    // none.
+    double measure_group(const RobustAnswer<Space>& answer, const std::vector<std::size_t>& group,
+                         bool is_out = false) {
+        constexpr double least_share = 1e-6;  // of others: below, digits are lost
         auto& equations = optimizer_.equations();
         FactorWeights weights = optimizer_.weights();
-        for (std::size_t k : group) weights.fixed[k] = 0;
-        const double cost = equations.linearize(answer.state, options_.residual, weights, squares_);
-        step_ = equations.gradient();
-        double* const side = step_.data();
-        if (!equations.solver().solve_matrix(equations.values(), nullptr, {&side, 1})) return 0;
-        double decrease = 0;
-        for (std::size_t k = 0; k < step_.size(); ++k) decrease += step_[k] * equations.gradient()[k];
-        return cost_ - (cost - decrease);
+        for (std::size_t k : group) weights.fixed[k] = is_out ? 0.0 : 1.0;
+        equations.linearize(answer.state, options_.residual, weights, squares_);
+        CommonError common = add_errors(answer.state, group);
+        const std::vector<double> columns = columns_;
+        std::array<double*, n> sides;
+        const std::size_t rows = columns.size() / n;
+        for (std::size_t c = 0; c < n; ++c) sides[c] = columns_.data() + c * rows;
+        if (!equations.solver().solve_matrix(equations.values(), nullptr, sides)) return 0;
+        std::array<double, n * n> C;
+        for (std::size_t c = 0; c < n; ++c) {
+            common.g[c] -= std::inner_product(sides[c], sides[c] + rows, equations.gradient().begin(), 0.0);
+            for (std::size_t r = 0; r < n; ++r)
+                C[r * n + c] = std::inner_product(sides[c], sides[c] + rows,
+                                                  columns.begin() + std::ptrdiff_t(r * rows), 0.0);
+        }
+        // Edges that agree may err together: as much as one of them.
+        const ErrorScales scales{scales_.own * double(group.size()), scales_.graph};
+        const WhiteError<n> white = whiten_error<n>(common.H, common.g, C);
+        if (is_out) return measure_rise(white, scales);
+        if (!(find_least_share(white) > least_share)) return measure_group(answer, group, true);
+        return measure_pull(white, scales);
+    }
+    struct CommonError {
+        std::array<double, n * n> H{};  // its information
+        std::array<double, n> g{};      // its gradient
+    };
+    // The common error of edges; columns_: its rows of the equations.
+    CommonError add_errors(const State& state, const std::vector<std::size_t>& group) {
+        CommonError common;
+        columns_.assign(n * optimizer_.equations().gradient().size(), 0.0);
+        const auto& base = state.poses[std::size_t(graph_.edges[group.front()].to)];
+        for (std::size_t k : group) {
+            const auto& edge = graph_.edges[k];
+            const auto model = linearize_edge(edge, state, options_.residual);
+            const std::array<double, n * n> D =
+                Space::adjoint(Space::between(state.poses[std::size_t(edge.to)], base));
+            const std::array<double, n * n> bD = multiply<n, n, n>(model.bb, D);
+            const std::array<double, n * n> H = transpose_times<n, n, n>(D, bD);
+            const std::array<double, n> g = transpose_times<n, n, 1>(D, model.gb);
+            for (std::size_t i = 0; i < n * n; ++i) common.H[i] += H[i];
+            for (std::size_t i = 0; i < n; ++i) common.g[i] += g[i];
+            add_columns(block_from(k), multiply<n, n, n>(model.ab, D));
+            add_columns(block_to(k), bD);
+        }
+        return common;
+    }
+    void add_columns(int block, const std::array<double, n * n>& values) {
+        if (block < 0) return;
+        const auto row = std::size_t(optimizer_.equations().solver().row_of(block));
+        const std::size_t rows = columns_.size() / n;
+        for (std::size_t r = 0; r < n; ++r) {
+            for (std::size_t c = 0; c < n; ++c) columns_[c * rows + row + r] += values[r * n + c];
+        }
     }
 
     // Uses rejected edges again with which χ² rises by less than their limit, those that fit best first;
@@ -239,7 +328,7 @@ class LoopSelection {
         }
         return has_changed;
     }
-    // Rejected edges, with the shares of their limits by which χ² would rise.
+    // Rejected edges, with their squared errors as shares of their limits.
     std::vector<std::pair<double, std::size_t>> find_fitting(const RobustAnswer<Space>& answer) {
         constexpr int most_dropped = 1;  // times: then an edge stays out
         std::vector<std::pair<double, std::size_t>> fitting;
@@ -247,10 +336,9 @@ class LoopSelection {
         for (std::size_t k = 0; k < graph_.edges.size(); ++k) {
             poll.step();
             if (!is_doubted(k) || answer.is_used[k] || was_dropped_[k] > most_dropped) continue;
-            const double limit = answer.scale * limits_[k];
-            if (measure_rise(answer.state, k, bound_covariance(k)) > limit) continue;
-            const double rise = measure_rise(answer.state, k, solve_covariance(k));
-            if (rise <= limit) fitting.push_back({rise / limit, k});
+            if (measure_rise(whiten(answer.state, k, bound_covariance(k)), scales_) > limits_[k]) continue;
+            const double rise = measure_rise(whiten(answer.state, k, solve_covariance(k)), scales_);
+            if (rise <= limits_[k]) fitting.push_back({rise / limits_[k], k});
         }
         return fitting;
     }
@@ -300,63 +388,8 @@ class LoopSelection {
         return S;
     }
 
-    double measure_pull(const State& state, std::size_t k) const {
-        return change_square(state, k, read_covariance(k), -1);
-    }
-    double measure_rise(const State& state, std::size_t k, const PairCovariance& S) const {
-        return change_square(state, k, S, 1);
-    }
-    // eᵀWe − sign gᵀ(Σ⁻¹ + sign A)⁻¹g of an edge, where A, g are its part of the equations; sign 1: what χ²
-    // gains with it, −1: what it loses without it.
-    double change_square(const State& state, std::size_t k, const PairCovariance& S, double sign) const {
-        const auto model = linearize_edge(graph_.edges[k], state, options_.residual);
-        double A[2 * n][2 * n] = {}, g[2 * n] = {};
-        for (std::size_t r = 0; r < n; ++r) {
-            g[r] = model.ga[r], g[n + r] = model.gb[r];
-            for (std::size_t c = 0; c < n; ++c) {
-                A[r][c] = model.aa[r * n + c], A[n + r][n + c] = model.bb[r * n + c];
-                A[r][n + c] = A[n + c][r] = model.ab[r * n + c];
-            }
-        }
-        // y of (I + sign ΣA) y = Σg.
-        std::array<double, 4 * n * n> M;
-        std::array<double, 2 * n> y{};
-        for (std::size_t r = 0; r < 2 * n; ++r) {
-            for (std::size_t c = 0; c < 2 * n; ++c) {
-                double sum = r == c;
-                for (std::size_t i = 0; i < 2 * n; ++i) sum += sign * S[r * 2 * n + i] * A[i][c];
-                M[r * 2 * n + c] = sum;
-                y[r] += S[r * 2 * n + c] * g[c];
-            }
-        }
-        if (!solve_general(M, y)) return 0;
-        double change = model.square;
-        for (std::size_t r = 0; r < 2 * n; ++r) change -= sign * g[r] * y[r];
-        return change;
-    }
-    // Gauss elimination with row pivots; false for singular matrices.
-    template <std::size_t size>
-    static bool solve_general(std::array<double, size * size>& M, std::array<double, size>& y) {
-        constexpr double singular = 1e-12;
-        for (std::size_t c = 0; c < size; ++c) {
-            std::size_t pivot = c;
-            for (std::size_t r = c + 1; r < size; ++r) {
-                if (std::fabs(M[r * size + c]) > std::fabs(M[pivot * size + c])) pivot = r;
-            }
-            if (!(std::fabs(M[pivot * size + c]) > singular)) return false;
-            for (std::size_t k = 0; k < size; ++k) std::swap(M[c * size + k], M[pivot * size + k]);
-            std::swap(y[c], y[pivot]);
-            for (std::size_t r = c + 1; r < size; ++r) {
-                const double factor = M[r * size + c] / M[c * size + c];
-                for (std::size_t k = c; k < size; ++k) M[r * size + k] -= factor * M[c * size + k];
-                y[r] -= factor * y[c];
-            }
-        }
-        for (std::size_t c = size; c-- > 0;) {
-            for (std::size_t k = c + 1; k < size; ++k) y[c] -= M[c * size + k] * y[k];
-            y[c] /= M[c * size + c];
-        }
-        return true;
+    WhiteError<n> whiten(const State& state, std::size_t k, const PairCovariance& S) const {
+        return whiten_edge<n>(linearize_edge(graph_.edges[k], state, options_.residual), S);
     }
 
     const PoseGraph<Space>& graph_;
@@ -366,13 +399,14 @@ class LoopSelection {
     const std::vector<double>& limits_;
     double unknowns_;
     std::vector<char> pattern_;  // measurements that the equations are analysed for
-    double cost_ = 0;            // χ² of the answer
+    ErrorScales scales_;
+    double cost_ = 0;  // χ² of the answer
     std::ptrdiff_t tests_left_ = 0;
     bool was_taken_ = false;  // whether edges came back last
     std::vector<std::vector<std::size_t>> suspected_;
     std::vector<char> was_dropped_;  // how often
     std::vector<char> was_alone_;    // whether dropped without a group
-    std::vector<double> pulls_, squares_, step_;
+    std::vector<double> pulls_, squares_, step_, columns_;
 };
 
 }  // namespace cspace::localization
