@@ -274,6 +274,81 @@ def as_pose() -> Call:
     return lambda: cs.as_pose(T)
 
 
+def make_loops(poses: int, loops: int, robust_share: float = 0.0) -> Any:
+    """A walk in the plane with loops to places nearby, of which a share are false."""
+    rng = np.random.default_rng(5)
+    turns = rng.choice([0, 0, 0, np.pi / 2, -np.pi / 2], poses - 1)
+    heading = np.append(0.0, np.cumsum(turns))
+    steps = np.stack([np.cos(heading[:-1]), np.sin(heading[:-1])], axis=1)
+    truth = np.column_stack([np.vstack([np.zeros(2), np.cumsum(steps, axis=0)]), heading])
+    cells: dict[tuple[int, int], int] = {}
+    pairs = []
+    for k, place in enumerate(np.round(truth[:, :2]).astype(int).tolist()):
+        if (seen := cells.setdefault((place[0], place[1]), k)) < k - 20:
+            pairs.append((seen, k))
+    chosen = np.array(pairs)[rng.permutation(len(pairs))[:loops]]
+    edges = np.concatenate([np.stack([np.arange(poses - 1), np.arange(1, poses)], axis=1), chosen])
+    noise = rng.normal(0, [0.05, 0.05, 0.02], (len(edges), 3))
+    T = cs.pose_2d(xytheta=truth)
+    motions = cs.to_xytheta(np.linalg.inv(T[edges[:, 0]]) @ T[edges[:, 1]] @ cs.pose_2d(xytheta=noise))
+    false = rng.random(len(edges)) < robust_share
+    false[: poses - 1] = False
+    motions[false, :2] += rng.uniform(-9.0, 9.0, (int(false.sum()), 2))
+    return cs.PoseGraph(
+        poses=np.zeros((poses, 3)), edges=edges, motions=motions, information=np.diag([400.0, 400.0, 2500.0])
+    )
+
+
+@call
+def pose_graph() -> Call:
+    graph = make_loops(100_000, 60_000)
+    return lambda: graph.optimize()
+
+
+@call
+def pose_graph_rotations() -> Call:
+    graph = make_loops(50_000, 30_000)
+    return lambda: graph.optimize(start="rotations")
+
+
+@call
+def pose_graph_robust() -> Call:
+    graph = make_loops(5_000, 3_000, 0.3)
+    return lambda: graph.optimize(robust="dcs")
+
+
+@call
+def pose_graph_graduated() -> Call:
+    graph = make_loops(5_000, 3_000, 0.3)
+    return lambda: graph.optimize(robust="gnc")
+
+
+@call
+def pose_graph_marginals() -> Call:
+    graph = make_loops(50_000, 30_000)
+    return lambda: graph.optimize().marginals
+
+
+@call
+def time_path() -> Call:
+    path = cs.spline(np.random.default_rng(1).uniform(-1.5, 1.5, (100_000, 7)))
+    return lambda: cs.time_parametrize(path, velocity=2.0, acceleration=8.0)
+
+
+@call
+def time_path_with_jerk() -> Call:
+    path = cs.spline(np.random.default_rng(1).uniform(-1.5, 1.5, (100, 7)), degree=5)
+    return lambda: cs.time_parametrize(path, velocity=2.0, acceleration=8.0, jerk=80.0)
+
+
+@call
+def follow_redundant() -> Call:
+    robot = cs.load_robot("gen3")
+    q = robot.random_configuration(2, rng=1, reach=0.5)
+    path = cs.trajectory.line_path(*robot.fk(q))
+    return lambda: cs.cartesian.follow_redundant(robot, path)
+
+
 def measure(name: str, signals: int) -> dict[str, Any]:
     """The time of a call [s] and its latencies [s]."""
     run = CALLS[name]()

@@ -108,10 +108,10 @@ class PathTimer {
         const size_t count = grid.size();
         intervals_.resize(count);
         stops_.assign(count + 1, 0);
-        for (size_t i = 0; i < count; ++i) {
+        visit_range(0, count, [&](size_t i) {
             intervals_[i] = {grid.piece[i], grid.from[i], grid.to[i]};
             if (grid.from[i] == 0.0) stops_[i] = path_.stops[size_t(grid.piece[i])];
-        }
+        });
         rows_.intervals = intervals_.data();
         rows_.stops = stops_.data();
         rows_.sampled = {};
@@ -245,7 +245,7 @@ Halved halve(const TimingGrid& grid, const Splits& splits) {
         made.grid.to.push_back(to);
         made.parent.push_back(i);
     };
-    for (size_t i = 0; i < grid.size(); ++i) {
+    visit_range(0, grid.size(), [&](size_t i) {
         const double from = grid.from[i], to = grid.to[i], middle = 0.5 * (from + to);
         if (to - from > least_part && splits(i)) {
             add(i, from, middle);
@@ -253,7 +253,7 @@ Halved halve(const TimingGrid& grid, const Splits& splits) {
         } else {
             add(i, from, to);
         }
-    }
+    });
     return made;
 }
 
@@ -267,13 +267,13 @@ struct Seconds {
 Seconds measure(const PathTimer& timer, const std::vector<double>& x) {
     Seconds seconds;
     seconds.each.resize(x.size() - 1);
-    for (size_t i = 0; i + 1 < x.size(); ++i) {
+    visit_range(0, seconds.each.size(), [&](size_t i) {
         const double t = timer.seconds(i, x);
         const bool moves = t < std::numeric_limits<double>::infinity();
         seconds.each[i] = moves ? t : 0.0;
         seconds.stands |= !moves;
         seconds.total += seconds.each[i];
-    }
+    });
     return seconds;
 }
 
@@ -332,11 +332,11 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
         double changed = 0.0;
         const bool known = timed && !last.each.empty();
         if (known) {
-            for (size_t i = 0; i < now.each.size(); ++i) change[halved.parent[i]] += now.each[i];
-            for (size_t k = 0; k < change.size(); ++k) {
+            visit_range(0, now.each.size(), [&](size_t i) { change[halved.parent[i]] += now.each[i]; });
+            visit_range(0, change.size(), [&](size_t k) {
                 change[k] = std::fabs(change[k] - last.each[k]);
                 changed += change[k];
-            }
+            });
         }
         timing.converged = known && !now.stands && changed <= options.tolerance * now.total;
         if (timing.converged || round == most_rounds) {
