@@ -710,7 +710,7 @@ PATH_START: Final = 1e-6
 LEAST_TOLERANCE: Final = 1e-10
 """[m and rad] Of a joint path: corrected poses of an arm of ten metres are as exact as that."""
 
-SHORTEST_PATH_PIECE: Final = 1e-4
+SHORTEST_PATH_PIECE: Final = 1e-6
 """[m or rad] A piece that is off and this short ends its branch: the joints would have to jump."""
 
 PATH_POSE_LEFT: Final = 1e-9

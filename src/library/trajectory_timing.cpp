@@ -347,7 +347,10 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
         // A motion that stands, or none at all, may come of a coarse grid.
         const double enough = share_of_change * options.tolerance * now.total / double(last.each.size());
         Halved next = halve(halved.grid, [&](size_t i) {
-            return !known || change[halved.parent[i]] > enough ||
+            // An interval also holds back those beside it.
+            const size_t before = i - (i > 0), after = i + (i + 1 < halved.grid.size());
+            return !known || change[halved.parent[before]] > enough || change[halved.parent[i]] > enough ||
+                   change[halved.parent[after]] > enough ||
                    timing.squared_speed[i] + timing.squared_speed[i + 1] == 0.0;
         });
         if (next.grid.size() == halved.grid.size() || (!timed && round >= 6)) {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -98,14 +97,16 @@ def follow_cartesian(
     check_cartesian_path(path)
     tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)
-    found, piece, u = _track_densely(robot, path, start, bounds)
-    is_new = _are_new(piece)
-    s_of_row = (path.breaks[piece] + u)[is_new]
-    whole = [branch for branch in found.branches if branch]
-    refined: Iterator[Refined] = iter(())
-    if whole:
-        q = np.array([branch.q for branch in whole])[:, np.cumsum(is_new) - 1]
-        refined = iter(refine_branches(robot, path, LeastMotion(robot, path), q, tolerance, (piece, u)))
+    nodes = first_nodes(path)
+    for _ in range(JUMP_ROUNDS):
+        found, nodes = _track_densely(robot, path, start, bounds, nodes)
+        paths = _refine_tracked(robot, path, found, tolerance, nodes)
+        ends = _find_intervals(path, nodes, [each.s_lost for each in paths if each.path is None])
+        if not len(ends):
+            break
+        nodes = divide_intervals(*nodes, ends)
+    refined = iter(paths)
+    s_of_row = (path.breaks[nodes[0]] + nodes[1])[_are_new(nodes[0])]
     given = None if start is None else np.asarray(start, dtype=np.float64)
     branches = tuple(
         end_at_limits(make_branch(branch.q[0] if given is None else given, next(refined)), bounds, robot)
@@ -117,15 +118,40 @@ def follow_cartesian(
     return JointBranches(branches, found.complete, reason)
 
 
+def _refine_tracked(
+    robot: KinematicModel, path: CartesianPath, found: Track, tolerance: float, nodes: tuple[Indices, Array]
+) -> list[Refined]:
+    """The joint paths of the branches that reach the end, near their configurations at nodes."""
+    whole = [branch.q for branch in found.branches if branch]
+    if not whole:
+        return []
+    q = np.array(whole)[:, np.cumsum(_are_new(nodes[0])) - 1]
+    return refine_branches(robot, path, LeastMotion(robot, path), q, tolerance, nodes)
+
+
+def _find_intervals(path: CartesianPath, nodes: tuple[Indices, Array], lost: list[float]) -> Indices:
+    """The nodes (k,) that end the intervals in which a tracked branch was lost: the joints turn so far there
+    that a polynomial between nodes leads nowhere. Those too short to divide are left out."""
+    piece, u = nodes
+    s = path.breaks[piece] + u
+    ends = np.unique(np.searchsorted(s, lost)).astype(np.intp)
+    ends = ends[(ends > 0) & (ends < len(s))]
+    return ends[(piece[ends] == piece[ends - 1]) & (u[ends] - u[ends - 1] > SHORTEST_PATH_PIECE)]
+
+
 def _track_densely(
-    robot: KinematicModel, path: CartesianPath, start: ArrayLike | None, bounds: Limits
-) -> tuple[Track, Indices, Array]:
-    """The branches at nodes of a path, and the pieces (n,) and parameters (n,) of the nodes.
+    robot: KinematicModel,
+    path: CartesianPath,
+    start: ArrayLike | None,
+    bounds: Limits,
+    nodes: tuple[Indices, Array],
+) -> tuple[Track, tuple[Indices, Array]]:
+    """The branches at nodes of a path, pieces (n,) and parameters (n,), and the nodes with those added.
 
     Beside a singular configuration joints may turn far on a short way. Nodes are added there, until no joint
     moves farther from one to the next than a track allows.
     """
-    piece, u = first_nodes(path)
+    piece, u = nodes
     for _ in range(JUMP_ROUNDS):
         is_new = _are_new(piece)
         found: Track = track(robot, path.poses_on(piece, u)[is_new], start, limits=bounds)
@@ -134,7 +160,7 @@ def _track_densely(
         if not len(ends) or (u[ends] - u[ends - 1]).max() <= SHORTEST_PATH_PIECE:
             break
         piece, u = divide_intervals(piece, u, ends)
-    return found, piece, u
+    return found, (piece, u)
 
 
 def _are_new(piece: Indices) -> NDArray[np.bool_]:

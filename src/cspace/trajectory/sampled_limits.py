@@ -218,19 +218,21 @@ class SampledLimits:
         return Excess(over, used)
 
     def tighten_by(self, excess: Excess) -> bool:
-        """Whether nothing is exceeded; else the limits are tightened where it is."""
+        """Whether nothing is exceeded; else the limits are tightened where it is, or where hardly less is used:
+        what one interval loses is given to those beside it."""
         kept, (over, used) = True, excess
         slack = 0.0 if self.torque is None else LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)
         if over is not None and self.torque is not None and (over > slack).any():
             kept = False
             own = np.zeros_like(over) if self.margin is None else self.margin
-            more = TIGHTENED * over + TIGHTENED_LEAST * self.torque.limit
-            self.margin = np.ascontiguousarray(own + np.where(over > slack, more, 0.0))
+            least = TIGHTENED_LEAST * self.torque.limit
+            more = np.where(over > -least, TIGHTENED * np.maximum(over, 0.0) + TIGHTENED * least, 0.0)
+            self.margin = np.ascontiguousarray(own + more)
         if used is not None and (used > 1.0 + LIMIT_ROUNDING).any():
             kept = False
             own = np.ones_like(used) if self.slower is None else self.slower
-            more = (used + TIGHTENED_LEAST) ** (2.0 * TIGHTENED)
-            self.slower = own * np.where(used > 1.0 + LIMIT_ROUNDING, more, 1.0)
+            more = (np.maximum(used, 1.0) + TIGHTENED_LEAST) ** (2.0 * TIGHTENED)
+            self.slower = own * np.where(used > 1.0 - TIGHTENED_LEAST, more, 1.0)
         return kept
 
 
