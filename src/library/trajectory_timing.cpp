@@ -280,9 +280,8 @@ Seconds measure(const PathTimer& timer, const std::vector<double>& x) {
 // Whether the motion stands at both ends of an interval: it would never pass it.
 void find_stand(Timing& timing) {
     const std::vector<double>& x = timing.squared_speed;
-    const auto standing = std::adjacent_find(x.begin(), x.end(), [](double begin, double end) {
-        return begin == 0.0 && end == 0.0;
-    });
+    const auto standing = std::adjacent_find(
+        x.begin(), x.end(), [](double begin, double end) { return begin == 0.0 && end == 0.0; });
     if (standing == x.end()) return;
     timing.outcome = TimingOutcome::stands;
     timing.where = size_t(standing - x.begin());

@@ -43,8 +43,8 @@ enum class TimingOutcome { timed, blocked, stands, start, end };
 struct Timing {
     TimingOutcome outcome;
     std::size_t where;
-    double least, most;  // path speeds
-    TimingGrid grid;       // empty if one was given
+    double least, most;                 // path speeds
+    TimingGrid grid;                    // empty if one was given
     std::vector<double> squared_speed;  // (intervals + 1,)
     bool converged;                     // the halving ended before its limits
 };

@@ -279,3 +279,41 @@ def test_an_arc_of_many_turns_ends_at_the_same_place_as_one_turn(turns):
     assert not many
     assert many.s_end == pytest.approx(one.s_end, abs=1e-3)
     assert many.reason.partition(":")[2] == one.reason.partition(":")[2]
+
+
+@pytest.mark.parametrize("elbow", [0.003, 0.01, 0.03, 0.06, 0.1])
+@pytest.mark.parametrize("name", ["ur3e", "ur5e", "ur16e"])
+def test_lines_from_and_to_an_elbow_that_is_nearly_straight_are_followed(name, elbow):
+    """The joints turn by up to some thousand rad/m there, smoothly: the tip slows down."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(int(1000 * elbow))
+    for sign in (1.0, -1.0):
+        q = np.append(np.append(rng.uniform(-1.0, 1.0, 2), sign * elbow), rng.uniform(0.4, 1.0, 3))
+        T = robot.fk(q)
+        goal = T.copy()
+        goal[:3, 3] *= rng.uniform(0.75, 0.9)
+        motion = robot.move_linear(goal, start=q, **LIMITS)
+        assert motion, motion.reason
+        assert motion.check(limits_of(robot))
+        reached = robot.fk(motion(np.linspace(0.0, motion.duration, 400)))
+        way = goal[:3, 3] - T[:3, 3]
+        off = np.linalg.norm(np.cross(reached[:, :3, 3] - T[:3, 3], way), axis=1) / np.linalg.norm(way)
+        assert off.max() < 2e-5
+        back = robot.move_linear(T, start=motion(motion.duration), **LIMITS)
+        assert back, back.reason
+        np.testing.assert_allclose(back.duration, motion.duration, rtol=1e-3)
+
+
+def test_a_margin_that_is_not_kept_is_named():
+    robot = cs.load_robot("ur10e")
+    q = np.array([0.2, -1.3, 1.4, -0.9, -1.2, 0.3])
+    T = robot.fk(q)
+    goal = T.copy()
+    goal[1, 3] += 0.35
+    scene = cs.Scene([cs.Sphere(0.08, T[:3, 3] + [0.0, 0.45, 0.0], name="ball")])
+    apart = robot.move_linear(goal, start=q, acceleration=5.0, scene=scene, margin=0.05)
+    assert not apart
+    assert "than the margin of 50 mm" in apart.reason
+    touching = robot.move_linear(goal, start=q, acceleration=5.0, scene=scene)
+    assert not touching
+    assert "touches" in touching.reason

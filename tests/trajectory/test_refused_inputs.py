@@ -302,3 +302,79 @@ def test_no_motion_passes_no_check():
         assert not check
         assert check.reason == motion.reason
         assert not check.violations
+
+
+def test_limits_of_another_number_of_joints_are_refused_whatever_else_is_given():
+    path = cs.spline([[0.0, 0.0], [0.5, 2.0]])
+    for count in (1, 3):
+        limits = cs.Limits([-1.0] * count, [1.0] * count)
+        with pytest.raises(InputError, match=f"limits is of {count} joints, the path of 2"):
+            cs.time_parametrize(path, limits, velocity=1.0, acceleration=2.0)
+
+
+NO_PLACES = (None, "x", np.zeros(0), np.zeros((2, 2)), 10**400, 1j)
+
+
+@pytest.mark.parametrize("end", NO_PLACES)
+def test_parts_end_at_one_number(end):
+    path = cs.spline([[0.0, 0.0], [0.5, 2.0]])
+    line = cs.trajectory.line_path(cs.pose((0, 0, 0)), cs.pose((1, 0, 0)))
+    for each in (path, line):
+        with pytest.raises((InputError, InputTypeError)):
+            each.part(end)
+
+
+@pytest.mark.parametrize("robot", [None, 3, "panda", np.eye(4)])
+def test_moves_of_the_tip_need_a_robot(robot):
+    T = cs.pose((0.1, 0.0, 0.0))
+    with pytest.raises(InputTypeError):
+        cs.cartesian.move_linear(robot, T, start=np.zeros(7))
+    with pytest.raises(InputTypeError):
+        cs.cartesian.move_through(robot, T[None], start=np.zeros(7))
+    with pytest.raises(InputTypeError):
+        cs.cartesian.move_arc(robot, start=np.zeros(7), center=(0, 0, 0), axis=(0, 0, 1), angle=1.0)
+
+
+@pytest.mark.parametrize("thing", [None, 3, "motion.csv", np.eye(4)])
+def test_only_trajectories_are_written(thing, tmp_path):
+    for write in (
+        lambda: cs.trajectory.to_csv(thing, tmp_path / "a.csv", rate=10.0),
+        lambda: cs.trajectory.to_json(thing, tmp_path / "a.json"),
+        lambda: cs.trajectory.to_ros(thing, tmp_path / "a.yaml", rate=10.0),
+    ):
+        with pytest.raises(InputTypeError, match="trajectory is a"):
+            write()
+    assert not list(tmp_path.iterdir())
+
+
+def test_arrays_are_no_options():
+    path = cs.spline([[0.0, 0.0], [0.5, 2.0]])
+    robot = cs.load_robot("ur5e")
+    q = np.array([0.3, -1.2, 1.5, -0.8, -1.3, 0.2])
+    line = cs.trajectory.line_path(robot.fk(q), robot.fk(q) @ cs.pose((0.05, 0, 0)))
+    for call in (
+        lambda: cs.time_parametrize(path, velocity=1.0, acceleration=2.0, positions=np.zeros(0)),
+        lambda: cs.cartesian.move_cartesian(robot, line, q, acceleration=2.0, as_far_as_possible=np.zeros(0)),
+        lambda: cs.trajectory.Path([0, 1], np.zeros((1, 2, 6)), remarks=None),
+        lambda: cs.trajectory.state_to_state(
+            [0.0], [1.0], velocity=1, acceleration=2, joint_names=np.array(3)
+        ),
+        lambda: robot.move_to(
+            q + 0.1, start=q, profile="quintic", velocity=1.0, acceleration=2.0, duration=np.zeros((2, 6))
+        ),
+    ):
+        with pytest.raises((InputError, InputTypeError)):
+            call()
+
+
+def test_a_touch_has_a_place_and_arms_without_limits_no_warning():
+    robot = cs.load_robot("ur5e")
+    q = np.array([0.3, -1.2, 1.5, -0.8, -1.3, 0.2])
+    T = robot.fk(q)
+    ball = cs.Scene([cs.Sphere(0.2, T[:3, 3])])
+    motion = robot.move_linear(T @ cs.pose((0.1, 0, 0)), start=q, acceleration=8.0, scene=ball)
+    assert not motion
+    assert motion.place == 0.0
+    far = cs.trajectory.line_path(cs.pose((5, 0, 0)), cs.pose((5, 1, 0)))
+    free = cs.load_robot("puma_style")
+    assert not cs.cartesian.move_cartesian(free, far, acceleration=8.0, velocity=1.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.trajectory import Path
 from trajectory.path_cases import MAKERS, excess, line, random_waypoints
 
@@ -458,3 +458,39 @@ def test_dry_friction_at_rest_refuses_no_path(seed):
         assert motion, motion.reason
         state = (motion(np.array([0.0, motion.duration]), order) for order in range(3))
         assert (np.abs(robot.inverse_dynamics(*state)) <= weak * (1 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_limits_of_a_frame_are_kept_on_every_grid(seed):
+    """What one interval loses is given to those beside it: they are tightened together."""
+    rng = np.random.default_rng(900 + seed)
+    robot = cs.load_robot(("gen3", "ur5e", "panda", "z1")[seed % 4])
+    points = rng.uniform(-1.5, 1.5, (int(rng.integers(5, 9)), robot.dof))
+    path = cs.trajectory.b_spline(points) if seed % 2 else cs.spline(points, ends="clamped")
+    for grid in (None, 200, 700, 1000):
+        for limit in ({"speed": 0.3}, {"turn_rate": 1.0}):
+            options = {"velocity": np.inf, "acceleration": 7.0, "positions": False, "grid": grid}
+            motion = cs.time_parametrize(path, robot, **options, **limit)
+            assert motion, motion.reason
+            t = np.linspace(0.0, motion.duration, 5000)
+            twist = np.einsum("kij,kj->ki", robot.jacobian(motion(t)), motion(t, 1))
+            rows = slice(3) if "speed" in limit else slice(3, 6)
+            assert np.linalg.norm(twist[:, rows], axis=1).max() <= next(iter(limit.values())) * (1 + 1e-7)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_automatic_grid_is_as_good_as_a_fine_one(seed):
+    """An interval holds back those beside it, so that all are divided where one changes."""
+    rng = np.random.default_rng(40 + seed)
+    points = rng.uniform(-1.5, 1.5, (7, int(rng.integers(2, 7))))
+    for path in (cs.trajectory.b_spline(points), cs.spline(points, ends="clamped")):
+        own = cs.time_parametrize(path, velocity=2.0, acceleration=7.0)
+        fine = cs.time_parametrize(path, velocity=2.0, acceleration=7.0, grid=8000)
+        assert own.converged
+        assert own.duration <= fine.duration * 1.0015
+
+
+def test_a_grid_is_not_refined_to_a_tolerance():
+    path = cs.spline(np.random.default_rng(1).uniform(-1.0, 1.0, (5, 3)))
+    with pytest.raises(InputTypeError, match="exclude each other"):
+        cs.time_parametrize(path, acceleration=8.0, grid=100, tolerance=0.01)

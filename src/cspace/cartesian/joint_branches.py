@@ -136,7 +136,7 @@ def _find_intervals(path: CartesianPath, nodes: tuple[Indices, Array], lost: lis
     s = path.breaks[piece] + u
     ends = np.unique(np.searchsorted(s, lost)).astype(np.intp)
     ends = ends[(ends > 0) & (ends < len(s))]
-    return ends[(piece[ends] == piece[ends - 1]) & (u[ends] - u[ends - 1] > SHORTEST_PATH_PIECE)]
+    return np.asarray(ends[(piece[ends] == piece[ends - 1]) & (u[ends] - u[ends - 1] > SHORTEST_PATH_PIECE)])
 
 
 def _track_densely(

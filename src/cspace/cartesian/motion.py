@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, one_array, one_number
+from cspace.arrays import Array, one_array, one_number, truth_value
 from cspace.cartesian.free_turn import find_free_turns, tool_axis
 from cspace.cartesian.joint_branches import JointBranch, JointBranches
 from cspace.cartesian.redundant_path import follow_poses
@@ -128,8 +128,8 @@ def move_cartesian(
         return _refuse(robot, path, (), first, outside, 0.0)
     follow = _make_follower(robot, first, axis, limits, tolerance, scene is not None)
     found = follow(path)
-    stopped_by, whole = "", path
-    if not found and as_far_as_possible:
+    shortens, stopped_by, whole = truth_value(as_far_as_possible, "as_far_as_possible"), "", path
+    if not found and shortens:
         stopped_by = found.reason
         path, found = _follow_part(path, follow, found)
     if not found:
@@ -146,7 +146,7 @@ def move_cartesian(
     }
     space = None if scene is None else space_of_curves(robot, scene, margin)
     motion, touches = _take_fastest(robot, path, found.branches, options, space, axis is not None)
-    if as_far_as_possible and touches:
+    if shortens and touches:
         motion, stopped_by = _stop_before(robot, motion, touches, options) or (motion, stopped_by)
     if stopped_by and motion:
         motion.cartesian, motion.stopped_by, motion.s_end = whole, stopped_by, motion.path.length
@@ -214,6 +214,7 @@ def move_through(
 
 def _read_call(robot: KinematicModel, start: ArrayLike, options: dict[str, Any], function: str) -> Array:
     """The configuration of a start; InputTypeError for options that move_cartesian does not have."""
+    check_robot(robot)
     known = set(signature(move_cartesian).parameters) - {"robot", "path", "start"}
     for name in options:
         if name not in known:
@@ -357,7 +358,8 @@ def _take_fastest(
         return best, {}
     q = _joints(branches[arrived[0]]).start
     reason = "; ".join(dict.fromkeys(refused))
-    return _refuse(robot, path, branches, q, reason, np.nan, durations), touches
+    farthest = max((touch.s for touch in touches.values()), default=np.nan)
+    return _refuse(robot, path, branches, q, reason, farthest, durations), touches
 
 
 def _stop_before(
@@ -385,7 +387,7 @@ def _joints(branch: JointBranch) -> Path:
 def _refuse_branches(robot: KinematicModel, path: CartesianPath, found: JointBranches) -> CartesianMotion:
     """No motion, as no branch arrives: it stays at the start of the first."""
     place = max((branch.s_end for branch in found.branches), default=0.0)
-    q = found.branches[0].q_start if found.branches else robot.limits.lower * 0.0
+    q = found.branches[0].q_start if found.branches else np.zeros(robot.dof)
     return _refuse(robot, path, found.branches, q, found.reason, place)
 
 

@@ -18,6 +18,9 @@ MOST_PARTS: Final = 1 << 12
 """Of a piece."""
 
 
+SHORTEST_MARGIN: Final = 1e-9
+"""[m] That is named: less is rounding."""
+
 HALVINGS: Final = 8
 """Of a part that touches something: joints move by some hundredths of a rad on it at most."""
 
@@ -38,7 +41,11 @@ def space_of_curves(robot: Any, scene: Any, margin: float) -> ArmSpace:
     added to the margin.
     """
     reach = ArmSpace(robot, scene, margin).reach
-    return ArmSpace(robot, scene, margin + NEARLY_STRAIGHT * max(1.0, reach))
+    return ArmSpace(robot, scene, margin + _spare_of(reach))
+
+
+def _spare_of(reach: float) -> float:
+    return NEARLY_STRAIGHT * max(1.0, reach)
 
 
 def find_touches(
@@ -59,7 +66,7 @@ def find_touches(
             found = space.edge(q[i], q[i + 1])
             if not found:
                 free = _free_share(space, q[i], q[i + 1])
-                touches.append(Touch(k, float(s[i] + free * (s[i + 1] - s[i])), _explain(found)))
+                touches.append(Touch(k, float(s[i] + free * (s[i + 1] - s[i])), _explain(space, found)))
                 break
         if touches and first:
             break
@@ -78,8 +85,13 @@ def _free_share(space: ArmSpace, a: Array, b: Array) -> float:
     return free
 
 
-def _explain(found: Edge) -> str:
-    return found.reason if found.pair is None else " touches ".join(found.pair)
+def _explain(space: ArmSpace, found: Edge) -> str:
+    if found.pair is None:
+        return found.reason
+    a, b = found.pair
+    if (margin := space.margin - _spare_of(space.reach)) > SHORTEST_MARGIN:
+        return f"{a} is closer to {b} than the margin of {1000 * margin:.3g} mm"
+    return f"{a} touches {b}"
 
 
 def straight_parts(path: Path) -> NDArray[np.intp]:

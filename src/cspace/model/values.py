@@ -52,7 +52,7 @@ def read_joint_names(names: Sequence[str] | None, count: int | None = None) -> t
     """
     if names is None:
         return None
-    if isinstance(names, str) or not isinstance(names, Iterable):
+    if isinstance(names, str) or not isinstance(names, Iterable) or getattr(names, "ndim", 1) == 0:
         raise InputTypeError(f"joint_names is a {type(names).__name__}; give a list of texts")
     made = tuple(name_of(name, "joint in joint_names") for name in names)
     if count is not None and len(made) != count:

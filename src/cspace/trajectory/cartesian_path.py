@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace._core import cartesian_poses, cartesian_twists
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError, InputTypeError
 from cspace.tables import count_things, one_line
 from cspace.tolerances import TIME_ROUNDING
@@ -67,7 +67,7 @@ class CartesianPath:
 
     def part(self, end: float) -> CartesianPath:
         """The path up to the parameter `end`, above 0. Raises InputError for one that is not on the path."""
-        piece, u, _ = self._locate(end)
+        piece, u, _ = self._locate(one_number(end, "end"))
         if not end > 0.0:
             raise InputError(f"end is {end:g}; a part of a path needs a length")
         last = int(piece[0]) if u[0] > 0.0 else int(piece[0]) - 1

@@ -16,7 +16,7 @@ from cspace.trajectory.path import Path
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.timed_motion import TimedMotion
 from cspace.trajectory.timed_path import Grid, TimedPath
-from cspace.trajectory.trajectory import HIGHEST_ORDER, JoinedTrajectory, Trajectory
+from cspace.trajectory.trajectory import HIGHEST_ORDER, JoinedTrajectory, Trajectory, check_trajectory
 
 SCHEMA: Final = "cspace.trajectory/1"
 """The layout of the files."""
@@ -32,6 +32,7 @@ def to_json(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
     a path was timed with are not. The file is complete or untouched.
     Raises InputError for a trajectory of another kind, and where the file cannot be written.
     """
+    check_trajectory(trajectory)
     values = {"schema": SCHEMA, **_describe(trajectory)}
     write_text(path_of(path), json.dumps(values, ensure_ascii=False) + "\n")
 

@@ -12,8 +12,8 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace._core import evaluate_path, examine_path
-from cspace.arrays import Array, as_floats, whole_number
-from cspace.errors import InputError
+from cspace.arrays import Array, as_floats, one_number, whole_number
+from cspace.errors import InputError, InputTypeError
 from cspace.model.values import freeze_array
 from cspace.tables import count_things, one_line, shown
 from cspace.tolerances import (
@@ -61,6 +61,8 @@ class Path:
             raise InputError(f"a piece of the path has length {shortest:g}; the least is {SHORTEST_PIECE:g}")
         self.breaks = freeze_array(np.array(b))
         self.control_points = freeze_array(np.array(c, order="C"))
+        if isinstance(remarks, str) or not isinstance(remarks, Sequence):
+            raise InputTypeError(f"remarks is a {type(remarks).__name__}; give a list of texts")
         self.remarks = tuple(remarks)
         gap, width, self._events, moving = examine_path(
             self.control_points, self.lengths, SAME_WAYPOINT, PATH_CORNER, STILL_JOINT
@@ -262,6 +264,7 @@ class Path:
 
     def part(self, end: float) -> Path:
         """The path up to the parameter `end`. Raises InputError for one that is not above 0 or not on it."""
+        end = one_number(end, "end")
         if not 0.0 < end <= self.length:
             raise InputError(f"end is {end:g}; it must be above 0 and at most {self.length:g}")
         last = int(np.searchsorted(self.breaks, end)) - 1

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array
+from cspace.arrays import Array, one_number
 from cspace.errors import InputError, InputTypeError, check_known
 from cspace.kinematics import KinematicModel, require_limits
 from cspace.kinematics.batch import check_robot, find_pose, limits_of
@@ -162,7 +162,8 @@ def fit_polynomials(
     bounds = gather_limits(robot, given, duration is None)
     if duration is not None:
         moves = bool((states[0] != states[1]).any() or states[:, 1:].any())
-        h = 0.0 if duration == 0.0 and not moves else read_duration(duration, "duration") or 0.0
+        is_nothing = one_number(duration, "duration") == 0.0 and not moves
+        h = 0.0 if is_nothing else read_duration(duration, "duration") or 0.0
         possible = True
     else:
         h, possible = find_duration(profile, states, bounds, names, read_duration(cycle, "cycle"))

@@ -16,7 +16,7 @@ from cspace.model.values import read_joint_names
 from cspace.trajectory.message_yaml import read_documents
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.time_scaling import connect_samples
-from cspace.trajectory.trajectory import Trajectory
+from cspace.trajectory.trajectory import Trajectory, check_trajectory
 
 STATES: Final = ("positions", "velocities", "accelerations")
 """What a point says of the joints, in the order of derivatives."""
@@ -43,6 +43,7 @@ def to_ros(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float)
     Raises InputError for a trajectory without names of joints, for one with a reason (which is not what was
     asked for), and where the file cannot be written.
     """
+    check_trajectory(trajectory)
     if trajectory.joint_names is None:
         raise InputError("the trajectory has no names of joints, which ROS needs; pass joint_names=")
     samples = trajectory.samples_to_write(rate)

@@ -218,8 +218,10 @@ class SampledLimits:
         return Excess(over, used)
 
     def tighten_by(self, excess: Excess) -> bool:
-        """Whether nothing is exceeded; else the limits are tightened where it is, or where hardly less is used:
-        what one interval loses is given to those beside it."""
+        """Whether nothing is exceeded; else the limits are tightened where it is, or hardly less is used.
+
+        What one interval loses is given to those beside it.
+        """
         kept, (over, used) = True, excess
         slack = 0.0 if self.torque is None else LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)
         if over is not None and self.torque is not None and (over > slack).any():

@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace._core import divide_path, time_path
-from cspace.arrays import Array, as_floats, bounded_number, one_array, positive_number, whole_number
+from cspace.arrays import (
+    Array,
+    as_floats,
+    bounded_number,
+    one_array,
+    positive_number,
+    truth_value,
+    whole_number,
+)
 from cspace.dynamics.rows import EARTH
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -90,28 +98,27 @@ def time_parametrize(
     ones of the frame of robot, by default its tip. feed [m/s]: the speed that it is to have, wherever the
     limits allow it; `below_feed` lists where they do not. robot: whose dynamics and kinematics those need, by
     default limits. gravity (3,) [m/s²]: for torque, (0, 0, −9.81) unless given. start_speed, end_speed:
-    speeds ds/dt of the parameter at the ends. grid: about so many intervals; by default they are halved until
-    that changes the duration by less than `tolerance`, relative (0.001). Under jerk limits 30 of a piece, 150
-    or more, unless a tolerance is given. positions: whether the limits of position of limits count, too.
+    speeds ds/dt of the parameter at the ends. grid: about so many intervals; with few the motion may be much
+    slower. By default they are halved until that changes the duration by less than `tolerance`, relative
+    (0.001). Under jerk limits 30 of a piece, 150 or more, unless a tolerance is given. positions: whether the
+    limits of position of limits count, too.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits, the path
     leaves those of position, or the speeds at the ends are impossible. Raises InputError for a wrong shape,
     NaN, negative limits, joints without one of acceleration, and jerk limits where the path's bend jumps.
     Source: Pham and Pham 2018, with bounds over whole intervals; a barrier method under jerk limits.
     """
-    if not isinstance(path, Path):
-        raise InputTypeError(
-            f"path is a {type(path).__name__}; make a Path by spline, blend, b_spline or fit_path"
-        )
     own, given = _choose_robot(robot, limits), getattr(limits, "limits", limits)
     if own is not None and own.floating:
         _refuse_floating(own, torque, speed, turn_rate, feed)
+    _check_path(path, given)
     labels = _label_joints(path, own)
     v = _read_limit("velocity", velocity, given, labels, required=False)
     a = _read_limit("acceleration", acceleration, given, labels, required=True)
     sampled = SampledLimits(
         path, _read_torque(torque, own, path, gravity), _read_frame(speed, turn_rate, feed, own, frame)
     )
+    keeps = truth_value(positions, "positions") and isinstance(given, Limits)
     timer = _Timer(
         path,
         v,
@@ -124,11 +131,23 @@ def time_parametrize(
         None if own is None else own.joint_names,
         _read_jerk(jerk, given, labels),
     )
-    return timer.run(_read_grid(grid, timer.jerk), given if positions and isinstance(given, Limits) else None)
+    return timer.run(_read_grid(grid, tolerance, timer.jerk), given if keeps else None)
 
 
-def _read_grid(grid: Any, jerk: Array | None) -> int | None:
+def _check_path(path: Any, limits: Any) -> None:
+    """InputTypeError for what is no Path, InputError for Limits of another number of joints."""
+    if not isinstance(path, Path):
+        raise InputTypeError(
+            f"path is a {type(path).__name__}; make a Path by spline, blend, b_spline or fit_path"
+        )
+    if isinstance(limits, Limits) and len(limits.lower) != path.dof:
+        raise InputError(f"limits is of {len(limits.lower)} joints, the path of {path.dof}")
+
+
+def _read_grid(grid: Any, tolerance: Any, jerk: Array | None) -> int | None:
     """The number of intervals that is given, if one is."""
+    if grid is not None and tolerance is not None:
+        raise InputTypeError("grid= and tolerance= exclude each other: a grid that is given is not refined")
     most = MOST_INTERVALS if jerk is None else MOST_JERK_GRID
     return None if grid is None else whole_number(grid, "grid", 1, most)
 
@@ -456,8 +475,6 @@ def _read_limit(
         own = np.full(n, np.inf)
     elif isinstance(limits, Limits):
         own = np.array(getattr(limits, name))
-        if len(own) != n:
-            raise InputError(f"limits is of {len(own)} joints, the path of {n}")
     else:
         raise InputTypeError(f"limits is a {type(limits).__name__}; give Limits or a robot")
     if required and np.isinf(own).any():

@@ -64,6 +64,14 @@ class Extremes(NamedTuple):
     t_highest: Array
 
 
+def check_trajectory(trajectory: object) -> None:
+    """Raise InputTypeError for what is no trajectory."""
+    if not isinstance(trajectory, Trajectory):
+        raise InputTypeError(
+            f"trajectory is a {type(trajectory).__name__}; cspace.time_parametrize or a move returns one"
+        )
+
+
 def check_order(names: Sequence[str] | None, others: Sequence[str] | None, whose: str) -> None:
     """Raise InputError where two lists have the same names of joints in another order."""
     if names is None or others is None or tuple(names) == tuple(others) or set(names) != set(others):

@@ -18,7 +18,7 @@ from cspace.files import name_file, path_of, read_text, write_text
 from cspace.model.values import read_joint_names
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.time_scaling import connect_samples
-from cspace.trajectory.trajectory import Trajectory
+from cspace.trajectory.trajectory import Trajectory, check_trajectory
 
 QUANTITIES: Final = ("q", "qd", "qdd")
 """What the columns of a CSV file begin with, before the name of a joint."""
@@ -35,6 +35,7 @@ def to_csv(trajectory: Trajectory, path: str | os.PathLike[str], *, rate: float)
     Raises InputError for a trajectory with a reason (which is not what was asked for), and where the file
     cannot be written.
     """
+    check_trajectory(trajectory)
     samples = trajectory.samples_to_write(rate)
     heading = ["time", *(f"{kind}:{name}" for kind in QUANTITIES for name in trajectory.labels)]
     text = io.StringIO()

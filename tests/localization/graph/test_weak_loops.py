@@ -14,7 +14,7 @@ SCALE = 0.02
 
 
 def make_graph(rng: np.random.Generator) -> cs.PoseGraph:
-    """Two rounds of a square, where one loop in twelve errs four times as much, and then a walk without loops."""
+    """Two rounds of a square, where one loop in twelve errs four times as much; then a walk without any."""
     n, seen, deviations = 280, 120, np.array([0.02, 0.02, 0.01])
     truth = [np.eye(3)]
     for k in range(n - 1):

@@ -176,7 +176,10 @@ def time_waypoints(args: argparse.Namespace, robot: Robot, limits: dict[str, Any
     path = spline(waypoints) if args.blend is None else blend(waypoints, args.blend)
     motion = time_parametrize(path, robot, positions=False, **limits)
     if motion and not (check := motion.check(Limits(robot.limits.lower, robot.limits.upper))):
-        advice = "; --blend keeps between the waypoints" if args.blend is None else ""
+        outside = (waypoints < robot.limits.lower) | (waypoints > robot.limits.upper)
+        advice = "" if args.blend is not None else "; --blend keeps between the waypoints"
+        if outside.any():
+            advice = f"; row {int(np.argwhere(outside)[0, 0]) + 1} of the waypoints itself is beyond"
         motion.reason = check.reason + advice
     return motion
 
@@ -275,7 +278,7 @@ def describe_motion(
 def print_motion(args: argparse.Namespace, out: Output, robot: Robot, motion: Trajectory) -> None:
     """Some states as a table, then what the motion keeps."""
     if not motion:
-        out.sentence(f"{robot.name}: no motion: {motion.reason}", style="yellow")
+        out.sentence(f"{robot.name}: no motion: {motion.reason}{radians_note(args)}", style="yellow")
         return
     table = Table(["time [s]", *joint_headings(robot)])
     for t in np.linspace(0.0, motion.duration, ROWS + 1):
@@ -283,4 +286,14 @@ def print_motion(args: argparse.Namespace, out: Output, robot: Robot, motion: Tr
     out.table(table)
     out.line()
     check = motion.check(robot.limits)
-    out.facts({"duration": f"{motion.duration:.6g} s", "limits": "kept" if check else check.reason})
+    out.facts(
+        {
+            "duration": f"{motion.duration:.6g} s",
+            "limits": "kept" if check else check.reason + radians_note(args),
+        }
+    )
+
+
+def radians_note(args: argparse.Namespace) -> str:
+    """What to add to a reason where all other angles are in degrees."""
+    return " (angles in rad)" if args.deg else ""
