@@ -716,6 +716,9 @@ SHORTEST_PATH_PIECE: Final = 1e-6
 PATH_POSE_LEFT: Final = 1e-9
 """Error of a corrected pose, lengths over that of the arm, above which it is not reached."""
 
+SHORTEST_MARGIN: Final = 1e-9
+"""[m] Of a motion from obstacles, that is named: less is rounding."""
+
 NEARLY_STRAIGHT: Final = 3e-4
 """[rad or m] Distance of the curve from a straight motion of the joints, at most, summed over the joints."""
 

@@ -11,15 +11,12 @@ from numpy.typing import NDArray
 from cspace.arrays import Array
 from cspace.collision import Edge
 from cspace.planning import ArmSpace
-from cspace.tolerances import NEARLY_STRAIGHT
+from cspace.tolerances import NEARLY_STRAIGHT, SHORTEST_MARGIN
 from cspace.trajectory.path import Path
 
 MOST_PARTS: Final = 1 << 12
 """Of a piece."""
 
-
-SHORTEST_MARGIN: Final = 1e-9
-"""[m] That is named: less is rounding."""
 
 HALVINGS: Final = 8
 """Of a part that touches something: joints move by some hundredths of a rad on it at most."""

@@ -118,7 +118,7 @@ def time_parametrize(
     sampled = SampledLimits(
         path, _read_torque(torque, own, path, gravity), _read_frame(speed, turn_rate, feed, own, frame)
     )
-    keeps = truth_value(positions, "positions") and isinstance(given, Limits)
+    kept = given if truth_value(positions, "positions") and isinstance(given, Limits) else None
     timer = _Timer(
         path,
         v,
@@ -131,7 +131,7 @@ def time_parametrize(
         None if own is None else own.joint_names,
         _read_jerk(jerk, given, labels),
     )
-    return timer.run(_read_grid(grid, tolerance, timer.jerk), given if keeps else None)
+    return timer.run(_read_grid(grid, tolerance, timer.jerk), kept)
 
 
 def _check_path(path: Any, limits: Any) -> None:
@@ -303,7 +303,10 @@ class _Timer:
                 divide_for_feed(each, parts[a + 1 : b - 1])
                 for each, (a, b) in zip(grids, pairwise(ends.tolist()), strict=True)
             ]
-            timed = self.time_with_jerk_on(sections, grids, plain)
+            divided = self.time_with_jerk_on(sections, grids, plain)
+            if not divided or divided.duration >= timed.duration:  # uneven grids may cost more than they win
+                break
+            timed = divided
         return timed
 
     def time_with_jerk_on(self, sections: list[Section], grids: list[Grid], plain: TimedPath) -> TimedPath:
