@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,9 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from cspace.arrays import Array
 from cspace.cartesian.limit_ends import find_limit_end
 from cspace.cartesian.refine import (
+    JUMP_ROUNDS,
     LeastMotion,
     Refined,
     divide_intervals,
+    find_lost_intervals,
     first_nodes,
     read_tolerance,
     refine_branches,
@@ -27,13 +29,12 @@ from cspace.tolerances import PATH_START_ROUNDING, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
 
+Nodes: TypeAlias = tuple[Indices, Array]
+"""Pieces (n,) of a Cartesian path and parameters (n,) in them."""
+
 BESIDE_SINGULAR: Final = "the joints would have to jump beside a singular configuration"
 
 NO_DEVIATION: Final = (np.inf, np.inf)
-
-JUMP_ROUNDS: Final = 8
-"""Of putting nodes where a joint moves farther from one to the next than a track allows: a path passes few
-singular configurations, and each takes two or three."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,15 +98,13 @@ def follow_cartesian(
     check_cartesian_path(path)
     tolerance = read_tolerance(tolerance)
     bounds = limits_of(robot.limits, limits, robot.name)
-    nodes = first_nodes(path)
-    for _ in range(JUMP_ROUNDS):
-        found, nodes = _track_densely(robot, path, start, bounds, nodes)
-        paths = _refine_tracked(robot, path, found, tolerance, nodes)
-        ends = _find_intervals(path, nodes, [each.s_lost for each in paths if each.path is None])
-        if not len(ends):
-            break
-        nodes = divide_intervals(*nodes, ends)
-    refined = iter(paths)
+    found, nodes = _track_densely(robot, path, start, bounds, first_nodes(path))
+    whole = [branch.q for branch in found.branches if branch]
+    paths = _refine_tracked(robot, path, whole, tolerance, nodes)
+    refined = (
+        each if each.path is not None else _refine_lost(robot, path, bounds, tolerance, nodes, q[0], each)
+        for q, each in zip(whole, paths, strict=True)
+    )
     s_of_row = (path.breaks[nodes[0]] + nodes[1])[_are_new(nodes[0])]
     given = None if start is None else np.asarray(start, dtype=np.float64)
     branches = tuple(
@@ -119,24 +118,35 @@ def follow_cartesian(
 
 
 def _refine_tracked(
-    robot: KinematicModel, path: CartesianPath, found: Track, tolerance: float, nodes: tuple[Indices, Array]
+    robot: KinematicModel, path: CartesianPath, whole: list[Array], tolerance: float, nodes: Nodes
 ) -> list[Refined]:
-    """The joint paths of the branches that reach the end, near their configurations at nodes."""
-    whole = [branch.q for branch in found.branches if branch]
+    """The joint paths of branches near their configurations (n, dof) at nodes."""
     if not whole:
         return []
     q = np.array(whole)[:, np.cumsum(_are_new(nodes[0])) - 1]
     return refine_branches(robot, path, LeastMotion(robot, path), q, tolerance, nodes)
 
 
-def _find_intervals(path: CartesianPath, nodes: tuple[Indices, Array], lost: list[float]) -> Indices:
-    """The nodes (k,) that end the intervals in which a tracked branch was lost: the joints turn so far there
-    that a polynomial between nodes leads nowhere. Those too short to divide are left out."""
-    piece, u = nodes
-    s = path.breaks[piece] + u
-    ends = np.unique(np.searchsorted(s, lost)).astype(np.intp)
-    ends = ends[(ends > 0) & (ends < len(s))]
-    return np.asarray(ends[(piece[ends] == piece[ends - 1]) & (u[ends] - u[ends - 1] > SHORTEST_PATH_PIECE)])
+def _refine_lost(
+    robot: KinematicModel,
+    path: CartesianPath,
+    bounds: Limits,
+    tolerance: float,
+    nodes: Nodes,
+    start: Array,
+    lost: Refined,
+) -> Refined:
+    """The joint path of the branch of a start (dof,), with further nodes where it is lost between them."""
+    for _ in range(JUMP_ROUNDS):
+        ends = find_lost_intervals(path, nodes, [lost.s_lost])
+        if not len(ends):
+            break
+        found, nodes = _track_densely(robot, path, start, bounds, divide_intervals(*nodes, ends))
+        again = _refine_tracked(robot, path, [each.q for each in found.branches if each], tolerance, nodes)
+        if not again:
+            break
+        lost = again[0]
+    return lost
 
 
 def _track_densely(
@@ -144,8 +154,8 @@ def _track_densely(
     path: CartesianPath,
     start: ArrayLike | None,
     bounds: Limits,
-    nodes: tuple[Indices, Array],
-) -> tuple[Track, tuple[Indices, Array]]:
+    nodes: Nodes,
+) -> tuple[Track, Nodes]:
     """The branches at nodes of a path, pieces (n,) and parameters (n,), and the nodes with those added.
 
     Beside a singular configuration joints may turn far on a short way. Nodes are added there, until no joint

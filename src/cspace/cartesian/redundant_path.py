@@ -20,7 +20,15 @@ from cspace.cartesian.joint_branches import (
     follow_cartesian,
     make_branch,
 )
-from cspace.cartesian.refine import first_nodes, read_tolerance, refine_branches
+from cspace.cartesian.refine import (
+    JUMP_ROUNDS,
+    Refined,
+    divide_intervals,
+    find_lost_intervals,
+    first_nodes,
+    read_tolerance,
+    refine_branches,
+)
 from cspace.errors import InputError
 from cspace.ik.near_rows import solve_locked_redundant
 from cspace.ik.solver import Solver, as_solver
@@ -90,17 +98,27 @@ def follow_chain(
     """
     bases = null_bases(robot, q, freedom).reshape(len(q), -1)
     rows = np.concatenate([q, bases], axis=1)
-    piece, u = first_nodes(path)
     found: JointBranch | None = None
     for weight in smoothings:
         guided = Guided(robot, path, smooth_rows(s, rows, weight))
-        guess = guided.guide(piece, u, 0)[0]
-        found = make_branch(q[0], refine_branches(robot, path, guided, guess[None], tolerance)[0])
-        found = end_at_limits(found, bounds, robot)
+        found = end_at_limits(make_branch(q[0], _refine_guided(guided, tolerance)), bounds, robot)
         if found:
             return found
     assert found is not None
     return found
+
+
+def _refine_guided(guided: Guided, tolerance: float) -> Refined:
+    """The joint path beside the curve of a corrector, with further nodes where it is lost between them."""
+    path, nodes = guided.path, first_nodes(guided.path)
+    for _ in range(JUMP_ROUNDS):
+        guess = guided.guide(*nodes, 0)[0]
+        refined = refine_branches(guided.robot, path, guided, guess[None], tolerance, nodes)[0]
+        ends = find_lost_intervals(path, nodes, [refined.s_lost])
+        if not len(ends):
+            break
+        nodes = divide_intervals(*nodes, ends)
+    return refined
 
 
 def follow_poses(

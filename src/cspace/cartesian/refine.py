@@ -31,6 +31,10 @@ FINER: Final = 32
 """Parts of an interval between nodes in which a joint moves too far."""
 
 
+JUMP_ROUNDS: Final = 8
+"""Of putting nodes where a joint moves farther from one to the next than a track allows: a path passes few
+singular configurations, and each takes two or three."""
+
 LOOKED_AT: Final = (0.25, 0.375, 0.625, 0.75)
 """Where pieces whose middle is near are compared with the path, too: beside a singular configuration the
 error is largest elsewhere."""
@@ -108,6 +112,16 @@ def divide_intervals(piece: Indices, u: Array, ends: Indices) -> tuple[Indices, 
     between = u[ends - 1, None] + (u[ends] - u[ends - 1])[:, None] * share
     at = np.repeat(ends, FINER - 1)
     return np.insert(piece, at, piece[at]), np.insert(u, at, between.ravel())
+
+
+def find_lost_intervals(path: CartesianPath, nodes: tuple[Indices, Array], lost: list[float]) -> Indices:
+    """The nodes (k,) that end the intervals in which a branch was lost: the joints turn so far there
+    that a polynomial between nodes leads nowhere. Those too short to divide are left out."""
+    piece, u = nodes
+    s = path.breaks[piece] + u
+    ends = np.unique(np.searchsorted(s, lost)).astype(np.intp)
+    ends = ends[(ends > 0) & (ends < len(s))]
+    return np.asarray(ends[(piece[ends] == piece[ends - 1]) & (u[ends] - u[ends - 1] > SHORTEST_PATH_PIECE)])
 
 
 def refine_branches(
