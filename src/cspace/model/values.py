@@ -39,7 +39,7 @@ def name_of(value: object, subject: str) -> str:
         raise InputTypeError(f"the name of a {subject} must be a string, got {type(value).__name__}")
     if not value.strip():
         raise InputError(f"the name of a {subject} is empty")
-    if any("\ud800" <= letter <= "\udfff" for letter in value):
+    if not value.isascii() and any("\ud800" <= letter <= "\udfff" for letter in value):
         raise InputError(f"the name {value!r} of a {subject} contains half of a character; leave it out")
     return value
 
