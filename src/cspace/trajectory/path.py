@@ -55,9 +55,12 @@ class Path:
                 f"breaks has shape {b.shape}, control_points {c.shape}; expected (k + 1,) and"
                 f" (k, degree + 1, dof) with a degree from 1 to {HIGHEST_DEGREE}"
             )
-        if b[0] != 0.0 or (np.diff(b) <= 0.0).any():
+        self.lengths: Array = freeze_array(np.diff(b))
+        """The lengths (k,) of the parameter of the pieces."""
+        shortest = float(self.lengths.min())
+        if b[0] != 0.0 or not shortest > 0.0:
             raise InputError("breaks must begin at 0 and increase")
-        if (shortest := float(np.diff(b).min())) < SHORTEST_PIECE:
+        if shortest < SHORTEST_PIECE:
             raise InputError(f"a piece of the path has length {shortest:g}; the least is {SHORTEST_PIECE:g}")
         self.breaks = freeze_array(np.array(b))
         self.control_points = freeze_array(np.array(c, order="C"))
@@ -115,11 +118,6 @@ class Path:
     def end(self) -> Array:
         """The last configuration (dof,)."""
         return np.asarray(self.control_points[-1, -1])
-
-    @cached_property
-    def lengths(self) -> Array:
-        """The lengths (k,) of the parameter of the pieces."""
-        return freeze_array(np.diff(self.breaks))
 
     @cached_property
     def coefficients(self) -> Array:
