@@ -171,3 +171,15 @@ def test_a_tolerance_refines_the_grid_under_jerk_limits():
     assert finest.duration <= fine.duration <= coarse.duration
     assert fine.duration <= finest.duration * 1.015
     assert fine.proved
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("feed", [0.5, 100.0])
+def test_a_feed_is_never_slower_than_the_same_speed(seed, feed):
+    robot = cs.load_robot("ur5e")
+    path = cs.spline(np.random.default_rng(60 + seed).uniform(-1.0, 1.0, (4, 6)))
+    for acceleration in (np.inf, 8.0):
+        options = {"acceleration": acceleration, "jerk": 100.0, "positions": False}
+        held = cs.time_parametrize(path, robot, feed=feed, **options)
+        limited = cs.time_parametrize(path, robot, speed=feed, **options)
+        assert held.duration <= limited.duration * (1 + 1e-9)
