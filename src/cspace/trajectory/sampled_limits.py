@@ -31,9 +31,9 @@ TIGHTENED: Final = 1.5
 class TorqueLimits:
     """Torques of joints that are linear in the acceleration and the squared speed of a path.
 
-    robot: with masses. limit (dof,) [N·m or N]. gravity (3,) [m/s²]. damping, dry: of the joints (dof,), the
-    second the friction that does not depend on the speed. is_dry: whether there is any. resists: whether any
-    of both.
+    robot: with masses. limit (dof,) [N·m or N]. gravity (3,) [m/s²]. damping (dof,) [N·m·s/rad or N·s/m] and
+    dry friction dry (dof,) [N·m or N] of the joints. is_dry: whether any has dry friction. resists: whether
+    any has dry friction or damping.
     """
 
     robot: KinematicModel
@@ -218,9 +218,9 @@ class SampledLimits:
         return Excess(over, used)
 
     def tighten_by(self, excess: Excess) -> bool:
-        """Whether nothing is exceeded; else the limits are tightened where it is, or hardly less is used.
+        """Whether no limit is exceeded; else they are tightened where they are exceeded or nearly attained.
 
-        What one interval loses is given to those beside it.
+        Tightening one interval lets the motion be faster in those beside it.
         """
         kept, (over, used) = True, excess
         slack = 0.0 if self.torque is None else LIMIT_ROUNDING * np.maximum(self.torque.limit, 1.0)

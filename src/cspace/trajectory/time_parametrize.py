@@ -135,7 +135,7 @@ def time_parametrize(
 
 
 def _check_path(path: Any, limits: Any) -> None:
-    """InputTypeError for what is no Path, InputError for Limits of another number of joints."""
+    """Raise InputTypeError unless path is a Path, InputError for Limits of another number of joints."""
     if not isinstance(path, Path):
         raise InputTypeError(
             f"path is a {type(path).__name__}; make a Path by spline, blend, b_spline or fit_path"

@@ -65,7 +65,7 @@ class Extremes(NamedTuple):
 
 
 def check_trajectory(trajectory: object) -> None:
-    """Raise InputTypeError for what is no trajectory."""
+    """Raise InputTypeError unless it is a Trajectory."""
     if not isinstance(trajectory, Trajectory):
         raise InputTypeError(
             f"trajectory is a {type(trajectory).__name__}; cspace.time_parametrize or a move returns one"
