@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -13,6 +14,8 @@ namespace nb = nanobind;
 using namespace cspace;
 
 namespace {
+
+using Indices = Array<const std::int64_t, nb::ndim<1>>;
 
 // See robot.track in the package for the meaning of each argument. q beyond the poses reached is left alone.
 void track_rows(nb::handle robot, int frame, Goals poses, Matrix starts,
@@ -41,6 +44,23 @@ void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Ma
     const nb::gil_scoped_release release;
     ik::correct_joint_path({chain, poses.data(), twists.data(), rates.data(), count, q.data(), slope.data(),
                             bend.data(), info.data()});
+}
+
+// See cspace::ik::PieceRows.
+void measure_pieces(nb::handle robot, int frame, Matrix q, Matrix slope, Matrix bend, Row u, Indices begin,
+                    Indices end, Row share, Goals poses, Array<double, nb::ndim<2>> middle,
+                    Array<double, nb::shape<-1, 2>> error) {
+    const model::Chain& chain = chain_on(robot, frame);
+    const std::size_t nodes = u.shape(0), count = poses.shape(0), dof = std::size_t(chain.n_coordinates);
+    const auto is_node = [nodes](std::int64_t k) { return 0 <= k && std::size_t(k) < nodes; };
+    require_sizes(has_shape(q, nodes, dof) && has_shape(slope, nodes, dof) && has_shape(bend, nodes, dof) &&
+                  begin.shape(0) == count && end.shape(0) == count && share.shape(0) == count &&
+                  has_shape(middle, count, dof) && error.shape(0) == count &&
+                  std::all_of(begin.data(), begin.data() + count, is_node) &&
+                  std::all_of(end.data(), end.data() + count, is_node));
+    const nb::gil_scoped_release release;
+    ik::measure_pieces({chain, q.data(), slope.data(), bend.data(), u.data(), begin.data(), end.data(),
+                        share.data(), poses.data(), count, middle.data(), error.data()});
 }
 
 // See cspace::ik::Layers. Returns the states of the chain and its cost.
@@ -73,6 +93,8 @@ void bind_ik_tracking(nb::module_& m) {
     m.def("_ik_track", track_rows, "Follows branches along poses; q, last and info take the results.");
     m.def("_ik_path_rows", joint_path_rows,
           "Corrects q to the poses of a path; slope, bend and info take the results.");
+    m.def("_ik_measure_pieces", measure_pieces,
+          "Compares pieces of joint paths with poses; middle and error take the results.");
     m.def("_ik_cheapest_chain", cheapest_chain, "The cheapest chain of states, one of each layer.");
     m.def("_square_volumes", square_volumes, "Writes det(J Jᵀ) of Jacobians (n, 6, dof).");
 }

@@ -4,12 +4,12 @@
 #include <nanobind/stl/optional.h>
 
 #include <atomic>
-#include <memory>
 #include <new>
 
 #include "arrays_in_place.hpp"
 #include "cspace/math/threads.hpp"
 #include "kinematics.hpp"
+#include "library/scratch.hpp"
 
 using In = std::optional<ConstDoubles>;
 using Out = std::optional<Doubles>;
@@ -34,10 +34,6 @@ inline int velocities_of(const KinematicsObject& robot) {
     return robot.model->n_coordinates() + (robot.floating ? 6 : 0);
 }
 
-struct FreeAligned {
-    void operator()(void* memory) const { ::operator delete(memory, std::align_val_t(64)); }
-};
-
 inline constexpr std::size_t lanes = 8, rows_worth_a_thread = 2048;
 
 // Runs a kernel over all rows without the interpreter lock. False if a value of q is not finite.
@@ -48,8 +44,7 @@ bool run_kernel(const Rows& rows, npy_intp n, int threads, Kernel kernel) {
     const std::size_t bytes = scratch_bytes(rows);
     const bool finite = cspace::over_rows(std::size_t(n), threads, lanes, rows_worth_a_thread,
                                           [&](std::size_t begin, std::size_t end) {
-                                              const std::unique_ptr<void, FreeAligned> scratch(
-                                                  ::operator new(bytes, std::align_val_t(64), std::nothrow));
+                                              const cspace::Scratch scratch = cspace::try_scratch(bytes);
                                               if (!scratch) memory = false;
                                               return scratch && kernel(rows, begin, end, scratch.get());
                                           });

@@ -1,10 +1,9 @@
 #include "dynamics_roll_out.hpp"
 
 #include <algorithm>
-#include <memory>
-#include <new>
 
 #include "cspace/math/threads.hpp"
+#include "scratch.hpp"
 
 namespace cspace::dynamics {
 namespace {
@@ -17,15 +16,6 @@ constexpr auto short_while = std::chrono::microseconds(500);
 constexpr int adaptive_steps = 16;
 // States of a row that are worth a thread.
 constexpr long long steps_worth_a_thread = 2048;
-
-struct FreeAligned {
-    void operator()(void* memory) const { ::operator delete(memory, std::align_val_t(64)); }
-};
-using Scratch = std::unique_ptr<void, FreeAligned>;
-
-Scratch make_scratch(const RollOut& task) {
-    return Scratch(::operator new(scratch_bytes(task), std::align_val_t(64)));
-}
 
 bool is_any_running(const RollOut& task, std::size_t begin, std::size_t end) {
     return std::any_of(task.status + begin, task.status + end, [](int status) { return status == running; });
@@ -101,7 +91,7 @@ void over_parts(const RollOut& task, std::size_t rows, long long steps, int thre
     const std::size_t per_thread = std::size_t(std::max(1LL, steps_worth_a_thread / std::max(1LL, steps)));
     const std::size_t least = std::max(part_rows, per_thread);
     over_rows(rows, threads, part_rows, least, [&](std::size_t begin, std::size_t end) {
-        const Scratch scratch = make_scratch(task);
+        const Scratch scratch = make_scratch(scratch_bytes(task));
         for (; begin < end; begin += part_rows) f(begin, std::min(end, begin + part_rows), scratch.get());
         return true;
     });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "cspace/ik/tracking/layers.hpp"
 #include "cspace/model/chain.hpp"
@@ -37,6 +38,20 @@ struct JointPathRows {
     double *q, *slope, *bend, *info;
 };
 void correct_joint_path(const JointPathRows& rows);
+
+// Quintic pieces between nodes of joint paths, compared with the path at a place of each. q, slope, bend
+// (nodes, dof) and u (nodes): the joints, their derivatives and the parameters of the nodes. Piece k lies
+// between nodes begin[k] and end[k]; share[k] says where in it. poses (count, 16): of the path there. middle
+// (count, dof) takes the joints, error (count, 2) the distance of the tip from the path [m, rad].
+struct PieceRows {
+    const model::Chain& chain;
+    const double *q, *slope, *bend, *u;
+    const std::int64_t *begin, *end;
+    const double *share, *poses;
+    std::size_t count;
+    double *middle, *error;
+};
+void measure_pieces(const PieceRows& rows);
 
 // As find_cheapest_chain, heeding signals.
 LayerChain cheapest_chain(Layers layers);

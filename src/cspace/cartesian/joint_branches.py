@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -25,6 +27,7 @@ from cspace.ik.tracking.track import track
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_robot, limits_of
 from cspace.model import Limits
+from cspace.tables import one_line, shown
 from cspace.tolerances import PATH_START_ROUNDING, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
@@ -37,7 +40,7 @@ BESIDE_SINGULAR: Final = "the joints would have to jump beside a singular config
 NO_DEVIATION: Final = (np.inf, np.inf)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class JointBranch:
     """One branch along a Cartesian path: truthy if it reaches the end.
 
@@ -52,11 +55,20 @@ class JointBranch:
     s_end: float
     cause: str
     joint: str | None
-    reason: str
+    _explain: Callable[[], str]
     deviation: tuple[float, float]
 
     def __bool__(self) -> bool:
         return self.path is not None
+
+    def __repr__(self) -> str:
+        told = self.reason or f"follows the path to s = {shown(self.s_end)}"
+        return one_line("JointBranch", told)
+
+    @cached_property
+    def reason(self) -> str:
+        """Where it ends and why, as one sentence; empty if it reaches the end."""
+        return self._explain()
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,9 +194,9 @@ def make_branch(q_start: Array, found: Refined) -> JointBranch:
     """The branch of a joint path that was found, or that cannot go on somewhere."""
     if found.path is not None:
         path = begin_at(found.path, q_start)
-        return JointBranch(path, q_start, path.length, "end", None, "", found.deviation)
+        return JointBranch(path, q_start, path.length, "end", None, str, found.deviation)
     text = f"at s = {found.s_lost:.6g}: {BESIDE_SINGULAR}"
-    return JointBranch(None, q_start, found.s_lost, "singularity", None, text, NO_DEVIATION)
+    return JointBranch(None, q_start, found.s_lost, "singularity", None, lambda: text, NO_DEVIATION)
 
 
 def begin_at(path: Path, q_start: Array) -> Path:
@@ -208,15 +220,18 @@ def end_at_limits(branch: JointBranch, bounds: Limits, robot: KinematicModel) ->
         return branch
     name = robot.joint_names[end.joint]
     text = f"at s = {end.s:.6g}: {name} would leave its limits"
-    return JointBranch(None, branch.q_start, end.s, "limit", name, text, NO_DEVIATION)
+    return JointBranch(None, branch.q_start, end.s, "limit", name, lambda: text, NO_DEVIATION)
 
 
 def _ended(branch: Branch, s_of_row: Array) -> JointBranch:
     row = min(int(branch.end), len(s_of_row) - 2)
     s = float(s_of_row[row] + (branch.end - row) * (s_of_row[row + 1] - s_of_row[row]))
     first = branch.q[0] if len(branch.q) else branch.last
-    text = f"at s = {s:.6g}: {branch.explain_cause()}"
-    return JointBranch(None, first, s, branch.cause, branch.joint, text, NO_DEVIATION)
+
+    def explain() -> str:
+        return f"at s = {s:.6g}: {branch.explain_cause()}"
+
+    return JointBranch(None, first, s, branch.cause, branch.joint, explain, NO_DEVIATION)
 
 
 def _why_none(found: Track, branches: tuple[JointBranch, ...]) -> str:

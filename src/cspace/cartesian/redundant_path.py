@@ -175,4 +175,4 @@ class RedundantJoint:
 def end_of_chain(q: Array, s: float, cause: str, reason: str, dof: int) -> JointBranch:
     """The branch of a chain q (k, dof) that ends at s."""
     first = q[0] if len(q) else np.full(dof, np.nan)
-    return JointBranch(None, first, s, cause, None, reason, NO_DEVIATION)
+    return JointBranch(None, first, s, cause, None, lambda: reason, NO_DEVIATION)

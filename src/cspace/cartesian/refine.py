@@ -156,6 +156,7 @@ class _Refiner:
         first: tuple[Indices, Array],
     ) -> None:
         self.robot, self.path, self.correct, self.tolerance = robot, path, correct, tolerance
+        self.frame = frame_number(robot, None)
         piece, u = first
         T = path.poses_on(piece, u)
         self.count, n = q.shape[:2]
@@ -174,7 +175,7 @@ class _Refiner:
     def run(self) -> list[Refined]:
         done_begin, done_end = [], []
         while len(self.begin):
-            error, middle = self._measure(self.begin, self.end, np.full((len(self.begin), 1), 0.5))
+            error, middle = self._measure(self.begin, self.end, np.full(len(self.begin), 0.5))
             branch = self.branch[self.begin]
             alive = np.isinf(self.lost[branch])
             near = np.flatnonzero((error.max(axis=1) <= KEPT_SHARE * self.tolerance) & alive)
@@ -192,28 +193,20 @@ class _Refiner:
         np.minimum.at(self.lost, branch[bad], (self.path.breaks[piece] + u)[bad])
 
     def _measure(self, a: Indices, b: Indices, share: Array) -> tuple[Array, Sequence[Any]]:
-        """The errors (k, 2) [m, rad] at shares (k, 1) of pieces from nodes a to b, and what a node there
+        """The errors (k, 2) [m, rad] at shares (k,) of pieces from nodes a to b, and what a node there
         begins with."""
-        h = (self.u[b] - self.u[a])[:, None]
-        t, rest = share, 1.0 - share
-        front, back = rest**3 * (1.0 + 3.0 * t + 6.0 * t * t), t**3 * (1.0 + 3.0 * rest + 6.0 * rest * rest)
-        guess = front * self.q[a] + back * self.q[b]
-        guess += h * rest**3 * t * (1.0 + 3.0 * t) * self.slope[a]
-        guess -= h * t**3 * rest * (1.0 + 3.0 * rest) * self.slope[b]
-        bend = rest * self.bend[a] + t * self.bend[b]
-        guess += 0.5 * (h * t * rest) ** 2 * bend
-        piece, u = self.piece[a], self.u[a] + share[:, 0] * h[:, 0]
+        piece, u = self.piece[a], self.u[a] + share * (self.u[b] - self.u[a])
         T = self.path.poses_on(piece, u)
-        off = self.robot.fk(guess)[:, :3] - T[:, :3]
-        squares = np.einsum("kij,kij->kj", off, off)
-        error = np.sqrt(np.stack([squares[:, 3], 0.5 * squares[:, :3].sum(axis=1)], axis=1))
+        guess, error = np.empty((len(a), self.robot.dof)), np.empty((len(a), 2))
+        nodes = self.q, self.slope, self.bend, self.u
+        _core._ik_measure_pieces(self.robot, self.frame, *nodes, a, b, share, T, guess, error)
         return error, (piece, u, T, guess)
 
     def _measure_sides(self, rows: Indices) -> Array:
         """The larger errors (k, 2) of those at LOOKED_AT of pieces."""
         count = len(LOOKED_AT)
         a, b = (np.tile(node[rows], count) for node in (self.begin, self.end))
-        error, _ = self._measure(a, b, np.repeat(LOOKED_AT, len(rows))[:, None])
+        error, _ = self._measure(a, b, np.repeat(LOOKED_AT, len(rows)))
         return np.asarray(error.reshape(count, -1, 2).max(axis=0))
 
     def _halve(self, bad: NDArray[np.bool_], middle: Sequence[Any]) -> None:
