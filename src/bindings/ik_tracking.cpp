@@ -33,7 +33,7 @@ void track_rows(nb::handle robot, int frame, Goals poses, Matrix starts,
 }
 
 // See cspace::ik::JointPathRows.
-void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Matrix rates,
+void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Matrix rates, int locked,
                      Array<double, nb::ndim<2>> q, Array<double, nb::ndim<2>> slope,
                      Array<double, nb::ndim<2>> bend, Array<double, nb::shape<-1, 2>> info) {
     const model::Chain& chain = chain_on(robot, frame);
@@ -42,8 +42,8 @@ void joint_path_rows(nb::handle robot, int frame, Goals poses, Matrix twists, Ma
                   has_shape(q, count, dof) && has_shape(slope, count, dof) && has_shape(bend, count, dof) &&
                   info.shape(0) == count);
     const nb::gil_scoped_release release;
-    ik::correct_joint_path({chain, poses.data(), twists.data(), rates.data(), count, q.data(), slope.data(),
-                            bend.data(), info.data()});
+    ik::correct_joint_path({chain, poses.data(), twists.data(), rates.data(), count, locked, q.data(),
+                            slope.data(), bend.data(), info.data()});
 }
 
 // See cspace::ik::PieceRows.

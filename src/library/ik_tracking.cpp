@@ -64,7 +64,8 @@ void correct_joint_path(const JointPathRows& given) {
     std::fill_n(given.bend, dof * given.count, 0.0);
     if (given.count == 0) return;
     kernels::ik_path_rows({&on.path, on.number, dof, given.count, poses.data(), given.twists, given.rates,
-                           given.q, given.slope, given.bend, given.info, poll_interrupts});
+                           given.q, given.slope, given.bend, on.find(given.locked), given.info,
+                           poll_interrupts});
 }
 
 namespace {

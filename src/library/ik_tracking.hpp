@@ -30,11 +30,13 @@ void track_branches(const TrackRows& rows);
 
 // poses (count, 16); twists and rates (count, 6): their first two derivatives along the path, [v; ω] in base.
 // q (count, dof): guesses, corrected to the poses; slope and bend (count, dof) take the derivatives of the
-// joints, info (count, 2) the pose error that is left and how singular the arm is.
+// joints, info (count, 2) the pose error that is left and how singular the arm is. locked: a coordinate of
+// the robot that stays as it is, −1 for none.
 struct JointPathRows {
     const model::Chain& chain;
     const double *poses, *twists, *rates;
     std::size_t count;
+    int locked;
     double *q, *slope, *bend, *info;
 };
 void correct_joint_path(const JointPathRows& rows);

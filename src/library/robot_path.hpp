@@ -1,6 +1,7 @@
 // The path to a frame of a robot, reduced to the coordinates that move the frame.
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -33,6 +34,12 @@ struct RobotPath {
             path.joint[i].coordinate = j;
         }
         path.length = length_of(path);
+    }
+
+    // The coordinate of the path that is coordinate `of_robot` of the robot, −1 if none is.
+    int find(int of_robot) const {
+        const int* const found = std::find(number, number + path.n, of_robot);
+        return found == number + path.n ? -1 : int(found - number);
     }
 
     void gather(const double* of_robot, double* of_path) const {

@@ -14,7 +14,7 @@ from cspace.kinematics.manipulability import generic_rank
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.model import Limits
 from cspace.tolerances import CHAIN_AT_LIMIT, CHAIN_LEAST_VOLUME
-from cspace.trajectory.cartesian_path import CartesianPath
+from cspace.trajectory.cartesian_path import CartesianPath, Indices
 
 STATION_SPACING: Final = 0.04
 """[m or rad] Of the poses at which the redundant joint is chosen."""
@@ -77,6 +77,13 @@ class Freedom(Protocol):
         """Values (n,), from 0 on, that change as little as they can along poses (n, 4, 4)."""
 
 
+class MovableFreedom(Freedom, Protocol):
+    """A freedom whose configurations can be moved a little, so that a chain can be searched around."""
+
+    def move(self, T: Array, q: Array, values: Array) -> Array:
+        """The configurations near q (k, dof) of poses T (k, 4, 4) at values (k,); NaN where there is none."""
+
+
 @dataclass(frozen=True, eq=False)
 class Stations:
     """Parameters (n,) along a path, evenly spaced, and the poses (n, 4, 4) there."""
@@ -109,7 +116,7 @@ class ConfigurationChain:
 
 
 def find_chain(
-    robot: KinematicModel, freedom: Freedom, path: CartesianPath, bounds: Limits, start: Array | None
+    robot: KinematicModel, freedom: MovableFreedom, path: CartesianPath, bounds: Limits, start: Array | None
 ) -> tuple[Stations, ConfigurationChain]:
     """The chain along a path, and the stations; else how far it goes.
 
@@ -120,7 +127,7 @@ def find_chain(
     high, ended = path.length, None
     for _ in range(HALVINGS + 1):
         stations = Stations.of(path if tried == path.length else path.part(tried))
-        chain = ChainSearch(robot, freedom, stations, bounds, start).run()
+        chain = ChainSearch(robot, freedom, stations, bounds, start).run(freedom)
         if not chain.reason and tried == path.length:
             return stations, chain
         if not chain.reason:
@@ -140,7 +147,7 @@ def find_chain(
 
 class ChainSearch:
     """Finds the cheapest chain of configurations, one of each station: first among values that are
-    spread over the whole range, then among finer ones around the chain."""
+    spread over the whole range, then among those beside the chain."""
 
     def __init__(
         self,
@@ -159,31 +166,53 @@ class ChainSearch:
         self.middle = np.where(self.narrow, bounds.lower + self.half, 0.0)
         self.moves_freely = generic_rank(robot) == FULL_RANK
 
-    def run(self, *, refines: bool = True) -> ConfigurationChain:
-        """The chain with continuous angles, or how far it goes; refines: searches around it once more."""
+    def run(self, movable: MovableFreedom | None = None) -> ConfigurationChain:
+        """The chain with continuous angles, or how far it goes; movable: the freedom, to search around it."""
         values = self.freedom.spread_values()
         step = values[1] - values[0]
         if self.start is not None:  # one of the values is that of the start
             own = self.freedom.value_of(self.start, self.stations.T[0])
             values = values + (own - values[int(np.argmin(np.abs(values - own)))])
         every = self.freedom.carry(self.stations.T)[:, None] + values
-        coarse = self._search(every, self.freedom.is_ring, REACH)
-        if coarse.reason:
-            return coarse
-        if not refines:
-            return ConfigurationChain(self._unwrap(coarse.q), coarse.values)
-        parts = step / FINER * np.arange(-FINER, FINER + 1)
-        finer = self._search(coarse.values[:, None] + parts, False, 2 * FINER)
-        chain = coarse if finer.reason else finer
+        chain = self._search(every)
+        if chain.reason:
+            return chain
+        if movable is not None:
+            finer = self._search_around(chain, movable, step)
+            chain = chain if finer.reason else finer
         return ConfigurationChain(self._unwrap(chain.q), chain.values)
 
-    def _search(self, values: Array, is_ring: bool, reach: int) -> ConfigurationChain:
-        """The cheapest chain among the configurations at values (n, m)."""
+    def _search(self, values: Array) -> ConfigurationChain:
+        """The cheapest chain among all configurations at values (n, m)."""
         n, m = values.shape
         rows, count = self.freedom.solve(np.repeat(self.stations.T, m, axis=0), values.ravel())
         kept = np.arange(rows.shape[1]) < count[:, None]
-        q = self._into_limits(rows[kept])
         cell = np.repeat(np.arange(n * m), count)
+        return self._choose(values, rows[kept], cell, self.freedom.is_ring, REACH)
+
+    def _search_around(
+        self, chain: ConfigurationChain, movable: MovableFreedom, step: float
+    ) -> ConfigurationChain:
+        """The cheapest chain among the configurations beside a chain, up to a step of its values away."""
+        offsets = step / FINER * np.arange(-FINER, FINER + 1)
+        values = chain.values[:, None] + offsets
+        q = np.empty((*values.shape, self.robot.dof))
+        q[:, FINER] = chain.q
+        T, both = np.repeat(self.stations.T, 2, axis=0), np.array([-1, 1])
+        for k in range(1, FINER + 1):
+            near, at = q[:, FINER + (k - 1) * both], FINER + k * both
+            guess = near if k == 1 else 2.0 * near - q[:, FINER + (k - 2) * both]
+            moved = movable.move(T, guess.reshape(len(T), -1), values[:, at].ravel())
+            q[:, at] = moved.reshape(guess.shape)
+        cell = np.flatnonzero(np.isfinite(q[..., 0]))
+        return self._choose(values, q.reshape(-1, self.robot.dof)[cell], cell, False, 2 * FINER)
+
+    def _choose(
+        self, values: Array, q: Array, cell: Indices, is_ring: bool, reach: int
+    ) -> ConfigurationChain:
+        """The cheapest chain among configurations q (k, dof) of cells (k,), numbers of values (n, m)."""
+        n, m = values.shape
+        q = self._into_limits(q)
         inside = ((q >= self.bounds.lower) & (q <= self.bounds.upper) | self.wide).all(axis=1)
         q, cell = q[inside], cell[inside]
         if self.start is not None:

@@ -183,7 +183,7 @@ class FreeTurnPlanner:
         if not self.freedom:
             return self.follow_single_turns()
         robot = self.turn.robot
-        chain = ChainSearch(robot, self.turn, self.stations, self.turn.bounds, self.start).run(refines=False)
+        chain = ChainSearch(robot, self.turn, self.stations, self.turn.bounds, self.start).run()
         if chain.reason:
             return [end_of_chain(chain.q, chain.s_end, chain.cause, chain.reason, robot.dof)]
         q = np.append(chain.q, -np.unwrap(chain.values)[:, None], axis=1)

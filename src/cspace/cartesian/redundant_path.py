@@ -23,6 +23,7 @@ from cspace.cartesian.joint_branches import (
 from cspace.cartesian.refine import (
     JUMP_ROUNDS,
     Refined,
+    correct_locked,
     divide_intervals,
     find_lost_intervals,
     first_nodes,
@@ -161,6 +162,13 @@ class RedundantJoint:
     def solve(self, T: Array, values: Array) -> tuple[Array, Any]:
         """The solutions of poses with the joint at values."""
         return solve_locked_redundant(self.solver, T, values[:, None])
+
+    def move(self, T: Array, q: Array, values: Array) -> Array:
+        """The configurations near q (k, dof) of poses with the joint at values; NaN where there is none."""
+        joint = self.solver.redundant_joints[0]
+        near = np.array(q)
+        near[:, joint] += wrap_near(values - q[:, joint], 0.0) if self.is_ring else values - q[:, joint]
+        return correct_locked(self.solver, T, near, joint)
 
     def value_of(self, q: Array, T: Array) -> float:
         """The joint itself, in the ring where it is one."""

@@ -44,6 +44,10 @@ KEPT_SHARE: Final = 0.98
 """Of the tolerance at these places: between them errors are larger by less than a hundredth."""
 
 
+UNLOCKED: Final = -1
+"""All joints move where poses are corrected."""
+
+
 @dataclass(frozen=True, eq=False)
 class Nodes:
     """Configurations at poses of a path: q, its first two derivatives by s (n, dof), and the error that is
@@ -73,8 +77,20 @@ class LeastMotion:
         q = np.array(guess, order="C")
         slope, bend, info = np.empty_like(q), np.empty_like(q), np.empty((len(q), 2))
         twists = self.path.twists_on(piece, u)
-        _core._ik_path_rows(self.robot, frame_number(self.robot, None), T, *twists, q, slope, bend, info)
+        _core._ik_path_rows(
+            self.robot, frame_number(self.robot, None), T, *twists, UNLOCKED, q, slope, bend, info
+        )
         return Nodes(q, slope, bend, info[:, 0])
+
+
+def correct_locked(robot: KinematicModel, T: Array, q: Array, joint: int) -> Array:
+    """The configurations near q (k, dof) of poses T (k, 4, 4) with a joint where it is; NaN where there is
+    none."""
+    found = np.array(q, order="C")
+    still, spare, info = np.zeros((2, len(q), 6)), np.empty((2, *q.shape)), np.empty((len(q), 2))
+    _core._ik_path_rows(robot, frame_number(robot, None), T, *still, joint, found, *spare, info)
+    found[~(info[:, 0] <= PATH_POSE_LEFT)] = np.nan
+    return found
 
 
 @dataclass(frozen=True, eq=False)

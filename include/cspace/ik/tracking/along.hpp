@@ -20,6 +20,7 @@ struct PathRows {
     const double *twists, *rates;  // (count, 6): t and t'
     double* q;                     // (count, dof): guesses, corrected
     double *slope, *bend;          // (count, dof): q' and q''; columns that do not move are left alone
+    int locked;                    // a coordinate of the path that stays as it is, −1 for none
     double* info;    // (count, 2): pose error that is left, the least diagonal entry of the factored J
     void (*poll)();  // called now and then; throws to stop
 };
@@ -78,9 +79,9 @@ CSPACE_INLINE void store_path_rows(const PathRows& rows, std::size_t first, cons
 
 // Newton's method; a lane whose error is within rounding stays where it is.
 template <class V>
-CSPACE_INLINE void correct_rows(const Path& path, RowLanes<V>& lanes, Motion<V>& motion) {
+CSPACE_INLINE void correct_rows(const Path& path, int locked, RowLanes<V>& lanes, Motion<V>& motion) {
     for (int k = 0;; ++k) {
-        measure_motion(path, lanes.goal, lanes.twist, &lanes.rate, lanes.q, motion);
+        measure_motion(path, lanes.goal, lanes.twist, &lanes.rate, lanes.q, motion, locked);
         const mask_of<V> off = motion.error > track::met;
         if (k == track::most_corrections || !any(off)) return;
         for (int j = 0; j < path.n; ++j)
@@ -95,7 +96,7 @@ void correct_path(const PathRows& rows) {
     for (std::size_t first = 0; first < rows.count; first += std::size_t(Lanes<V>::count)) {
         if (rows.poll) rows.poll();
         load_path_rows(rows, first, lanes);
-        correct_rows(*rows.path, lanes, motion);
+        correct_rows(*rows.path, rows.locked, lanes, motion);
         store_path_rows(rows, first, lanes, motion);
     }
 }

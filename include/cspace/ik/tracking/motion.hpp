@@ -206,10 +206,11 @@ CSPACE_INLINE Twist<V> error_of(const Pose<V>& tip, const Pose<V>& goal, double 
 
 template <class V>
 CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& goal, const Twist<V>& twist,
-                                       const Twist<V>* rate, const V* q, Motion<V>& out) {
+                                       const Twist<V>* rate, const V* q, int locked, Motion<V>& out) {
     const PlacedJoints<V> at = place_joints(path, q);
     Twist<V> J[max_joints], turning;
     columns_of(path, n, at, J);
+    if (locked >= 0) clear_twist(J[locked]);
     Factors<V> f;
     factor_columns(n, J, f);
     out.weakest = f.weakest;
@@ -218,6 +219,7 @@ CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& g
     solve_for(f, e.entry, out.correction, unused);
     solve_for(f, twist.entry, out.slope, y);
     column_rates(path, n, at, out.slope, J);
+    if (locked >= 0) clear_twist(J[locked]);
     clear_twist(turning);
     if (rate) turning = *rate;
     for (int j = 0; j < n; ++j)
@@ -228,13 +230,13 @@ CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& g
 }
 
 // slope and bend are derivatives by the parameter of which twist and rate are the first two derivatives of
-// the pose; without a rate, the twist is constant.
+// the pose; without a rate, the twist is constant. locked: a coordinate that does not move, −1 for none.
 template <class V>
 CSPACE_NOINLINE void measure_motion(const Path& path, const Pose<V>& goal, const Twist<V>& twist,
-                                    const Twist<V>* rate, const V* q, Motion<V>& out) {
+                                    const Twist<V>* rate, const V* q, Motion<V>& out, int locked = -1) {
     // A number that the compiler knows unrolls the loops of most arms.
-    if (path.n == 6) return measure_coordinates(path, 6, goal, twist, rate, q, out);
-    measure_coordinates(path, path.n, goal, twist, rate, q, out);
+    if (path.n == 6) return measure_coordinates(path, 6, goal, twist, rate, q, locked, out);
+    measure_coordinates(path, path.n, goal, twist, rate, q, locked, out);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA
