@@ -42,10 +42,8 @@ class JerkTimer {
           velocity_(invert_limits(limits.velocity, padded_)),
           acceleration_(invert_limits(limits.acceleration, padded_)),
           jerk_(invert_limits(jerk, padded_)) {
-        for (size_t i = 0; i < count_; ++i) intervals_.push_back({grid.piece[i], grid.from[i], grid.to[i]});
-        path_ = {slope_degree(path),  padded_,           slopes_.data(),
-                 path.lengths.data(), velocity_.data(),  acceleration_.data(),
-                 jerk_.data(),        intervals_.data(), show_samples(samples_)};
+        path_ = {slope_degree(path),   padded_,      slopes_.data(), path.lengths.data(),   velocity_.data(),
+                 acceleration_.data(), jerk_.data(), grid.view(),    show_samples(samples_)};
         for (size_t i = 0; i < count_; ++i) length_.push_back(path_.length(i));
         rows_ = Aligned(count_ * path_.row_size());
         largest_.resize(count_);
@@ -318,7 +316,6 @@ class JerkTimer {
     TimingSamples samples_;
     Aligned slopes_, rows_{0};
     std::vector<double> velocity_, acceleration_, jerk_, length_, largest_, middle_, touched_, jerks_;
-    std::vector<Interval> intervals_;
     JerkPath path_{};
     std::vector<Squares> x_, change_;
     std::vector<Tangent> tangents_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "cspace/math/interrupts.hpp"
@@ -104,15 +105,14 @@ class PathTimer {
         memory_ = Aligned(size_t(3 * row_capacity(rows_)));
     }
 
+    // The grid has to last as long as it is timed.
     void set_grid(const TimingGrid& grid, const Sampler& sample) {
-        const size_t count = grid.size();
-        intervals_.resize(count);
-        stops_.assign(count + 1, 0);
-        visit_range(0, count, [&](size_t i) {
-            intervals_[i] = {grid.piece[i], grid.from[i], grid.to[i]};
+        count_ = grid.size();
+        stops_.assign(count_ + 1, 0);
+        visit_range(0, count_, [&](size_t i) {
             if (grid.from[i] == 0.0) stops_[i] = path_.stops[size_t(grid.piece[i])];
         });
-        rows_.intervals = intervals_.data();
+        rows_.intervals = grid.view();
         rows_.stops = stops_.data();
         rows_.sampled = {};
         if (!sample) return;
@@ -121,7 +121,6 @@ class PathTimer {
     }
 
     Timing solve() {
-        const size_t count = intervals_.size();
         Timing timing{TimingOutcome::timed, 0, 0.0, 0.0, {}, {}, true};
         const std::ptrdiff_t blocked = bound({end_, end_});
         if (blocked >= 0) {
@@ -133,7 +132,7 @@ class PathTimer {
         if (start_ < range_[0].low && end_ > 0.0) return explain_end(timing);
         if (!(range_[0].low <= start_ && start_ <= range_[0].high))
             return report(timing, TimingOutcome::start, range_[0]);
-        timing.squared_speed.assign(count + 1, 0.0);
+        timing.squared_speed.assign(count_ + 1, 0.0);
         raise(timing.squared_speed);
         return timing;
     }
@@ -159,10 +158,9 @@ class PathTimer {
     }
 
     std::ptrdiff_t bound(SpeedRange last) {
-        const size_t count = intervals_.size();
-        range_.assign(count + 1, {0.0, no_end});
-        range_[count] = last;
-        for (size_t end = count; end > 0;) {
+        range_.assign(count_ + 1, {0.0, no_end});
+        range_[count_] = last;
+        for (size_t end = count_; end > 0;) {
             const size_t begin = end > intervals_between_polls ? end - intervals_between_polls : 0;
             const std::ptrdiff_t blocked =
                 kernels::bound_path_speeds(rows_, begin, end, range_.data(), memory_.data());
@@ -174,10 +172,9 @@ class PathTimer {
     }
 
     void raise(std::vector<double>& speed) {
-        const size_t count = intervals_.size();
         speed[0] = start_;
-        for (size_t begin = 0; begin < count; begin += intervals_between_polls) {
-            const size_t end = std::min(count, begin + intervals_between_polls);
+        for (size_t begin = 0; begin < count_; begin += intervals_between_polls) {
+            const size_t end = std::min(count_, begin + intervals_between_polls);
             kernels::raise_path_speeds(rows_, begin, end, range_.data(), speed.data(), memory_.data());
             poll_interrupts();
         }
@@ -200,7 +197,7 @@ class PathTimer {
         }
         if (!(range_[0].low <= start_ && start_ <= range_[0].high))
             return report(timing, TimingOutcome::start, range_[0]);
-        std::vector<double> speed(intervals_.size() + 1);
+        std::vector<double> speed(count_ + 1);
         raise(speed);
         return report(timing, TimingOutcome::end, {0.0, speed.back()});
     }
@@ -212,7 +209,7 @@ class PathTimer {
     std::vector<double> acceleration_, velocity_, least_inverse_square_;
     TimingSamples samples_;
     TimedRows rows_{};
-    std::vector<Interval> intervals_;
+    size_t count_ = 0;  // of the intervals
     std::vector<signed char> stops_;
     std::vector<SpeedRange> range_;
 };
@@ -233,26 +230,33 @@ TimingGrid divide_pieces(const TimingPath& path, const std::vector<size_t>& part
 // A halved grid, and of every part the interval that it is from.
 struct Halved {
     TimingGrid grid;
-    std::vector<size_t> parent;
+    std::vector<std::uint32_t> parent;
 };
 
 template <class Splits>
 Halved halve(const TimingGrid& grid, const Splits& splits) {
+    std::vector<char> is_split(grid.size());
+    size_t count = grid.size();
+    visit_range(0, grid.size(), [&](size_t i) {
+        is_split[i] = grid.to[i] - grid.from[i] > least_part && splits(i);
+        count += size_t(is_split[i]);
+    });
     Halved made;
+    made.grid.piece.reserve(count);
+    made.grid.from.reserve(count);
+    made.grid.to.reserve(count);
+    made.parent.reserve(count);
     const auto add = [&](size_t i, double from, double to) {
         made.grid.piece.push_back(grid.piece[i]);
         made.grid.from.push_back(from);
         made.grid.to.push_back(to);
-        made.parent.push_back(i);
+        made.parent.push_back(std::uint32_t(i));
     };
     visit_range(0, grid.size(), [&](size_t i) {
         const double from = grid.from[i], to = grid.to[i], middle = 0.5 * (from + to);
-        if (to - from > least_part && splits(i)) {
-            add(i, from, middle);
-            add(i, middle, to);
-        } else {
-            add(i, from, to);
-        }
+        if (!is_split[i]) return add(i, from, to);
+        add(i, from, middle);
+        add(i, middle, to);
     });
     return made;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "cspace/trajectory/path_rows.hpp"
 #include "library/trajectory_path.hpp"
 
 namespace cspace::trajectory {
@@ -21,6 +22,7 @@ struct TimingGrid {
     std::vector<double> from, to;
 
     std::size_t size() const { return piece.size(); }
+    Intervals view() const { return {piece.data(), from.data(), to.data()}; }
 };
 
 // Limits that are sampled along the path, as of SampledLimits: along, across, offset (3 intervals, joints) or

@@ -34,8 +34,10 @@ struct OnePiece {
         part.to = std::min(1.0, part.from + std::exp(draw(-6.0, 0.0)));
     }
     TimedRows rows() const {
-        return {degree,      joints,      padded, slopes.data(), &length, &least,
-                ones.data(), ones.data(), &part,  stops,         {}};
+        return {degree,        joints,      padded,
+                slopes.data(), &length,     &least,
+                ones.data(),   ones.data(), {&part.piece, &part.from, &part.to},
+                stops,         {}};
     }
     // q' and q'' of a joint at a share of the interval, by de Casteljau.
     std::array<double, 2> slope_and_bend(int j, double share) const {

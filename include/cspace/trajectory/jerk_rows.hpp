@@ -18,12 +18,10 @@ struct JerkPath {
     int degree, padded;
     const double *slopes, *lengths;
     const double *inverse_velocity, *inverse_acceleration, *inverse_jerk;
-    const Interval* intervals;
+    Intervals intervals;
     SampledLimits sampled;  // those of torques, or none
 
-    double length(std::size_t i) const {
-        return (intervals[i].to - intervals[i].from) * lengths[intervals[i].piece];
-    }
+    double length(std::size_t i) const { return intervals.length(i, lengths); }
     // Numbers of one interval: three factors of X for every row of the accelerations, then of the jerks; then
     // three factors and an offset for the sampled limits at three places, and for the speed of a frame.
     std::size_t own_rows() const { return std::size_t(3 * (2 * degree + 3) * padded); }
@@ -111,7 +109,7 @@ template <int m>
 inline double build_jerk_rows(const JerkPath& path, std::size_t i, double* rows) {
     using V = Pack<native_width>;
     const double length = path.length(i), per = 1.0 / length;
-    const Interval& part = path.intervals[i];
+    const Interval part = path.intervals[i];
     const double* slopes = path.slopes + std::size_t(part.piece) * std::size_t((m + 1) * path.padded);
     const double squares[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double accelerations[2][3] = {{-per, per, 0}, {0, -per, per}};

@@ -27,6 +27,18 @@ struct Interval {
     double from, to;
 };
 
+// The intervals of a grid.
+struct Intervals {
+    const int* piece;
+    const double *from, *to;
+
+    Interval operator[](std::size_t i) const { return {piece[i], from[i], to[i]}; }
+    // Of the parameter, for pieces of these lengths.
+    double length(std::size_t i, const double* lengths) const {
+        return (to[i] - from[i]) * lengths[piece[i]];
+    }
+};
+
 // Limits that are not polynomials along the path, sampled at the ends and the middles of the intervals:
 // offset + along·(path acceleration) + across·(squared speed) stays within ±limit of each row, less margin.
 // Row s has the values of place s / 2 of the grid; a place where two pieces meet has those of both sides, so
@@ -47,13 +59,11 @@ struct TimedRows {
     const double* least_inverse_square;  // (pieces,): of the squared path speed
     const double* inverse_acceleration;  // (padded,) [s²/rad or s²/m], 0 without a limit
     const double* inverse_velocity;      // (padded,)
-    const Interval* intervals;
+    Intervals intervals;
     const signed char* stops;  // (intervals + 1,): 1 where the path has to stand
     SampledLimits sampled;
 
-    double length(std::size_t i) const {
-        return (intervals[i].to - intervals[i].from) * lengths[intervals[i].piece];
-    }
+    double length(std::size_t i) const { return intervals.length(i, lengths); }
 };
 
 // Numbers of rows that build_rows writes at most, in multiples of the widest pack.
@@ -218,7 +228,7 @@ CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memo
     using V = Pack<native_width>;
     const int capacity = row_capacity(path), padded = path.padded;
     Rows rows{memory, memory + capacity, memory + 2 * capacity, 0, no_end, no_end};
-    const Interval& part = path.intervals[i];
+    const Interval part = path.intervals[i];
     const double length = path.length(i);
     const double* slopes = path.slopes + std::size_t(part.piece) * std::size_t((m + 1) * padded);
     V squares[2 * m + 1];
