@@ -9,4 +9,8 @@ void add_panel_products(double* panels, int first, int last, const double* X, co
     add_products(panels, first, last, X, Y, stride, rank);
 }
 
+void add_weighted_vectors(double* const* to, int count, const WeightedVectors& from) {
+    add_weighted(to, count, from);
+}
+
 }  // namespace cspace::localization::inline CSPACE_ISA

@@ -14,6 +14,9 @@ struct KernelPanels {
                     std::ptrdiff_t stride, int rank) {
         kernels::add_panel_products(panels, first, last, X, Y, stride, rank);
     }
+    static void add_weighted(double* const* to, int count, const WeightedVectors& from) {
+        kernels::add_weighted_vectors(to, count, from);
+    }
 };
 
 std::array<double, 3> write_pose(const PlanarSpace::Pose& pose) {

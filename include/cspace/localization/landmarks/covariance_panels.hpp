@@ -17,6 +17,15 @@ inline constexpr int panel_rows = 4;
 // Where a panel begins.
 constexpr std::size_t panel_offset(std::size_t panel) { return 8 * panel * (panel + 1); }
 
+// Vectors that are `stride` numbers apart, with factors of each: factor i of vector k is factors[k step + i].
+struct WeightedVectors {
+    const double* X;
+    std::ptrdiff_t stride;
+    int rank;
+    const double* factors;
+    std::ptrdiff_t step;
+};
+
 }  // namespace cspace::localization
 
 namespace cspace::localization::inline CSPACE_ISA {
@@ -71,6 +80,26 @@ CSPACE_INLINE void add_products(double* panels, int first, int last, const doubl
     for (; p + 3 <= last; p += 3) add_to_panels<3>(panels, p, X, Y, stride, rank);
     if (last - p == 2) add_to_panels<2>(panels, p, X, Y, stride, rank);
     if (last - p == 1) add_to_panels<1>(panels, p, X, Y, stride, rank);
+}
+
+// to_i += Σ_k factor_ki X_k, whose lengths are the stride.
+template <int count>
+CSPACE_INLINE void add_weighted_to(double* const* to, const WeightedVectors& from) {
+    for (std::ptrdiff_t c = 0; c < from.stride; c += panel_rows) {
+        FrontPack sum[count];
+        for (int i = 0; i < count; ++i) sum[i] = load_pack(to[i] + c);
+        const double *x = from.X + c, *factor = from.factors;
+        for (int k = 0; k < from.rank; ++k, x += from.stride, factor += from.step) {
+            const FrontPack own = load_pack(x);
+            for (int i = 0; i < count; ++i) sum[i] = mul_add(own, fill<FrontPack>(factor[i]), sum[i]);
+        }
+        for (int i = 0; i < count; ++i) store_pack(to[i] + c, sum[i]);
+    }
+}
+// The same for two or three vectors to_i.
+CSPACE_INLINE void add_weighted(double* const* to, int count, const WeightedVectors& from) {
+    if (count == 2) add_weighted_to<2>(to, from);
+    if (count == 3) add_weighted_to<3>(to, from);
 }
 
 }  // namespace cspace::localization::inline CSPACE_ISA

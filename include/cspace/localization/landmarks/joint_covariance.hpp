@@ -19,11 +19,14 @@ namespace cspace::localization {
 
 using Vector3 = std::array<double, 3>;
 
-// The kernel of the headers alone.
+// The kernels of the headers alone.
 struct HeaderPanels {
     static void add(double* panels, int first, int last, const double* X, const double* Y,
                     std::ptrdiff_t stride, int rank) {
         add_products(panels, first, last, X, Y, stride, rank);
+    }
+    static void add_weighted(double* const* to, int count, const WeightedVectors& from) {
+        localization::add_weighted(to, count, from);
     }
 };
 
@@ -91,12 +94,10 @@ class JointCovariance {
             for (std::size_t r = 0; r < panel_rows; ++r)
                 first[panel_rows * p + r] = from[r], second[panel_rows * p + r] = from[panel_rows + r];
         }
-        for (int k = 0; k < change_.all(); ++k) {
-            const double* const x = change_.x.data() + std::size_t(k) * change_.stride;
-            const double* const y = change_.y.data() + std::size_t(k) * change_.stride + 2 * j;
-            for (std::size_t c = 0; c < change_.stride; ++c)
-                first[c] += x[c] * y[0], second[c] += x[c] * y[1];
-        }
+        const auto stride = std::ptrdiff_t(change_.stride);
+        double* const columns[] = {first, second};
+        Kernel::add_weighted(columns, 2,
+                             {change_.x.data(), stride, change_.all(), change_.y.data() + 2 * j, stride});
     }
 
     // The pose moves: every error gains b times that of the heading, and the noise in axes of the map.
@@ -165,11 +166,14 @@ class JointCovariance {
     void apply_update() {
         for (int k = 0; k < change_.rank; ++k) {
             const Vector3 &x = change_.pose_x[std::size_t(k)], &y = change_.pose_y[std::size_t(k)];
-            const double* along = change_.x_of(k);
-            for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t i = 0; i < 3; ++i)
                 for (std::size_t j = 0; j < 3; ++j) pose_[3 * i + j] += x[i] * y[j];
-                for (std::size_t c = 0; c < padded(); ++c) cross_[i][c] += y[i] * along[c];
-            }
+        }
+        if (change_.rank > 0) {
+            double* const columns[] = {cross_[0].data(), cross_[1].data(), cross_[2].data()};
+            Kernel::add_weighted(
+                columns, 3,
+                {change_.x_of(0), std::ptrdiff_t(change_.stride), change_.rank, change_.pose_y[0].data(), 3});
         }
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < i; ++j)
