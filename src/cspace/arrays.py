@@ -7,7 +7,7 @@ import operator
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,8 @@ __all__ += ["any_array", "bounded_number", "guard_memory", "one_array", "shape_o
 __all__ += ["whole_number"]
 
 Array = npt.NDArray[np.float64]
+
+LARGEST_FLOAT: Final = sys.float_info.max
 
 
 def as_floats(
@@ -42,7 +44,9 @@ def as_floats(
     if shape != last and not _fits(shape, last):
         wanted = "(..., " + ", ".join("k" if n is None else str(n) for n in last) + ")"
         raise InputError(f"{subject} has shape {array.shape}, expected {wanted}")
-    if finite and not _all_finite(array):
+    if (not finite and largest is None) or _all_within(array, LARGEST_FLOAT if largest is None else largest):
+        return array
+    if finite and not np.isfinite(array).all():
         bad = tuple(map(int, np.argwhere(~np.isfinite(array))[0]))
         raise InputError(f"{subject} {_entry(array, bad)}; all must be finite")
     if largest is not None and (np.abs(array) > largest).any():
@@ -248,11 +252,11 @@ def _fits(shape: tuple[int, ...], last: tuple[int | None, ...]) -> bool:
     return len(shape) == len(last) and all(n is None or n == m for n, m in zip(last, shape, strict=True))
 
 
-def _all_finite(array: Array) -> bool:
-    """np.isfinite(array).all(); a few numbers are faster looked at one by one."""
+def _all_within(array: Array, largest: float) -> bool:
+    """Whether no entry is NaN or larger than that; a few numbers are faster looked at one by one."""
     if array.size <= 16:
-        return all(map(math.isfinite, array.ravel().tolist()))
-    return bool(np.isfinite(array).all())
+        return all(abs(value) <= largest for value in array.ravel().tolist())
+    return bool(array.min() >= -largest and array.max() <= largest)
 
 
 def as_generator(rng: int | np.random.Generator | None) -> np.random.Generator:
