@@ -50,7 +50,10 @@ void bind_localization_particles(nb::module_& m) {
              "Systematic resampling; the number of occupied bins.")
         .def("find_modes", &ParticleCloud::find_modes,
              "Poses (k, 3), covariances (k, 9) and shares (k,) of the clusters.")
-        .def("poses", &ParticleCloud::poses, "(n, 3)")
+        .def("poses", nb::overload_cast<>(&ParticleCloud::poses, nb::const_), "(n, 3)")
+        .def("poses", nb::overload_cast<std::size_t, std::size_t>(&ParticleCloud::poses, nb::const_),
+             "begin"_a, "end"_a, "Those from begin to end − 1: (k, 3).")
+        .def("heaviest", &ParticleCloud::heaviest, "The pose with the most weight: (1, 3).")
         .def("weights", &ParticleCloud::weights, "(n,)")
         .def("draw_normals", &ParticleCloud::draw_normals, "count"_a, WithoutLock(),
              "Standard normal numbers (count, 3) of a step of their own.");

@@ -1136,8 +1136,16 @@ class ParticleCloud:
     def find_modes(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """Poses (k, 3), covariances (k, 9) and shares (k,) of the clusters."""
 
+    @overload
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
         """(n, 3)"""
+
+    @overload
+    def poses(self, begin: int, end: int) -> numpy.typing.NDArray[numpy.float64]:
+        """Those from begin to end − 1: (k, 3)."""
+
+    def heaviest(self) -> numpy.typing.NDArray[numpy.float64]:
+        """The pose with the most weight: (1, 3)."""
 
     def weights(self) -> numpy.typing.NDArray[numpy.float64]:
         """(n,)"""

@@ -328,11 +328,21 @@ std::tuple<Table<double>, Table<double>, Table<double>> ParticleCloud::find_mode
     return made;
 }
 
-Table<double> ParticleCloud::poses() const {
+Table<double> ParticleCloud::poses() const { return poses(0, state_->size); }
+
+Table<double> ParticleCloud::heaviest() const {
+    const auto& weights = state_->weights;
+    const auto end = weights.begin() + std::ptrdiff_t(state_->size);
+    const std::size_t best = std::size_t(std::max_element(weights.begin(), end) - weights.begin());
+    return poses(best, best + 1);
+}
+
+Table<double> ParticleCloud::poses(std::size_t begin, std::size_t end) const {
     const State& s = *state_;
     Table<double> table{{}, 3};
-    table.values.reserve(3 * s.size);
-    visit_range(0, s.size, [&](std::size_t i) {
+    end = std::min(end, s.size);
+    table.values.reserve(end > begin ? 3 * (end - begin) : 0);
+    visit_range(std::min(begin, end), end, [&](std::size_t i) {
         for (const double value : {s.now.x[i], s.now.y[i], angle_of(s.now.headings[i])})
             table.values.push_back(value);
     });

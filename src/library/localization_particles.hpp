@@ -68,8 +68,11 @@ class ParticleCloud {
     std::size_t resample(std::size_t least, double error, double z);
     // The modes: poses (k, 3), covariances (k, 9) in base, shares of the weight (k,).
     std::tuple<Table<double>, Table<double>, Table<double>> find_modes() const;
-    Table<double> poses() const;    // (n, 3)
-    Table<double> weights() const;  // (n,), of sum 1
+    Table<double> poses() const;  // (n, 3)
+    // Those from begin to end − 1, and the one with the most weight, the first of equals.
+    Table<double> poses(std::size_t begin, std::size_t end) const;
+    Table<double> heaviest() const;  // (1, 3)
+    Table<double> weights() const;   // (n,), of sum 1
     // Numbers that a draw of this cloud gives, for whoever places particles.
     Table<double> draw_normals(std::size_t count);  // (count, 3)
 

@@ -18,7 +18,7 @@ from cspace.localization.particles.models import (
     ScanModel,
     make_model,
 )
-from cspace.localization.particles.placing import FreePlaces, lift_share, spread_poses
+from cspace.localization.particles.placing import BLOCK, FreePlaces, lift_share, spread_poses
 from cspace.localization.particles.recovery import LEAST_SCORE, MOST_UNKNOWN, ScoreMonitor, add_doubt
 from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
@@ -251,15 +251,17 @@ class ParticleFilter(Running):
         logs = self.model.correct(scan, poses)
         if logs is None:
             return
-        away = find_twist(poses[:, None], self._cloud.poses())
-        nearest = np.argmin(np.square(away).sum(axis=-1), axis=0)
-        self._cloud.add_logs(share * logs[nearest])
+        added = np.empty(len(self._cloud))
+        for begin in range(0, len(added), BLOCK):
+            block = slice(begin, begin + BLOCK)
+            away = find_twist(poses[:, None], self._cloud.poses(block.start, block.stop))
+            added[block] = share * logs[np.argmin(np.square(away).sum(axis=-1), axis=0)]
+        self._cloud.add_logs(added)
         self._found = None
 
     def _best(self) -> Array:
         """The heaviest particle (3,)."""
-        best: Array = self._cloud.poses()[int(np.argmax(self._cloud.weights()))]
-        return best
+        return np.asarray(self._cloud.heaviest()[0])
 
     def _search(self, scan: Any, judged: Judgement) -> Judgement:
         """Puts half of the particles on the best other places, at the start all; the new judgement."""
@@ -294,12 +296,14 @@ class ParticleFilter(Running):
         the first ones."""
         cloud = self._cloud
         cloud.resample(least, SIZE_ERROR, SIZE_QUANTILE)
-        kept = cloud.poses()[::2]
+        rows = cloud.poses()
+        kept = (len(rows) + 1) // 2
+        rows[:kept] = rows[::2]
         P = np.diag(np.square(PLACE_DEVIATIONS))
-        added = spread_poses(cloud, poses, P, self._places, len(cloud) - len(kept))
-        cloud.place(np.ascontiguousarray(np.concatenate([kept, added])))
+        rows[kept:] = spread_poses(cloud, poses, P, self._places, len(rows) - kept)
+        cloud.place(rows)
         self._found = None
-        return len(kept)
+        return kept
 
     def _note_status(self) -> None:
         status = self.status

@@ -19,6 +19,9 @@ START_SLACK: Final = 0.3
 LANDMARK_REACH: Final = 10.0
 """How far around landmarks particles are put [m] where the range of the sensor is not limited."""
 
+BLOCK: Final = 1 << 16
+"""Poses that are made at once: their intermediate numbers take a tenth of the memory of a million poses."""
+
 LEAST_WEIGHT: Final = 2.0**-32
 """The unit of weights, over the greatest."""
 
@@ -45,13 +48,20 @@ class FreePlaces:
 
     def draw(self, count: int, rng: np.random.Generator) -> Array:
         """Poses (count, 3) anywhere, with any heading."""
-        if self.blocked is None:
-            points = rng.uniform(self.low, self.high, (count, 2))
-        else:
-            free = np.flatnonzero(~self.blocked.ravel())
-            rows, columns = np.divmod(free[rng.integers(len(free), size=count)], self.blocked.shape[1])
-            points = self.low + self.side * (np.stack([columns, rows], axis=-1) + rng.random((count, 2)))
-        return np.column_stack([points, rng.uniform(-np.pi, np.pi, count)])
+        free = None if self.blocked is None else np.flatnonzero(~self.blocked.ravel())
+        poses = np.empty((count, 3))
+        for begin in range(0, count, BLOCK):
+            block = poses[begin : begin + BLOCK]
+            block[:, :2] = self._draw_points(free, len(block), rng)
+            block[:, 2] = rng.uniform(-np.pi, np.pi, len(block))
+        return poses
+
+    def _draw_points(self, free: npt.NDArray[np.intp] | None, count: int, rng: np.random.Generator) -> Array:
+        """Points (count, 2) in the cells of numbers `free` (k,), or between the bounds."""
+        if self.blocked is None or free is None:
+            return rng.uniform(self.low, self.high, (count, 2))
+        rows, columns = np.divmod(free[rng.integers(len(free), size=count)], self.blocked.shape[1])
+        return np.asarray(self.low + self.side * (np.stack([columns, rows], -1) + rng.random((count, 2))))
 
     def are_free(self, points: Array) -> npt.NDArray[np.bool_]:
         """Whether points (k, 2) lie in free cells: (k,)."""
@@ -99,11 +109,15 @@ def spread_poses(
     cloud: _core.ParticleCloud, centers: Array, covariance: Array, places: FreePlaces, count: int
 ) -> Array:
     """Poses (count, 3) around centers (k, 3) in turn, T exp(w) with w normal; in walls the center instead."""
-    around = np.resize(centers, (count, 3))
+    poses = np.empty((count, 3))
     values, vectors = np.linalg.eigh(covariance)
-    w = cloud.draw_normals(count) * np.sqrt(np.maximum(values, 0.0)) @ vectors.T
-    moved = move_pose(around, w)
-    return np.where(places.are_free(moved[:, :2])[:, None], moved, around)
+    for begin in range(0, count, BLOCK):
+        block = poses[begin : begin + BLOCK]
+        around = centers[np.arange(begin, begin + len(block)) % len(centers)]
+        w = cloud.draw_normals(len(block)) * np.sqrt(np.maximum(values, 0.0)) @ vectors.T
+        moved = move_pose(around, w)
+        block[:] = np.where(places.are_free(moved[:, :2])[:, None], moved, around)
+    return poses
 
 
 def lift_share(cloud: _core.ParticleCloud, count: int, least: float) -> None:
