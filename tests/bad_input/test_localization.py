@@ -208,3 +208,17 @@ def test_every_argument_is_used_or_refused(function, usual):
                     pass
                 except Exception as error:
                     raise AssertionError(f"{name}={value!r:.60}: {error!r}") from error
+
+
+@pytest.mark.parametrize("size", [1e16, 1e154, 1e200, 1e308])
+@pytest.mark.parametrize("name", ["range", "bearing", "points"])
+def test_numbers_of_logs_and_maps_whose_squares_overflow_are_named(name, size):
+    given = {"range": [1.0, 2.0], "bearing": [0.0, 0.1], "points": [[0.0, 0.0], [1.0, 0.0]]}
+    given[name][1] = [size, 0.0] if name == "points" else -size if name == "bearing" else size
+    with pytest.raises(CspaceError, match=name):
+        use_numbers(given["points"], given["range"], given["bearing"])
+
+
+def use_numbers(points, distance, bearing):
+    """A map and readings."""
+    return localization.Landmarks([1, 2], points), localization.Readings([0, 1], [1, 2], distance, bearing)
