@@ -153,11 +153,14 @@ class SolverOf : public GraphSolver {
         const LoopEvidence<Space> evidence(graph_);
         ScaledAnswer best = find_loops(rule, start, 1, evidence);
         take_answer(best);
-        const double fit = evidence.measure_fit(best.answer.squares, best.answer.is_used);
-        const double share = evidence.measure_share(best.answer.is_used);
-        if (fit > information_scale::most_fit || share < information_scale::few_kept)
-            try_scales(rule, start, evidence, best);
+        if (may_be_larger(evidence, best)) try_scales(rule, start, evidence, best);
         return best.answer.status;
+    }
+    // Whether what is kept fits badly, or hardly anything is kept.
+    static bool may_be_larger(const LoopEvidence<Space>& evidence, const ScaledAnswer& found) {
+        const double fit = evidence.measure_fit(found.answer.squares, found.answer.is_used) / found.scale;
+        return fit > information_scale::most_fit ||
+               evidence.measure_share(found.answer.is_used) < information_scale::few_kept;
     }
     // Takes the answers of larger scales while they explain more.
     void try_scales(const SolveRule& rule, const GraphState<Space>& start,
@@ -170,7 +173,7 @@ class SolverOf : public GraphSolver {
                 next.cost + information_scale::odds < best.cost &&
                 evidence.measure_share(next.answer.is_used) >= information_scale::least_kept;
             if (is_better) best = std::move(next), take_answer(best);
-            if (!is_better && step >= information_scale::least_steps) return;
+            if (is_better ? !may_be_larger(evidence, best) : step >= information_scale::least_steps) return;
         }
     }
     void take_answer(const ScaledAnswer& found) {

@@ -56,6 +56,7 @@ def load_map(path: Path, resolution: float | None) -> Any:
     if resolution is not None:
         raise UsageError(f"--resolution is for images; {path} is a text of landmarks")
     from cspace.localization import Landmarks
+    from cspace.localization.log import read_names
     from cspace.localization.logs.lines import read_lines
 
     lines = read_lines(str(path))
@@ -68,7 +69,7 @@ def load_map(path: Path, resolution: float | None) -> Any:
         spread = np.zeros((len(rows), 2, 2))
         spread[:, 0, 0], spread[:, 1, 1] = rows[:, 3] ** 2, rows[:, 4] ** 2
     try:
-        return Landmarks(rows[:, 0], rows[:, 1:3], spread)
+        return Landmarks(read_names(rows[:, 0], "names", len(rows)), rows[:, 1:3], spread)
     except CspaceError as error:
         raise lines.error(number, str(error)) from None
 
