@@ -131,3 +131,35 @@ def test_false_loops_alone_are_all_rejected(shape):
         )
         kept = set(np.flatnonzero(~false.consecutive).tolist()) - rejected(false, "dcs")
         assert len(kept) <= 3
+
+
+@pytest.mark.parametrize("robust", ["dcs", "gnc", "best"])
+@pytest.mark.parametrize("factor", [1.0, 100.0])
+def test_false_sightings_go_and_landmarks_are_found(robust, factor):
+    """Also where the first sighting of a landmark is false, from which dead reckoning had placed it."""
+    for seed in range(4):
+        rng = np.random.default_rng([seed, 11])
+        n, step = 60, np.array([0.5, 0.0, 0.2])
+        T = np.array([cs.exp_se2(k * step) for k in range(n)])
+        places = rng.uniform(-3, 8, (6, 2))
+        seen = np.array([(k, m) for k in range(n) for m in range(6)])
+        points = np.einsum("kji,kj->ki", T[seen[:, 0], :2, :2], places[seen[:, 1]] - T[seen[:, 0], :2, 2])
+        points += rng.normal(0, 0.02, points.shape)
+        false = np.unique(np.r_[rng.choice(len(seen), 50, replace=False), 2])
+        points[false] += rng.choice([-1, 1], (len(false), 2)) * rng.uniform(1, 4, (len(false), 2))
+        noise = cs.exp_se2(rng.normal(0, 0.01, (n - 1, 3)))
+        answer = cs.PoseGraph(
+            poses=np.zeros((n, 3)),
+            edges=np.stack([np.arange(n - 1), np.arange(1, n)], axis=1),
+            motions=cs.to_xytheta(cs.exp_se2(step) @ noise),
+            information=factor * 1e4 * np.eye(3),
+            landmarks=np.zeros((6, 2)),
+            sightings=seen,
+            points=points,
+            point_information=factor * np.eye(2) / 0.02**2,
+        ).optimize(robust=robust)
+        gone = set(answer.rejected_sightings.tolist())
+        assert answer
+        assert gone >= set(false.tolist())
+        assert len(gone - set(false.tolist())) <= 3
+        assert np.abs(answer.landmarks - places).max() < 0.1
