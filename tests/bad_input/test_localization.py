@@ -222,3 +222,28 @@ def test_numbers_of_logs_and_maps_whose_squares_overflow_are_named(name, size):
 def use_numbers(points, distance, bearing):
     """A map and readings."""
     return localization.Landmarks([1, 2], points), localization.Readings([0, 1], [1, 2], distance, bearing)
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        -np.eye(2),
+        [[1, 5], [0, 1]],
+        [[1, 2], [2, 1]],
+        1e100 * np.eye(2),
+        np.full((2, 2), np.nan),
+        np.diag([1, -1e-6]),
+    ],
+)
+def test_covariances_of_a_map_that_are_none_are_named(matrix):
+    good = np.zeros((2, 2))
+    assert len(localization.Landmarks([7, 8], [[0, 0], [1, 1]], [good, np.eye(2)])) == 2
+    with pytest.raises(CspaceError, match="covariances"):
+        localization.Landmarks([7, 8], [[0, 0], [1, 1]], [good, matrix])
+
+
+@pytest.mark.parametrize("size", [1e16, 1e200, 1e308])
+@pytest.mark.parametrize("base", [BASE, mobile.Mecanum(0.05, 0.2, 0.2)])
+def test_twists_beyond_all_vehicles_are_named(base, size):
+    with pytest.raises(CspaceError, match="twist"):
+        base.wheel_speeds([size, 0, size])

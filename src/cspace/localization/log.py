@@ -13,7 +13,7 @@ from cspace.mobile import Odometry, TimedPoses
 from cspace.mobile.timed_poses import read_rows, read_times
 from cspace.spatial import as_pose_2d
 from cspace.tables import count_things, one_line
-from cspace.tolerances import FARTHEST_POINT
+from cspace.tolerances import COVARIANCE_SYMMETRY, FARTHEST_POINT
 
 Ids = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
@@ -100,7 +100,7 @@ class Landmarks:
         object.__setattr__(self, "names", names)
         object.__setattr__(self, "points", points)
         if self.covariances is not None:
-            object.__setattr__(self, "covariances", read_rows(self.covariances, "covariances", names, (2, 2)))
+            object.__setattr__(self, "covariances", read_covariances(self.covariances, names))
 
     def __len__(self) -> int:
         """How many landmarks there are."""
@@ -277,6 +277,21 @@ def read_names(values: npt.ArrayLike, subject: str, count: int | None) -> Ids:
     if count is not None and len(numbers) != count:
         raise InputError(f"{subject} has {len(numbers)} rows; expected {count}, one per row")
     return numbers.astype(np.int64)
+
+
+def read_covariances(values: npt.ArrayLike, names: Ids) -> Array:
+    """Covariances (m, 2, 2) of points; InputError for the first one that is none."""
+    largest = FARTHEST_POINT**2
+    matrices = read_rows(as_floats(values, "covariances", largest=largest), "covariances", names, (2, 2))
+    rounding = COVARIANCE_SYMMETRY * np.abs(matrices).max(axis=(1, 2), initial=0.0)
+    across = np.abs(matrices[:, 0, 1] - matrices[:, 1, 0])
+    bad = np.flatnonzero((across > rounding) | (np.linalg.eigvalsh(matrices)[:, 0] < -rounding))
+    if len(bad):
+        raise InputError(
+            f"covariances of landmark {names[bad[0]]} is not symmetric and positive semi-definite; give"
+            " variances on the diagonal, np.diag(...)"
+        )
+    return matrices
 
 
 def read_column(values: npt.ArrayLike, subject: str, count: int) -> Array:
