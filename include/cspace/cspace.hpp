@@ -32,6 +32,7 @@
 #include "cspace/localization/graph/certificate.hpp"
 #include "cspace/localization/graph/false_loops.hpp"
 #include "cspace/localization/graph/incremental_graph.hpp"
+#include "cspace/localization/graph/information_scale.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
 #include "cspace/localization/landmarks/fast_slam.hpp"
 #include "cspace/localization/particles/beam_scores.hpp"

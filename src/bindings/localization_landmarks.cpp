@@ -8,6 +8,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "cspace/localization/landmarks/rejection_sum.hpp"
 #include "maps_points.hpp"
 
 namespace nb = nanobind;
@@ -99,6 +100,13 @@ auto list_counts(const LandmarkFilter& filter) {
 }  // namespace
 
 void bind_localization_landmarks(nb::module_& m) {
+    nb::class_<RejectionSum>(m, "RejectionSum", "When a filter is lost: a sum of rejected measurements.")
+        .def(nb::init<int>(), "lost_after"_a)
+        .def("accept", &RejectionSum::accept, "A measurement fits.")
+        .def(
+            "reject", &RejectionSum::reject,
+            "A measurement does not; whether so many in a row were rejected that the covariance is inflated.")
+        .def_prop_ro("is_lost", &RejectionSum::is_lost);
     nb::class_<LandmarkFilter>(m, "LandmarkFilter", "A filter on a pose and landmarks.")
         .def("predict", &LandmarkFilter::predict, "increment"_a, "noise"_a, "Moves the pose.")
         .def(

@@ -1218,6 +1218,22 @@ class LaserSlamRun:
     def loops(self) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32]]:
         """The same of all loops that were found."""
 
+class RejectionSum:
+    """When a filter is lost: a sum of rejected measurements."""
+
+    def __init__(self, lost_after: int) -> None: ...
+
+    def accept(self) -> None:
+        """A measurement fits."""
+
+    def reject(self) -> bool:
+        """
+        A measurement does not; whether so many in a row were rejected that the covariance is inflated.
+        """
+
+    @property
+    def is_lost(self) -> bool: ...
+
 class LandmarkFilter:
     """A filter on a pose and landmarks."""
 

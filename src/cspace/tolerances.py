@@ -814,6 +814,9 @@ one direction: centimetres beside tenths of degrees leave 1e-4, rounding 1e-16."
 UNIFORM_ANGLE: Final = 3.2899
 """Variance of an angle that is uniform on the circle [rad²], π²/3: a larger one is none of an angle."""
 
+LARGEST_IN_GRAPH: Final = 1e100
+"""Largest number of a pose graph: the square of a position, times an information, stays far from overflow."""
+
 GRAPH_STEP: Final = 1e-5
 """Largest entry of the last step of a pose graph [m or rad]: a hundredth of a millimetre, and the next step
 of Gauss-Newton is smaller by far."""

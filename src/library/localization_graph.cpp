@@ -5,6 +5,7 @@
 
 #include "cspace/localization/graph/certificate.hpp"
 #include "cspace/localization/graph/false_loops.hpp"
+#include "cspace/localization/graph/information_scale.hpp"
 #include "cspace/localization/graph/initial_guess.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
 #include "localization_fronts.hpp"
@@ -140,13 +141,56 @@ class SolverOf : public GraphSolver {
         found_start_ = found.has_value();
         if (found) state_ = std::move(*found);
     }
+    // What a robust method found, with the information divided by a scale.
+    struct ScaledAnswer {
+        RobustAnswer<Space> answer;  // its squares are those of the graph
+        double scale = 1, cost = 0;
+        GraphStats stats;
+        int failed_block = -1;
+    };
     GraphStatus reject_loops(const SolveRule& rule) {
-        FalseLoopSolver<Space, KernelFronts> solver(graph_, rule.options);
         const GraphState<Space> start = state_;
+        const LoopEvidence<Space> evidence(graph_);
+        ScaledAnswer best = find_loops(rule, start, 1, evidence);
+        take_answer(best);
+        if (may_be_larger(evidence, best)) try_scales(rule, start, evidence, best);
+        return best.answer.status;
+    }
+    // Whether what is kept fits badly, or hardly anything is kept.
+    static bool may_be_larger(const LoopEvidence<Space>& evidence, const ScaledAnswer& found) {
+        const double fit = evidence.measure_fit(found.answer.squares, found.answer.is_used) / found.scale;
+        return fit > information_scale::most_fit ||
+               evidence.measure_share(found.answer.is_used) < information_scale::few_kept;
+    }
+    // Takes the answers of larger scales while they explain more.
+    void try_scales(const SolveRule& rule, const GraphState<Space>& start,
+                    const LoopEvidence<Space>& evidence, ScaledAnswer& best) {
+        double scale = 1;
+        for (int step = 1; step <= information_scale::most_steps; ++step) {
+            scale *= information_scale::factor;
+            ScaledAnswer next = find_loops(rule, start, scale, evidence);
+            const bool is_better =
+                next.cost + information_scale::odds < best.cost &&
+                evidence.measure_share(next.answer.is_used) >= information_scale::least_kept;
+            if (is_better) best = std::move(next), take_answer(best);
+            if (is_better ? !may_be_larger(evidence, best) : step >= information_scale::least_steps) return;
+        }
+    }
+    void take_answer(const ScaledAnswer& found) {
+        state_ = found.answer.state, is_used_ = found.answer.is_used;
+        limit_scale_ = found.answer.scale * found.scale;
+        stats_ = found.stats;
+        singular_ = found.answer.status == GraphStatus::singular ? variable_of(found.failed_block) : -1;
+        weights_ = {};
+    }
+    ScaledAnswer find_loops(const SolveRule& rule, const GraphState<Space>& start, double scale,
+                            const LoopEvidence<Space>& evidence) {
+        const PoseGraph<Space> scaled = divide_information(graph_, scale);
+        FalseLoopSolver<Space, KernelFronts> solver(scaled, rule.options);
         std::vector<RobustAnswer<Space>> answers;
         const auto keep_answer = [&](RobustAnswer<Space> answer) {
             answers.push_back(std::move(answer));
-            state_ = answers[0].state, is_used_ = answers[0].is_used;
+            if (scale == 1) state_ = answers[0].state, is_used_ = answers[0].is_used;
         };
         if (rule.false_loops != FalseLoops::gnc) {
             for (double share : scaling_widths)
@@ -155,21 +199,22 @@ class SolverOf : public GraphSolver {
         }
         if (rule.false_loops != FalseLoops::dcs) keep_answer(solver.graduate(start));
         // One scale for all, of the answer that knows most.
-        const double scale =
+        const double limits =
             std::max_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
                 return solver.count_kept(a) < solver.count_kept(b);
             })->scale;
-        const RobustAnswer<Space> best = solver.select_loops(
+        ScaledAnswer found;
+        found.answer = solver.select_loops(
             *std::min_element(answers.begin(), answers.end(), [&](const auto& a, const auto& b) {
-                return solver.truncated_cost(a, scale) < solver.truncated_cost(b, scale);
+                return solver.truncated_cost(a, limits) < solver.truncated_cost(b, limits);
             }));
-        state_ = best.state, is_used_ = best.is_used;
-        limit_scale_ = best.scale;
-        stats_ = solver.optimizer().stats();
-        singular_ =
-            best.status == GraphStatus::singular ? variable_of(solver.optimizer().failed_block()) : -1;
-        weights_ = {};
-        return best.status;
+        found.scale = scale;
+        found.stats = solver.optimizer().stats();
+        found.failed_block = solver.optimizer().failed_block();
+        for (double& square : found.answer.squares) square *= scale;
+        for (double& cost : found.stats.costs) cost *= scale;
+        found.cost = evidence.measure_cost(found.answer.squares, found.answer.is_used, scale);
+        return found;
     }
     // Whether two answers agree, and keep more than a few of the doubted measurements; where loops start out
     // far they do not.

@@ -208,3 +208,42 @@ def test_every_argument_is_used_or_refused(function, usual):
                     pass
                 except Exception as error:
                     raise AssertionError(f"{name}={value!r:.60}: {error!r}") from error
+
+
+@pytest.mark.parametrize("size", [1e16, 1e154, 1e200, 1e308])
+@pytest.mark.parametrize("name", ["range", "bearing", "points"])
+def test_numbers_of_logs_and_maps_whose_squares_overflow_are_named(name, size):
+    given = {"range": [1.0, 2.0], "bearing": [0.0, 0.1], "points": [[0.0, 0.0], [1.0, 0.0]]}
+    given[name][1] = [size, 0.0] if name == "points" else -size if name == "bearing" else size
+    with pytest.raises(CspaceError, match=name):
+        use_numbers(given["points"], given["range"], given["bearing"])
+
+
+def use_numbers(points, distance, bearing):
+    """A map and readings."""
+    return localization.Landmarks([1, 2], points), localization.Readings([0, 1], [1, 2], distance, bearing)
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        -np.eye(2),
+        [[1, 5], [0, 1]],
+        [[1, 2], [2, 1]],
+        1e100 * np.eye(2),
+        np.full((2, 2), np.nan),
+        np.diag([1, -1e-6]),
+    ],
+)
+def test_covariances_of_a_map_that_are_none_are_named(matrix):
+    good = np.zeros((2, 2))
+    assert len(localization.Landmarks([7, 8], [[0, 0], [1, 1]], [good, np.eye(2)])) == 2
+    with pytest.raises(CspaceError, match="covariances"):
+        localization.Landmarks([7, 8], [[0, 0], [1, 1]], [good, matrix])
+
+
+@pytest.mark.parametrize("size", [1e16, 1e200, 1e308])
+@pytest.mark.parametrize("base", [BASE, mobile.Mecanum(0.05, 0.2, 0.2)])
+def test_twists_beyond_all_vehicles_are_named(base, size):
+    with pytest.raises(CspaceError, match="twist"):
+        base.wheel_speeds([size, 0, size])

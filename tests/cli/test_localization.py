@@ -201,3 +201,44 @@ def test_what_goes_wrong_is_named(line, code, part):
     result = cspace(line)
     assert result.code == code
     assert part in result.err
+
+
+@pytest.mark.parametrize(
+    ("line", "part"),
+    [
+        (f"slam {GRAPH} --robot 2", "--robot"),
+        (f"slam {GRAPH} --seed 2", "--seed"),
+        (f"slam {DRIVE} --method ekf --seed 2", "no effect with ekf"),
+        (f"localize {DRIVE} --resolution 0.1", "no effect without"),
+        (f"localize {DRIVE} --map {{}} --resolution 0.1", "is a text of landmarks"),
+    ],
+)
+def test_options_without_effect_are_refused(tmp_path, line, part):
+    landmarks = tmp_path / "map.txt"
+    landmarks.write_text("6 2 -1\n7 5 1.5\n8 2 4\n9 -1 1.5\n")
+    result = cspace(line.format(landmarks))
+    assert result.code == Exit.USAGE
+    assert part in result.err
+
+
+@pytest.mark.parametrize(
+    "text", ["", "# nothing\n", "6.5 2 -1\n", "6 2 -1\n6 3 1\n", "-2 1 1\n", "6 1e300 0\n"]
+)
+def test_landmarks_that_are_no_map_are_named_with_their_file(tmp_path, text):
+    landmarks = tmp_path / "map.txt"
+    landmarks.write_text(text)
+    result = cspace(f"localize {DRIVE} --map {landmarks}")
+    assert result.code == Exit.BAD_FILE
+    assert f"{landmarks}:1: " in result.err
+
+
+@pytest.mark.parametrize(
+    "line", ["VERTEX_SE2", "EDGE_SE2 0", "FIX x", "EDGE_SE2 0 1 1", "VERTEX_SE2 " + "9" * 5000]
+)
+def test_cut_graphs_are_named_with_their_line(tmp_path, line):
+    graph = tmp_path / "cut.g2o"
+    graph.write_text(f"VERTEX_SE2 0 0 0 0\n{line}\n")
+    result = cspace(f"slam {graph}")
+    assert result.code == Exit.BAD_FILE
+    assert f"{graph}:2: " in result.err
+    assert len(result.err) < 400 + len(str(graph))

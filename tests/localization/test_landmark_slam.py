@@ -529,6 +529,33 @@ def test_a_kidnapped_robot_says_so():
         assert run.stats.inflations > 0
 
 
+ROUND = [(0, 0), (9, 0), (9, 6), (0, 6), (0, 0.5), (8, 0.5), (8.5, 5.5), (0.5, 5.5)]
+
+
+@pytest.mark.parametrize("run_filter", [run_ekf_slam, run_fast_slam])
+@pytest.mark.parametrize("share", [0.0, 0.2, 0.85, 1.0])
+def test_a_filter_is_lost_where_most_readings_contradict_its_map(run_filter, share):
+    """From half time on a share of the readings is of other landmarks than it says: some fit by chance."""
+    for seed in range(4):
+        rng = np.random.default_rng([seed, 5])
+        points = rng.uniform([-1.5, -1.5], [10.5, 7.5], (16, 2))
+        drive = cs.navigation.follow(ROUND, vehicle=cs.Unicycle())
+        sensor = RangeBearing(range_sigma=0.1, bearing_sigma=0.02, most_range=4.0)
+        log = simulate(drive, Landmarks(range(16), points), sensor=sensor, rng=seed)
+        half, end = 0.5 * log.readings.times[-1], log.readings.times[-1]
+        is_wrong = (log.readings.times > half) & (rng.random(len(log.readings)) < share)
+        names = np.where(is_wrong, rng.permutation(16)[log.readings.landmark], log.readings.landmark)
+        wrong = replace(log, readings=replace(log.readings, landmark=names))
+        run = run_filter(wrong, sensor=sensor, start=log.truth.poses[0])
+        assert not run.lost[run.times < half].any()
+        late = run.lost[(run.times > 0.6 * end)]
+        if share > 0.5:
+            assert late.mean() > 0.7
+            assert not run
+        else:
+            assert late.mean() < 0.02
+
+
 def test_wrong_names_are_rejected():
     log = log_of(10, 40.0)
     names = log.readings.landmark.copy()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import re
 import warnings
 
 import numpy as np
@@ -119,13 +120,44 @@ def test_mutated_files_are_read_whole_or_refused(tmp_path, name, seed):
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_files_cut_anywhere(tmp_path, name):
-    """Of a text cut between two lines the rest is a log; of one cut inside of a line the line is named."""
-    data = FILES[name].encode()
+def test_files_cut_anywhere_hold_the_beginning_or_name_the_cut_line(tmp_path, name):
+    """Of a text cut between two lines the rest is a log, which begins as the whole does; of one cut inside of
+    a line, that line is named, or its numbers are others."""
+    text = FILES[name]
     path = tmp_path / "cut.log"
-    for size in range(0, len(data), 7):
-        path.write_bytes(data[:size])
-        read_or_refuse(path)
+    path.write_text(text)
+    whole, counts = list_rows(read_or_refuse(path)), []
+    for size in range(len(text)):
+        path.write_text(text[:size])
+        log = read_quietly(path)
+        line = text.count("\n", 0, size) + 1
+        if isinstance(log, str):
+            assert path.name in log
+            named = re.search(r"cut\.log:(\d+)", log)
+            assert text[:size].strip() == "" or name == "corrected" or named is None or int(named[1]) == line
+            continue
+        rows = list_rows(log)
+        cut = int(not text[:size].endswith("\n"))
+        for part, found in rows.items():
+            clean = max(0, len(found) - cut)
+            assert np.array_equal(found[:clean], whole[part][:clean], equal_nan=True)
+            assert len(found) <= len(whole[part])
+        counts.append(sum(map(len, rows.values())))
+    assert len(counts) > text.count("\n") // 2
+    assert counts[-1] == sum(map(len, whole.values()))
+
+
+def list_rows(log: Log | None) -> dict[str, np.ndarray]:
+    """The rows of numbers of each part of a log."""
+    assert log is not None
+    rows = {"steps": log.odometry.steps}
+    if log.scans is not None:
+        rows["ranges"] = log.scans.ranges
+    if log.readings is not None:
+        rows["readings"] = np.stack([log.readings.landmark, log.readings.range], axis=1)
+    if log.truth is not None:
+        rows["truth"] = log.truth.poses
+    return rows
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
+from cspace.errors import InputError
 from cspace.maps import ByteField
 
 
@@ -161,3 +162,11 @@ def test_icp_needs_points():
     field = ByteField(np.ones((3, 3), np.uint8), 0.1, np.zeros(2))
     with pytest.raises(cs.CspaceError, match="another scan"):
         cs.match_scan([[1.0, 0.0]], field, method="icp")
+
+
+@pytest.mark.parametrize("window", [(100.0, 3.0), (100.0, 0.5), (60.0, 3.1), (30.0, 3.1)])
+def test_windows_of_too_many_poses_are_refused(window):
+    """Their places exceed 32 bits, which had ended in a crash."""
+    points = np.random.default_rng(0).uniform(-3, 3, (60, 2))
+    with pytest.raises(InputError, match="search_pose"):
+        cs.match_scan(points, points, window=window, resolution=0.02)

@@ -53,11 +53,14 @@ def load_map(path: Path, resolution: float | None) -> Any:
         from cspace.cli.verbs.nav import load_world
 
         return load_world(path, resolution)
+    if resolution is not None:
+        raise UsageError(f"--resolution is for images; {path} is a text of landmarks")
     from cspace.localization import Landmarks
+    from cspace.localization.log import read_names
     from cspace.localization.logs.lines import read_lines
 
     lines = read_lines(str(path))
-    number, words = next(lines.rows(), (0, []))
+    number, words = next(lines.rows(), (1, []))
     if len(words) not in (3, 5):
         raise lines.error(number, "a map of landmarks has lines NAME X Y, or NAME X Y SX SY")
     rows = lines.table(len(words), "name, x, y and maybe the standard deviations of both")
@@ -66,7 +69,7 @@ def load_map(path: Path, resolution: float | None) -> Any:
         spread = np.zeros((len(rows), 2, 2))
         spread[:, 0, 0], spread[:, 1, 1] = rows[:, 3] ** 2, rows[:, 4] ** 2
     try:
-        return Landmarks(rows[:, 0].astype(np.int64), rows[:, 1:3], spread)
+        return Landmarks(read_names(rows[:, 0], "names", len(rows)), rows[:, 1:3], spread)
     except CspaceError as error:
         raise lines.error(number, str(error)) from None
 

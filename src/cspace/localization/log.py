@@ -13,6 +13,7 @@ from cspace.mobile import Odometry, TimedPoses
 from cspace.mobile.timed_poses import read_rows, read_times
 from cspace.spatial import as_pose_2d
 from cspace.tables import count_things, one_line
+from cspace.tolerances import COVARIANCE_SYMMETRY, FARTHEST_POINT
 
 Ids = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
@@ -89,7 +90,7 @@ class Landmarks:
     covariances: Array | None = None
 
     def __post_init__(self) -> None:
-        points = one_array(self.points, "points", (None, 2))
+        points = one_array(self.points, "points", (None, 2), largest=FARTHEST_POINT)
         names = read_names(self.names, "names", len(points))
         if len(names) and names.min() < 0:
             raise InputError(f"names has {names.min()}; names are whole numbers from 0, and −1 means unknown")
@@ -99,7 +100,7 @@ class Landmarks:
         object.__setattr__(self, "names", names)
         object.__setattr__(self, "points", points)
         if self.covariances is not None:
-            object.__setattr__(self, "covariances", read_rows(self.covariances, "covariances", names, (2, 2)))
+            object.__setattr__(self, "covariances", read_covariances(self.covariances, names))
 
     def __len__(self) -> int:
         """How many landmarks there are."""
@@ -148,7 +149,8 @@ class Fixes:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "times", read_times(self.times))
-        object.__setattr__(self, "points", read_rows(self.points, "points", self.times, (2,)))
+        points = as_floats(self.points, "points", largest=FARTHEST_POINT)
+        object.__setattr__(self, "points", read_rows(points, "points", self.times, (2,)))
 
     def __len__(self) -> int:
         """How many fixes there are."""
@@ -277,9 +279,25 @@ def read_names(values: npt.ArrayLike, subject: str, count: int | None) -> Ids:
     return numbers.astype(np.int64)
 
 
+def read_covariances(values: npt.ArrayLike, names: Ids) -> Array:
+    """Covariances (m, 2, 2) of points; InputError for the first one that is none."""
+    largest = FARTHEST_POINT**2
+    matrices = read_rows(as_floats(values, "covariances", largest=largest), "covariances", names, (2, 2))
+    rounding = COVARIANCE_SYMMETRY * np.abs(matrices).max(axis=(1, 2), initial=0.0)
+    across = np.abs(matrices[:, 0, 1] - matrices[:, 1, 0])
+    bad = np.flatnonzero((across > rounding) | (np.linalg.eigvalsh(matrices)[:, 0] < -rounding))
+    if len(bad):
+        raise InputError(
+            f"covariances of landmark {names[bad[0]]} is not symmetric and positive semi-definite; give"
+            " variances on the diagonal, np.diag(...)"
+        )
+    return matrices
+
+
 def read_column(values: npt.ArrayLike, subject: str, count: int) -> Array:
     """A column in which NaN means not measured; InputError for infinity, or another number of rows."""
     column = np.array(as_floats(values, subject, finite=False), ndmin=1)
+    as_floats(np.where(np.isfinite(column), column, 0.0), subject, largest=FARTHEST_POINT)
     if column.shape != (count,):
         raise InputError(f"{subject} has shape {column.shape}; expected ({count},), one number per time")
     if np.isinf(column).any():

@@ -16,6 +16,7 @@ from cspace.arrays import Array, as_floats, bounded_number, one_number, positive
 from cspace.errors import InputError
 from cspace.mobile.arcs import drive
 from cspace.tables import join_words
+from cspace.tolerances import FARTHEST_POINT
 
 Floats = npt.ArrayLike
 
@@ -51,7 +52,7 @@ class WheelBase(ABC):
 
         Raises InputError for a twist that the wheels do not allow, such as a slide of a differential drive.
         """
-        xi = as_floats(twist, "twist", last=(3,))
+        xi = as_floats(twist, "twist", last=(3,), largest=FARTHEST_POINT)
         self._check_allowed(xi)
         return np.asarray(xi @ self.wheel_matrix.T)
 

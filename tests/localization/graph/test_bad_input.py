@@ -122,3 +122,24 @@ def test_a_graph_cannot_be_changed():
     graph = random_graph(np.random.default_rng(1))
     with pytest.raises(ValueError, match="read-only"):
         graph.poses[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("given", [{"width": 2.0}, {"width": 2.0, "robust": "gnc"}, {"trusted": [True] * 3}])
+@pytest.mark.parametrize("start", [None, "given"])
+def test_options_without_effect_are_refused(given, start):
+    graph = cs.PoseGraph(np.zeros((3, 3)), [(0, 1), (1, 2), (0, 2)], np.zeros((3, 3)), np.eye(3))
+    with pytest.raises(InputTypeError, match=next(iter(given))):
+        graph.optimize(start=start, **given)
+    assert graph.optimize(start="odometry", trusted=[True, True, False])
+    assert graph.optimize(kernel="huber", width=2.0)
+    assert graph.optimize(robust="dcs", width=2.0, trusted=[True, True, False])
+
+
+@pytest.mark.parametrize("robust", [None, "dcs", "gnc", "best"])
+@pytest.mark.parametrize("empty", [[], np.zeros((0, 3, 3)), np.eye(3)])
+def test_a_pose_alone_is_a_graph(robust, empty):
+    answer = cs.PoseGraph(poses=[[1, 2, 0.5]], edges=[], motions=[], information=empty).optimize(
+        robust=robust
+    )
+    assert answer
+    assert np.array_equal(answer.poses, [[1, 2, 0.5]])

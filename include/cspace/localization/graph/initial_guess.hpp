@@ -7,6 +7,7 @@
 // that closes loops.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <optional>
@@ -160,17 +161,28 @@ void place_by_bearings(const PoseGraph<Space>& graph, GraphState<Space>& state,
     }
 }
 
-// Landmarks where their first complete sighting has them.
+// Landmarks at the median of where their first complete sightings have them: one of these may be false, and
+// dead reckoning drifts.
 template <class Space>
 void place_landmarks(const PoseGraph<Space>& graph, GraphState<Space>& state) {
+    constexpr std::size_t most_sightings = 5;
     std::vector<char> is_placed = graph.is_landmark_held;
+    std::vector<std::vector<typename Space::Point>> places(is_placed.size());
     for (const Sighting<Space>& seen : graph.sightings) {
-        if (is_placed[std::size_t(seen.landmark)]) continue;
+        auto& own = places[std::size_t(seen.landmark)];
+        if (is_placed[std::size_t(seen.landmark)] || own.size() == most_sightings) continue;
         const auto point = find_seen_point(seen);
-        if (!point) continue;
-        state.landmarks[std::size_t(seen.landmark)] =
-            Space::to_map(state.poses[std::size_t(seen.pose)], point->z);
-        is_placed[std::size_t(seen.landmark)] = 1;
+        if (point) own.push_back(Space::to_map(state.poses[std::size_t(seen.pose)], point->z));
+    }
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        if (places[k].empty()) continue;
+        const auto middle = places[k].begin() + std::ptrdiff_t((places[k].size() - 1) / 2);
+        for (std::size_t axis = 0; axis < Space::dimension; ++axis) {
+            std::nth_element(places[k].begin(), middle, places[k].end(),
+                             [&](const auto& p, const auto& q) { return p[axis] < q[axis]; });
+            state.landmarks[k][axis] = (*middle)[axis];
+        }
+        is_placed[k] = 1;
     }
     place_by_bearings(graph, state, is_placed);
 }
@@ -206,7 +218,7 @@ void reckon_from(const PoseGraph<Space>& graph, std::vector<char> is_known, Grap
     }
 }
 
-// Dead reckoning from the held poses, and landmarks where their first sighting has them.
+// Dead reckoning from the held poses, and landmarks where their first sightings have them.
 template <class Space>
 GraphState<Space> reckon_poses(const PoseGraph<Space>& graph) {
     GraphState<Space> state = graph.start;

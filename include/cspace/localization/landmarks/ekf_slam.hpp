@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "cspace/localization/landmarks/joint_compatibility.hpp"
+#include "cspace/localization/landmarks/rejection_sum.hpp"
 
 namespace cspace::localization {
 
@@ -38,7 +39,8 @@ class EkfSlam {
           first_{pose_.x, pose_.y},
           gate_(rule.landmarks.gate),
           pairing_gate_(rule.landmarks.pair_share),
-          new_gate_(rule.landmarks.new_share) {
+          new_gate_(rule.landmarks.new_share),
+          rejections_(rule.landmarks.lost_after) {
         P_.pose() = turn_covariance(covariance, pose_.c, pose_.s);
     }
 
@@ -80,7 +82,7 @@ class EkfSlam {
     bool is_confirmed(const MappedLandmark& landmark) const {
         return row_of_.contains(landmark.name) || landmark.seen >= rule_.landmarks.confirmed_after;
     }
-    bool is_lost() const { return rejected_in_row_ >= rule_.landmarks.lost_after; }
+    bool is_lost() const { return rejections_.is_lost(); }
     const LandmarkCounts& counts() const { return counts_; }
     const EkfSlamRule& rule() const { return rule_; }
 
@@ -101,7 +103,7 @@ class EkfSlam {
     std::unordered_map<std::int64_t, int> row_of_;  // of landmarks that readings name
     std::int64_t next_name_ = 0;
     ChiSquareGate gate_, pairing_gate_, new_gate_;
-    int rejected_in_row_ = 0;
+    RejectionSum rejections_;
     LandmarkCounts counts_;
     std::vector<ReadingOutcome> outcomes_;
     std::vector<MeasuredNumbers> numbers_;
@@ -146,10 +148,9 @@ class EkfSlam {
         pairs_.push_back({reading, j});
         MappedLandmark& landmark = landmarks_[std::size_t(j)];
         ++landmark.seen, landmark.missed = 0;
-        rejected_in_row_ = 0;
     }
     void reject() {
-        if (++rejected_in_row_ % rule_.landmarks.lost_after) return;
+        if (!rejections_.reject()) return;
         ++counts_.inflations;
         for (double& p : P_.pose()) p *= inflation;
     }
@@ -170,7 +171,10 @@ class EkfSlam {
         const ReadingModel seen = model(k, j, at);
         const double nis = measure_nis(seen, j);
         note_innovation(k, seen, nis);
-        if (nis <= gate_.limit(seen.count)) return pair_reading(k, j);
+        if (nis <= gate_.limit(seen.count)) {
+            rejections_.accept();
+            return pair_reading(k, j);
+        }
         outcomes_[k].verdict = ReadingVerdict::rejected;
         reject();
     }
@@ -207,7 +211,10 @@ class EkfSlam {
             }
         }
         const bool expected = miss_landmarks(at);
-        if (!any_fits && expected) reject();
+        if (!pairs_.empty())
+            rejections_.accept();
+        else if (!any_fits && expected)
+            reject();
     }
     // Counts the landmarks in view that no reading saw; whether a confirmed one was expected.
     bool miss_landmarks(const SensorPose& at) {

@@ -20,6 +20,7 @@
 #include "cspace/localization/graph/residuals.hpp"
 #include "cspace/localization/landmarks/ekf_slam.hpp"
 #include "cspace/localization/landmarks/landmark_chunks.hpp"
+#include "cspace/localization/landmarks/rejection_sum.hpp"
 #include "cspace/math/counter_draws.hpp"
 
 namespace cspace::localization {
@@ -65,7 +66,8 @@ class FastSlam {
           chunks_(rule.particles),
           gate_(rule.landmarks.gate),
           pair_gate_(rule.landmarks.pair_share),
-          new_gate_(rule.landmarks.new_share) {}
+          new_gate_(rule.landmarks.new_share),
+          rejections_(rule.landmarks.lost_after) {}
 
     void predict(const Pose& increment, const Covariance3& noise) {
         pending_ = PlanarSpace::compose(pending_, increment);
@@ -131,7 +133,7 @@ class FastSlam {
     const std::vector<double>& shares() const { return shares_; }
     std::size_t particles() const { return poses_.size(); }
     std::size_t chunks() const { return chunks_.used(); }
-    bool is_lost() const { return rejected_in_row_ >= rule_.landmarks.lost_after; }
+    bool is_lost() const { return rejections_.is_lost(); }
     const LandmarkCounts& counts() const { return counts_; }
     double effective() const {
         double squares = 0;
@@ -157,7 +159,7 @@ class FastSlam {
     std::unordered_map<std::int64_t, std::size_t> slot_of_;
     std::vector<std::int64_t> names_;
     std::uint64_t step_ = 0;
-    int rejected_in_row_ = 0;
+    RejectionSum rejections_;
     bool best_expected_ = false;
     LandmarkCounts counts_;
     std::vector<ReadingOutcome> outcomes_;
@@ -316,7 +318,7 @@ class FastSlam {
             }
             note_innovation(i, mean, weigh_innovation(mean, S, count), count);
             if (outcomes_[i].nis <= gate_.limit(count)) {
-                rejected_in_row_ = 0;
+                rejections_.accept();
                 continue;
             }
             outcomes_[i].verdict = ReadingVerdict::rejected, slots_[i] = none;
@@ -328,7 +330,7 @@ class FastSlam {
         for (std::size_t r = 0; r < std::size_t(count); ++r) outcomes_[i].innovation[r] = v[r];
     }
     void reject() {
-        if (++rejected_in_row_ % rule_.landmarks.lost_after) return;
+        if (!rejections_.reject()) return;
         ++counts_.inflations;
         const Covariance3 wide = spread(mean_pose());
         for (std::size_t k = 0; k < 9; ++k) pending_noise_[k] += 3 * wide[k];  // twice the deviations
@@ -505,7 +507,7 @@ class FastSlam {
         for (const ReadingOutcome& outcome : outcomes_)
             any_paired = any_paired || outcome.verdict == ReadingVerdict::used;
         if (any_paired)
-            rejected_in_row_ = 0;
+            rejections_.accept();
         else if (best_expected_)
             reject();
     }

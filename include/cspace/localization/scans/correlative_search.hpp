@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "cspace/localization/scans/padded_field.hpp"
@@ -56,6 +57,7 @@ inline constexpr double apart = 0.3;                                       // [m
 inline constexpr double apart_turn = 0.1;                                  // [rad]
 inline constexpr double least_turn_step = 0.004, most_turn_step = 0.0175;  // [rad]
 inline constexpr double most_whole = 1.5e5;                       // cells of a window that is scored whole
+inline constexpr double most_cells = 1e9;                         // of any window: a byte each marks peaks
 inline constexpr double covered_reach = 0.4, covered_turn = 0.1;  // for the covariance in large windows
 inline constexpr double least_log_weight = -7;                    // of a cell that counts in the covariance
 
@@ -119,7 +121,10 @@ class CorrelativeSearch {
         turn_step_ = std::clamp(resolution / std::max(spread, resolution), search::least_turn_step,
                                 search::most_turn_step);
         most_angle_ = int(std::ceil(window.turn / turn_step_ - rounding));
-        most_shift_ = int(std::ceil(window.reach / resolution - rounding));
+        const double shifted = std::ceil(window.reach / resolution - rounding);
+        if (!((2 * most_angle_ + 1) * (2 * shifted + 1) * (2 * shifted + 1) < search::most_cells))
+            throw std::length_error("the window has too many poses");
+        most_shift_ = int(shifted);
         const double shifts = most_shift_ * resolution * std::sqrt(2.0);
         reach_ += shifts + 2 * resolution;
         shift_loss_ = prior.place * resolution * resolution * full_;
@@ -309,8 +314,9 @@ class CorrelativeSearch {
         for (std::size_t i = 1; i < 3; ++i) low_[i] -= shifts, top_[i] += shifts;
     }
     std::size_t index_of(int angle, int row, int column) const {
-        return std::size_t(((angle + most_angle_) * side() + row + most_shift_) * side() + column +
-                           most_shift_);
+        const auto wide = std::size_t(side());
+        return (std::size_t(angle + most_angle_) * wide + std::size_t(row + most_shift_)) * wide +
+               std::size_t(column + most_shift_);
     }
     bool is_in_peak(int angle, int row, int column) const {
         return angle >= low_[0] && angle <= top_[0] && row >= low_[1] && row <= top_[1] &&

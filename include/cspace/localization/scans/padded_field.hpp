@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "cspace/maps/byte_field.hpp"
@@ -39,6 +41,10 @@ struct PaddedField {
         const Point high = center - field.frame.origin + Point{reach + resolution, reach + resolution};
         const int left = first(low.x, field.columns), right = first(high.x, field.columns);
         const int bottom = first(low.y, field.rows), top = first(high.y, field.rows);
+        const double most = double(std::numeric_limits<std::int32_t>::max());  // places are 32 bits wide
+        if (!((top - bottom + 2.0 * window_rows + block) * (right - left + 2.0 * window_columns + block) <
+              most))
+            throw std::length_error("the part of the field is too large");
         last_row = top - bottom + window_rows, last_column = right - left + window_columns;
         rows = round_up(last_row + window_rows), stride = round_up(last_column + window_columns);
         origin = {field.frame.origin.x + (left - window_columns) * resolution,

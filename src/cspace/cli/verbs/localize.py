@@ -62,6 +62,8 @@ def run(args: argparse.Namespace, out: Output) -> int:
     from cspace.localization import localize, read_log, write_poses
 
     check_pictures(args)
+    if args.resolution is not None and args.map is None:
+        raise UsageError("--resolution is of --map, and has no effect without one; leave it out")
     with show_progress(f"reading {args.log}"):
         log = read_log(args.log, robot=args.robot)
         world = None if args.map is None else load_map(args.map, args.resolution)

@@ -78,9 +78,11 @@ def run_graph(args: argparse.Namespace, out: Output) -> int:
     """The optimum of a pose graph."""
     from cspace.localization import PoseGraph
 
-    if args.method != "graph" or not (args.animate is args.seed is args.save_map is args.start is None):
+    of_logs = (args.animate, args.seed, args.save_map, args.start, args.robot)
+    if args.method != "graph" or any(given is not None for given in of_logs):
         raise UsageError(
-            "a pose graph is optimized; --method, --animate, --save-map, --seed and --start are for logs"
+            "a pose graph is optimized; --method, --robot, --animate, --save-map, --seed and --start are for"
+            " logs"
         )
     with show_progress(f"reading {args.file}"):
         graph = PoseGraph.read(args.file)
@@ -158,6 +160,8 @@ def run_log(args: argparse.Namespace, out: Output) -> int:
         raise UsageError(f"--method {args.method} has no pose graph; --save FILE.tum writes its poses")
     if args.save_map is not None and args.method != "graph":
         raise UsageError(f"--method {args.method} makes no map of cells; --save-map is for --method graph")
+    if args.seed is not None and args.method != "fastslam":
+        raise UsageError(f"--seed is the seed of --method fastslam, and has no effect with {args.method}")
     with show_progress(f"reading {args.file}"):
         log = read_log(args.file, robot=args.robot)
     check_method(args.method, log)

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from cspace._core import RejectionSum
 from cspace.arrays import Array
 from cspace.errors import TimeLimitError
 from cspace.localization.filters.gates import chi2_quantile
@@ -19,9 +20,6 @@ from cspace.localization.filters.updates import Innovation, Update, measure_inno
 
 REJECTIONS: Final = 10
 """Rejections in a row after which the covariance is inflated, and sum of them from which a filter is lost."""
-REDEEMED: Final = 2
-"""Rejections that an accepted measurement makes up for: a filter is lost if it rejects more than two thirds
-for a while, though some fit by chance, and until it has made up for all (a cumulative sum, Page 1954)."""
 INFLATION: Final = 4.0
 """By how much: twice the standard deviations."""
 ANCHORS_PER_LOOK: Final = 64
@@ -65,8 +63,7 @@ class Pass:
         self.nis, self.innovations = np.full(k, np.nan), np.full((k, 2), np.nan)
         self.dof, self.accepted = np.zeros(k, dtype=np.int64), np.zeros(k, dtype=bool)
         self.inflated: list[int] = []
-        self.rejected = self.contradictions = 0
-        self.is_lost = False
+        self.rejections = RejectionSum(REJECTIONS)
 
     def run(self, pose: Array, P: Array, read: Read) -> Passed:
         """The filter from a pose (3,) with covariance (3, 3)."""
@@ -83,11 +80,11 @@ class Pass:
                 pose, P = self.predict(begin, anchor + 1, pose, P)
             else:
                 self.poses[0], self.covariances[0] = self.before[0], self.covariances_before[0] = pose, P
-            self.lost[begin : anchor + 1] = self.is_lost
+            self.lost[begin : anchor + 1] = self.rejections.is_lost
             for number in range(first[k], last[k]):
                 pose, P = self.measure(number, anchor, pose, P, read)
             self.poses[anchor], self.covariances[anchor] = pose, P
-            self.lost[anchor] = self.is_lost
+            self.lost[anchor] = self.rejections.is_lost
         return Passed(
             self.poses,
             self.covariances,
@@ -125,9 +122,7 @@ class Pass:
         if self.nis[number] > chi2_quantile(self.gate, int(self.dof[number])):
             return self.reject(node, pose, P)
         self.accepted[number] = True
-        self.rejected = 0
-        self.contradictions = max(0, self.contradictions - REDEEMED)
-        self.is_lost &= self.contradictions > 0
+        self.rejections.accept()
         return self.update(pose, P, measurement)
 
     def record(self, number: int, innovation: Innovation) -> None:
@@ -138,10 +133,7 @@ class Pass:
 
     def reject(self, node: int, pose: Array, P: Array) -> tuple[Array, Array]:
         """Counts a rejection; each tenth in a row inflates the covariance."""
-        self.rejected += 1
-        self.contradictions = min(self.contradictions + 1, REJECTIONS)
-        self.is_lost |= self.contradictions == REJECTIONS
-        if self.rejected % REJECTIONS:
+        if not self.rejections.reject():
             return pose, P
         self.inflated.append(node)
         return pose, INFLATION * P

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace.arrays import Array, any_array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial import as_pose
-from cspace.tolerances import SINGULAR_INFORMATION, SYMMETRIC_INFORMATION
+from cspace.tolerances import LARGEST_IN_GRAPH, SINGULAR_INFORMATION, SYMMETRIC_INFORMATION
 
 Ids = npt.NDArray[np.int64]
 Rows = npt.NDArray[np.int32]
@@ -19,7 +19,7 @@ Mask = npt.NDArray[np.bool_]
 
 def read_poses(value: Any, subject: str) -> Array:
     """Rows x, y, θ (n, 3), or poses (n, 4, 4)."""
-    array = as_floats(value, subject)
+    array = as_floats(value, subject, largest=LARGEST_IN_GRAPH)
     if array.ndim == 2 and array.shape[1] == 3:
         return np.ascontiguousarray(array)
     if array.ndim == 3 and array.shape[1:] == (4, 4):
@@ -51,7 +51,9 @@ def read_pairs(value: Any, subject: str, first: int, second: int, meaning: str) 
 
 def read_information(value: Any, subject: str, count: int, size: int) -> Array:
     """Symmetric positive definite matrices (k, size, size); one matrix serves all rows."""
-    array = as_floats(value, subject)
+    array = as_floats(value, subject, largest=LARGEST_IN_GRAPH)
+    if not count and not array.size:
+        return np.zeros((0, size, size))
     if array.shape == (size, size):
         array = np.broadcast_to(array, (count, size, size))
     array = one_array(array, subject, (None, size, size), "a matrix per measurement")
@@ -111,6 +113,7 @@ def freeze_array(array: Any) -> Any:
 def check_points(points: Array, ranged: Mask, subject: str) -> None:
     """InputError for sightings that are not finite, or whose bearings are degrees."""
     missing = np.isnan(points)
+    as_floats(np.where(missing, 0.0, points), subject, finite=False, largest=LARGEST_IN_GRAPH)
     bad = np.flatnonzero(missing.all(axis=1) | (missing.any(axis=1) & ~ranged) | np.isinf(points).any(axis=1))
     if len(bad):
         raise InputError(

@@ -21,11 +21,13 @@ from cspace.localization.graph.graph_arrays import Graph
 from cspace.localization.logs.lines import Lines, unpack_gzip
 from cspace.spatial import pose
 from cspace.tables import count_things
-from cspace.tolerances import LOG_BYTES, SINGULAR_INFORMATION, UNIFORM_ANGLE
+from cspace.tolerances import LARGEST_IN_GRAPH, LOG_BYTES, SINGULAR_INFORMATION, UNIFORM_ANGLE
 
 FORMATS: Final = ("g2o", "toro", "graph", "victoria")
 LARGEST_ID: Final = 2**63 - 1
 """Ids are kept as integers of 64 bits."""
+MOST_DIGITS: Final = 100
+"""Of an id, with zeros before it."""
 LEFT_OUT: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
         "g2o": ("ROBOTLASER1", "RAWLASER1", "LASER_ROBOT_DATA", "RGBD_DATA", "DATA_FEATURE_POINTXY"),
@@ -92,8 +94,12 @@ class Draft:
     def ids(self, line: int, words: list[str], count: int) -> list[int]:
         """The first words as ids."""
         found = []
+        if len(words) < count:
+            raise self.lines.error(
+                line, f"the line has {len(words)} of {count_things(count, 'id')}; it may be cut"
+            )
         for word in words[:count]:
-            if not word.isdecimal() or not int(word) <= LARGEST_ID:
+            if not word.isdecimal() or len(word) > MOST_DIGITS or int(word) > LARGEST_ID:
                 raise self.lines.error(
                     line, f"{word[:40]!r} is no id; ids are whole numbers from 0 to 2⁶³ − 1"
                 )
@@ -117,7 +123,13 @@ class Draft:
             found = list(map(float, words))
         except ValueError:
             found = [math.nan]
-        return found if all(map(math.isfinite, found)) else self.lines.numbers(line, words, kind)
+        if not all(map(math.isfinite, found)):
+            return self.lines.numbers(line, words, kind)
+        if max(map(abs, found)) > LARGEST_IN_GRAPH:
+            raise self.lines.error(
+                line, f"{kind} must not exceed {LARGEST_IN_GRAPH:g}, and one of its numbers does"
+            )
+        return found
 
     def matrix(self, values: list[float], order: tuple[tuple[int, int], ...]) -> Array:
         """The symmetric matrix of these numbers."""
@@ -459,13 +471,8 @@ def make_poses(rows: list[Array]) -> Array:
         which = [k for k, row in enumerate(rows) if len(row) == width]
         numbers = np.array([rows[k] for k in which])
         turn, xyz = numbers[:, 3:], numbers[:, :3]
-        made[which] = pose(xyz, rpy=turn) if width == len(ANGLES) else pose(xyz, xyzw=normalize_rows(turn))
+        made[which] = pose(xyz, rpy=turn) if width == len(ANGLES) else pose(xyz, xyzw=turn)
     return made
-
-
-def normalize_rows(rows: Array) -> Array:
-    """Rows (k, 4) of length one."""
-    return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
 
 
 def list_notes(draft: Draft) -> tuple[str, ...]:

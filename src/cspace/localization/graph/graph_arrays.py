@@ -25,6 +25,7 @@ from cspace.localization.graph.checks import (
     read_rows,
 )
 from cspace.tables import count_things, one_line
+from cspace.tolerances import LARGEST_IN_GRAPH
 
 Graph = TypeVar("Graph", bound="GraphArrays")
 
@@ -104,7 +105,7 @@ class GraphArrays:
 
     def _read_sightings(self) -> None:
         d = self.dimension
-        places = as_floats(self.landmarks, "landmarks")
+        places = as_floats(self.landmarks, "landmarks", largest=LARGEST_IN_GRAPH)
         places = places if places.size else np.zeros((0, d))
         self._set("landmarks", np.array(one_array(places, "landmarks", (None, d))))
         rows = read_pairs(

@@ -17,6 +17,7 @@ from cspace.localization.graph.answer import GraphAnswer, turn_to_map
 from cspace.localization.graph.checks import Ids, check_points, read_information, read_poses
 from cspace.localization.graph.pose_graph import PoseGraph
 from cspace.tables import count_things, one_line
+from cspace.tolerances import LARGEST_IN_GRAPH
 
 SHOWN_WAITING = 5
 """The most ids that a message lists."""
@@ -69,7 +70,7 @@ class IncrementalGraph(Running):
             raise InputError(f"i has {len(first)} ids and j {len(second)}; give as many of each")
         if (first == second).any():
             raise InputError(f"the edge joins pose {first[first == second][0]} to itself; leave it out")
-        motions = as_floats(z, "z")
+        motions = as_floats(z, "z", largest=LARGEST_IN_GRAPH)
         is_spatial = motions.shape[-2:] == (4, 4)
         if not motions.ndim or not motions.size:
             raise InputError(f"z has shape {motions.shape}, expected (3,), (k, 3) or (4, 4), (k, 4, 4)")
@@ -337,7 +338,7 @@ def read_mask(value: Any, subject: str, count: int) -> npt.NDArray[np.bool_]:
 
 def read_matrices(value: Any, count: int, size: int) -> Array:
     """Information matrices, one per measurement, that are positive definite."""
-    array = as_floats(value, "information")
+    array = as_floats(value, "information", largest=LARGEST_IN_GRAPH)
     if array.shape == (size, size) and count != 1:
         array = np.broadcast_to(array, (count, size, size))
     elif array.shape == (size, size):

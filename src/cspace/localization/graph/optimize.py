@@ -84,6 +84,19 @@ class Request(NamedTuple):
         )
 
 
+def refuse_idle(given: Request, start: str | None) -> None:
+    """InputTypeError for arguments that have no effect beside the others. given: as it was given."""
+    if given.width is not None and given.kernel is None and given.robust in (None, "gnc"):
+        raise InputTypeError(
+            f"width is {given.width!r:.40} and nothing has that width; give kernel=, or robust= with dcs"
+        )
+    if given.trusted is not None and given.robust is None and start != "odometry":
+        raise InputTypeError(
+            'trusted= names the edges that robust= never rejects, and that start="odometry" follows; give one'
+            " of these, or leave it out"
+        )
+
+
 def find_word(name: str, word: Any, known: tuple[str | None, ...]) -> int:
     """The place of a word among those known; an error with the nearest ones for others."""
     if not (word is None and None in known):
@@ -101,6 +114,7 @@ def optimize_graph(graph: GraphArrays, given: Request) -> GraphAnswer:
             " or with_poses"
         )
     is_trusted = read_trusted(graph, request.trusted)
+    refuse_idle(given, request.start)
     solver = make_solver(graph, is_trusted)
     begin = perf_counter()
     status = run_solver(solver, request)

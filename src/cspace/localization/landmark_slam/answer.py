@@ -11,7 +11,6 @@ from cspace.arrays import Array
 from cspace.errors import check_known
 from cspace.localization.filters.rows import find_twist
 from cspace.localization.filters.run import FRAMES, turn_covariances
-from cspace.localization.landmark_slam.filters import LOST_AFTER
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes
 from cspace.localization.log import Ids, Landmarks, Mask
 from cspace.mobile import TimedPoses
@@ -49,10 +48,10 @@ class LandmarkSlam:
 
     times (n,) [s], those of the odometry and of the readings. poses (n, 3): x, y [m], θ [rad], in the frame
     of the start; each from the readings up to its time. covariances (n, 3, 3) of ξ in T exp ξ, in base.
-    landmarks: a map with covariances. method: the name of what made it. status: "localised",
-    "lost" after ten rejections in a row or without any reading, or "ambiguous" where the readings contradict
-    the map; doubt: how, in words. lost (n,): where the robot was lost. readings: what
-    became of each one, with NIS; measured (k,): the row of each in `times`.
+    landmarks: a map with covariances. method: the name of what made it. status: "localised", "lost" where
+    most of the last readings were rejected or without any reading, or "ambiguous" where the readings
+    contradict the map; doubt: how, in words. lost (n,): where the robot was lost. readings: what became of
+    each one, with NIS; measured (k,): the row of each in `times`.
     """
 
     times: Array
@@ -85,7 +84,7 @@ class LandmarkSlam:
         if self.status == "lost":
             if not s.used + s.created:
                 return "no reading was used; the poses are dead reckoning"
-            return f"the last {LOST_AFTER} readings or more contradict the landmarks"
+            return "most of the last readings contradict the landmarks"
         if self.status == "ambiguous":
             return self.doubt
         return f"{s.used} readings used, {s.rejected} rejected, mean NIS per dof {s.mean_nis:.2f}"

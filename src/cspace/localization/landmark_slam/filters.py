@@ -31,7 +31,8 @@ CONFIRMED_AFTER: Final = 3
 DROPPED_AFTER: Final = 20
 """Updates in a row that should have seen a landmark that does not count yet, after which it is removed."""
 LOST_AFTER: Final = 10
-"""Rejections in a row after which the filter counts as lost, and the covariance of its pose is inflated."""
+"""Sum of rejections from which the filter is lost (each accepted reading takes two away), and rejections in a
+row after which the covariance of its pose is inflated."""
 MOST_NODES: Final = 20_000
 """Nodes of the search for joint compatibility, a few ten milliseconds; then its best pairings so far
 count."""
@@ -131,7 +132,7 @@ class LandmarkFilter(Running):
 
     @property
     def status(self) -> str:
-        """ "localised", or "lost" after ten rejections in a row."""
+        """ "localised", or "lost" where most of the last readings were rejected."""
         return "lost" if self._core.is_lost else "localised"
 
     def __bool__(self) -> bool:

@@ -92,8 +92,21 @@ def match_scan(
         if reference is not None:
             found = _core.match_point_lines(*place, reference, points, near, reach)
         else:
-            found = _core.match_points(*place, points, near, reach, turn, True)
+            found = search_window(place, points, near, reach, turn)
     return report_match(*found, method=method, least=least)
+
+
+def search_window(
+    place: tuple[Any, float, Any, int], points: Array, near: Array, reach: float, turn: float
+) -> Any:
+    """The answer of the core for all poses of a window; InputError for windows of too many poses."""
+    try:
+        return _core.match_points(*place, points, near, reach, turn, True)
+    except ValueError as error:
+        raise InputError(
+            f"window is ({reach:g}, {turn:g}), too many poses of cells of {place[1]:g} m; give a smaller one,"
+            " or take search_pose for a whole map"
+        ) from error
 
 
 def read_window(window: Any) -> tuple[float, float]:
