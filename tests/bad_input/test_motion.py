@@ -1,11 +1,13 @@
 """Arguments of motions that are none: an error that names them, whatever is given."""
 
+import functools
+
 import numpy as np
 import pytest
 
 import cspace as cs
 from cspace import cartesian, trajectory
-from cspace.errors import CspaceError
+from cspace.errors import CspaceError, InputTypeError
 
 START = np.array([0.3, -1.2, 1.5, -0.8, -1.3, 0.2])
 WAYPOINTS = START + np.array([[0.0], [0.3], [-0.2]])
@@ -57,6 +59,50 @@ CALLS = {
 def test_strange_values_are_named(robot, argument, value):
     with pytest.raises(CspaceError):
         CALLS[argument](robot, value)
+
+
+class Turning:
+    """Curves that are methods, and one that can be called."""
+
+    def without_order(self, s):
+        return np.sin(s)[:, None]
+
+    def with_three(self, s, order, length):
+        return np.sin(s)[:, None] + order * length
+
+    __call__ = without_order
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        lambda: 0.0,
+        lambda s: np.sin(s)[:, None],
+        lambda s, *, order: np.sin(s)[:, None],
+        lambda s, order, length: np.sin(s)[:, None],
+        Turning().without_order,
+        Turning().with_three,
+        Turning(),
+        functools.partial(lambda s, order: np.sin(s)[:, None], order=0),
+        *STRANGE,
+    ],
+)
+def test_curves_without_order_are_named(curve):
+    with pytest.raises(InputTypeError, match=r"must accept \(s, order\)"):
+        trajectory.fit_path(curve, 1.0)
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        lambda s, order: np.array([np.sin(s), np.cos(s), -np.sin(s)][order])[:, None],
+        lambda s, order=0: np.array([np.sin(s), np.cos(s), -np.sin(s)][order])[:, None],
+        lambda *given: np.array([np.sin(given[0]), np.cos(given[0]), -np.sin(given[0])][given[1]])[:, None],
+        functools.partial(lambda k, s, order: np.sin(k * s + order * np.pi / 2)[:, None], 1.0),
+    ],
+)
+def test_curves_with_order_are_fitted(curve):
+    np.testing.assert_allclose(trajectory.fit_path(curve, 1.0)(0.7), np.sin([0.7]), atol=1e-7)
 
 
 @pytest.mark.parametrize("size", [1e6, 1e8, 1e12, 1e100])
