@@ -28,8 +28,9 @@ Indices: TypeAlias = NDArray[np.intp]
 class CartesianPiece:
     """A stretch of a path over its parameter s from 0 to `length`.
 
-    The point is p(s) = Σ point_k sᵏ + Rot(axis, rate s) arm, and the rotation exp(Σ turn_k sᵏ) R: polynomials
-    for lines and blends, the rotating arm for arcs and screws.
+    The point is p(s) = Σ point_k sᵏ + (Rot(axis, rate s) − 1) arm, and the rotation exp(Σ turn_k sᵏ) R:
+    polynomials for lines and blends, the rotating arm, from the axis to the point at s = 0, for arcs and
+    screws.
 
     point, turn (6, 3); axis (3,), a unit vector; rate [rad per unit of s]; arm (3,) [m]; R (3, 3).
     """
