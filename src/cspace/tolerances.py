@@ -735,6 +735,10 @@ what its neighbours change."""
 LEAST_FACTOR: Final = 1e-30
 """Of a duration, and the inverse of the largest: with others derivatives leave the range of numbers."""
 
+NEGLIGIBLE_TERM: Final = 1e-300
+"""Coefficient of a polynomial of a duration, relative to the largest: up to the longest duration its term is
+far below the rounding of the others, and quotients by it leave the range of numbers."""
+
 PATH_START_ROUNDING: Final = 1e-8
 """[rad or m] By which the begin of a joint path is moved onto the start: what Newton's method leaves."""
 

@@ -24,11 +24,13 @@ Polynomial evaluate_polynomial(const double* coefficients, double u) {
     return p;
 }
 
-Vec3d rotate_arm(const CartesianPieces& path, std::size_t piece, double u) {
+// The displacement (Rot − 1) arm, which needs no difference of large numbers where the axis is far away.
+Vec3d displace_arm(const CartesianPieces& path, std::size_t piece, double u) {
     double s, c;
-    sincos(path.rate[piece] * u, s, c);
-    return spatial::rotation_about(read_vector(path.axis.data() + 3 * piece), c, s) *
-           read_vector(path.arm.data() + 3 * piece);
+    sincos(0.5 * path.rate[piece] * u, s, c);
+    const Vec3d axis = read_vector(path.axis.data() + 3 * piece);
+    const Vec3d aside = cross(axis, read_vector(path.arm.data() + 3 * piece));
+    return (2.0 * s) * (c * aside + s * cross(axis, aside));
 }
 
 }  // namespace
@@ -40,7 +42,7 @@ void evaluate_poses(const CartesianPieces& path, const CartesianPlaces& places, 
         const Mat3d turn =
             spatial::rotation_of_rotvec(evaluate_polynomial(path.turn.data() + 18 * piece, u).value);
         const Vec3d p =
-            evaluate_polynomial(path.point.data() + 18 * piece, u).value + rotate_arm(path, piece, u);
+            evaluate_polynomial(path.point.data() + 18 * piece, u).value + displace_arm(path, piece, u);
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c)
                 T[4 * r + c] = turn.m[r][0] * R[c] + turn.m[r][1] * R[3 + c] + turn.m[r][2] * R[6 + c];
@@ -57,7 +59,8 @@ void evaluate_twists(const CartesianPieces& path, const CartesianPlaces& places,
         const Polynomial point = evaluate_polynomial(path.point.data() + 18 * piece, u);
         const Polynomial turn = evaluate_polynomial(path.turn.data() + 18 * piece, u);
         const Vec3d spin = path.rate[piece] * read_vector(path.axis.data() + 3 * piece);
-        const Vec3d around = cross(spin, rotate_arm(path, piece, u));
+        const Vec3d arm = read_vector(path.arm.data() + 3 * piece) + displace_arm(path, piece, u);
+        const Vec3d around = cross(spin, arm);
         const spatial::AngularRates<double> omega = spatial::angular_rates(turn.value, turn.slope, turn.bend);
         write_vector(point.slope + around, first);
         write_vector(point.bend + cross(spin, around), second);

@@ -6,8 +6,8 @@
 
 namespace cspace::trajectory {
 
-// The point p = Σ point_k uᵏ + Rot(axis, rate u) arm and the rotation exp(Σ turn_k uᵏ) R of each piece, u
-// from its begin: point, turn (pieces, 6, 3), R (pieces, 3, 3), axis, arm (pieces, 3), rate (pieces,).
+// The point p = Σ point_k uᵏ + (Rot(axis, rate u) − 1) arm and the rotation exp(Σ turn_k uᵏ) R of each piece,
+// u from its begin: point, turn (pieces, 6, 3), R (pieces, 3, 3), axis, arm (pieces, 3), rate (pieces,).
 struct CartesianPieces {
     std::span<const double> point, turn, R, axis, rate, arm;
 };

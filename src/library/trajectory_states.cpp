@@ -339,7 +339,7 @@ struct AxisPieces {
     double duration;
     StatePieces& all;
     std::size_t axis;
-    int count;
+    int count, half = 0;  // phases, and those of them that are given from the start
     double* knots;
 
     AxisPieces(const StateMotion& motion, const Phases& own, StatePieces& made, std::size_t i)
@@ -352,11 +352,28 @@ struct AxisPieces {
           knots(made.knots.data() + i * (made.pieces + 1)) {
         std::fill_n(knots, all.pieces + 1, duration);
         knots[0] = 0;
-        for (int k = 0; k < count; ++k) knots[k + 1] = knots[k] + phase(k).h;
+        place_knots();
+    }
+    // From both ends, so that rounding adds to the phase in the middle alone: none is longer than it is to
+    // be, by which an acceleration would exceed its limit.
+    void place_knots() {
+        const double sum = phases.duration();
         // Of axes that move until the end, the last knot differs from the duration by rounding alone.
-        const double last = knots[count];
-        if (count > 0 && std::fabs(last - duration) <= duration_rounding * duration) knots[count] = duration;
-        for (std::size_t k = 0; k <= all.pieces; ++k) knots[k] = std::min(knots[k], duration);
+        const bool until_end = std::fabs(sum - duration) <= duration_rounding * duration;
+        if (count > 0) knots[count] = until_end ? duration : std::min(sum, duration);
+        while (half < count) {
+            double next = knots[half] + phase(half).h;
+            if (next - knots[half] > phase(half).h) next = std::nextafter(next, 0.0);
+            const bool is_late = 2 * next > duration;
+            if (is_late && (half > 0 || count == 1)) break;
+            knots[++half] = std::min(next, knots[count]);
+            if (is_late) break;
+        }
+        for (int k = count - 1; k > half; --k) {
+            double begin = knots[k + 1] - phase(k).h;
+            if (knots[k + 1] - begin > phase(k).h) begin = std::nextafter(begin, duration);
+            knots[k] = std::max(begin, knots[half]);
+        }
     }
     const Phase& phase(int k) const { return phases.phase[k]; }
     // An acceleration at an end of the motion: that of the state there if they differ by rounding alone, else
@@ -369,7 +386,7 @@ struct AxisPieces {
     AxisState state(std::size_t end) const { return task.state(end, axis); }
     double* piece(std::size_t k) const { return all.coefficients.data() + (axis * all.pieces + k) * 4; }
 
-    void write_from_start(int half) const {
+    void write_from_start() const {
         AxisState s = state(0);
         for (int k = 0; k < half; ++k) {
             Phase f = phase(k);
@@ -379,7 +396,7 @@ struct AxisPieces {
             s = advance_axis(s, f);
         }
     }
-    void write_from_end(int half) const {
+    void write_from_end() const {
         AxisState s = state(1);
         for (int k = count - 1; k >= half; --k) {
             const Phase f = phase(k);
@@ -440,11 +457,8 @@ StatePieces make_pieces(const StateMotion& motion) {
     made.origins.resize(motion.dof * made.pieces);
     for (std::size_t axis = 0; axis < motion.dof; ++axis) {
         const AxisPieces pieces(motion, phases[axis], made, axis);
-        int half = 0;
-        while (half < pieces.count && 2 * pieces.knots[half + 1] <= motion.duration) ++half;
-        if (half == 0 && pieces.count > 1) half = 1;
-        pieces.write_from_start(half);
-        pieces.write_from_end(half);
+        pieces.write_from_start();
+        pieces.write_from_end();
         pieces.write_rest();
     }
     return made;

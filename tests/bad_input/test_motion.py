@@ -1,11 +1,14 @@
 """Arguments of motions that are none: an error that names them, whatever is given."""
 
+import dataclasses
+import functools
+
 import numpy as np
 import pytest
 
 import cspace as cs
 from cspace import cartesian, trajectory
-from cspace.errors import CspaceError
+from cspace.errors import CspaceError, InputTypeError
 
 START = np.array([0.3, -1.2, 1.5, -0.8, -1.3, 0.2])
 WAYPOINTS = START + np.array([[0.0], [0.3], [-0.2]])
@@ -57,6 +60,134 @@ CALLS = {
 def test_strange_values_are_named(robot, argument, value):
     with pytest.raises(CspaceError):
         CALLS[argument](robot, value)
+
+
+class Turning:
+    """Curves that are methods, and one that can be called."""
+
+    def without_order(self, s):
+        return np.sin(s)[:, None]
+
+    def with_three(self, s, order, length):
+        return np.sin(s)[:, None] + order * length
+
+    __call__ = without_order
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        lambda: 0.0,
+        lambda s: np.sin(s)[:, None],
+        lambda s, *, order: np.sin(s)[:, None],
+        lambda s, order, length: np.sin(s)[:, None],
+        Turning().without_order,
+        Turning().with_three,
+        Turning(),
+        functools.partial(lambda s, order: np.sin(s)[:, None], order=0),
+        *STRANGE,
+    ],
+)
+def test_curves_without_order_are_named(curve):
+    with pytest.raises(InputTypeError, match=r"must accept \(s, order\)"):
+        trajectory.fit_path(curve, 1.0)
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        lambda s, order: np.array([np.sin(s), np.cos(s), -np.sin(s)][order])[:, None],
+        lambda s, order=0: np.array([np.sin(s), np.cos(s), -np.sin(s)][order])[:, None],
+        lambda *given: np.array([np.sin(given[0]), np.cos(given[0]), -np.sin(given[0])][given[1]])[:, None],
+        functools.partial(lambda k, s, order: np.sin(k * s + order * np.pi / 2)[:, None], 1.0),
+    ],
+)
+def test_curves_with_order_are_fitted(curve):
+    np.testing.assert_allclose(trajectory.fit_path(curve, 1.0)(0.7), np.sin([0.7]), atol=1e-7)
+
+
+PIECE = trajectory.CartesianPiece(
+    1.0, np.zeros((6, 3)), np.zeros((6, 3)), np.eye(3), np.array([0.0, 0.0, 1.0]), 0.0, np.zeros(3)
+)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [*STRANGE, None, 1.5, [PIECE, None], [PIECE, "x"], (each for each in (PIECE, 1.0)), PIECE],
+    ids=lambda value: type(value).__name__,
+)
+def test_pieces_of_a_path_are_pieces(value):
+    with pytest.raises(CspaceError, match=r"piece.*CartesianPiece"):
+        trajectory.CartesianPath(value)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        *STRANGE[:4],
+        *STRANGE[5:-1],
+        None,
+        "x",
+        True,
+        np.nan,
+        0.5,
+        [np.nan],
+        [-0.1],
+        [1.1],
+        [np.inf],
+        [None],
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_stops_of_a_path_are_places_on_it(value):
+    with pytest.raises(CspaceError, match="stops"):
+        trajectory.CartesianPath([PIECE], value)
+
+
+@pytest.mark.parametrize("value", [*STRANGE, None, True, -np.inf], ids=lambda value: type(value).__name__)
+@pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(PIECE)])
+def test_fields_of_a_piece_are_named(field, value):
+    with pytest.raises(CspaceError, match=rf"{field} of "):
+        trajectory.CartesianPath([PIECE, dataclasses.replace(PIECE, **{field: value})])
+
+
+def test_pieces_have_lengths_and_rotations():
+    for field, value in (
+        ("length", -1.0),
+        ("R", np.zeros((3, 3))),
+        ("R", -np.eye(3)),
+        ("arm", [1e200, 0, 0]),
+    ):
+        with pytest.raises(CspaceError, match=f"{field} of "):
+            trajectory.CartesianPath([dataclasses.replace(PIECE, **{field: value})])
+    assert trajectory.CartesianPath(iter([PIECE, PIECE]), [1]).stops == [1.0]
+
+
+POSES = {
+    "line_path start": lambda x: trajectory.line_path(x, np.eye(4)),
+    "line_path goal": lambda x: trajectory.line_path(np.eye(4), x),
+    "screw_path start": lambda x: trajectory.screw_path(x, np.eye(4)),
+    "screw_path goal": lambda x: trajectory.screw_path(np.eye(4), x),
+    "arc_path start": lambda x: trajectory.arc_path(x, center=(1, 0, 0), axis=(0, 0, 1), angle=1.0),
+    "arc_path goal": lambda x: trajectory.arc_path(np.eye(4), x, via=(1, 1, 0)),
+    "arc_path via": lambda x: trajectory.arc_path(np.eye(4), cs.pose((2, 0, 0)), via=x),
+    "arc_path center": lambda x: trajectory.arc_path(np.eye(4), center=x, axis=(0, 0, 1), angle=1.0),
+    "arc_path axis": lambda x: trajectory.arc_path(np.eye(4), center=(1, 0, 0), axis=x, angle=1.0),
+    "arc_path angle": lambda x: trajectory.arc_path(np.eye(4), center=(1, 0, 0), axis=(0, 0, 1), angle=x),
+    "pose_path poses": lambda x: trajectory.pose_path(x),
+    "pose_path pose": lambda x: trajectory.pose_path([np.eye(4), x]),
+    "pose_path deviation": lambda x: trajectory.pose_path([np.eye(4), cs.pose((2, 0, 0))], deviation=x),
+    "pose_path turn_deviation": lambda x: trajectory.pose_path(
+        [np.eye(4), cs.pose((2, 0, 0))], turn_deviation=x
+    ),
+}
+
+
+@pytest.mark.parametrize("value", STRANGE, ids=lambda value: type(value).__name__)
+@pytest.mark.parametrize("argument", POSES)
+def test_strange_ends_of_paths_are_named(argument, value):
+    with pytest.raises(CspaceError):
+        POSES[argument](value)
 
 
 @pytest.mark.parametrize("size", [1e6, 1e8, 1e12, 1e100])

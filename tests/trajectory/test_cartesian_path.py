@@ -134,6 +134,64 @@ def test_points_on_a_line_give_a_line():
     np.testing.assert_allclose(path(path.length), goal, atol=1e-15)
 
 
+def distance_from_arc(path, point):
+    """Of a point to the circle of an arc [m], from the poses on both sides of the nearest one."""
+    s = np.linspace(0.0, path.length, 2001)
+    near = s[np.linalg.norm(path(s)[:, :3, 3] - point, axis=1).argmin()]
+    for _ in range(6):  # Newton
+        gap, slope = path(near)[:3, 3] - point, path.twists(near)[0][:3]
+        near = np.clip(near - gap @ slope / (slope @ slope), 0.0, path.length)
+    return np.linalg.norm(path(near)[:3, 3] - point)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("bow", [1.0, 1e-2, 1e-4, 1e-6, 1e-7, 1e-8, 2e-9, 1e-9, 1e-10, 1e-13])
+def test_an_arc_attains_its_ends_however_large_its_radius(bow, seed):
+    rng = np.random.default_rng(seed)
+    for chord in (1e-3, 0.1, 1.0, 10.0):
+        start, goal = random_poses(int(rng.integers(1000)), 2)
+        R = cs.spatial.random_pose(rng=rng)[:3, :3]
+        goal[:3, 3] = start[:3, 3] + chord * R[:, 0]
+        via = start[:3, 3] + chord * (rng.uniform(0.05, 0.95) * R[:, 0] + bow * R[:, 1])
+        for rotation in ("interpolate", "keep", "follow"):
+            path = arc_path(start, goal, via=via, rotation=rotation)
+            np.testing.assert_array_equal(path(0.0)[:3, 3], start[:3, 3])
+            rounding = np.spacing(np.abs([start[:3, 3], goal[:3, 3]]).max())
+            missed = np.linalg.norm(path(path.length)[:3, 3] - goal[:3, 3])
+            assert missed < 1e-12 * chord + 4 * rounding
+            assert distance_from_arc(path, via) < 1e-9 * chord
+
+
+@pytest.mark.parametrize("radius", [1e-3, 1.0, 1e4, 1e8, 1e12])
+def test_an_arc_about_an_axis_far_away_starts_at_the_tip(radius):
+    start = cs.pose((0.3, -0.2, 0.5), rpy=(0.1, 0.2, 0.3))
+    for way in (1e-3, 0.7):
+        path = arc_path(start, center=(0.3, -0.2 + radius, 0.5), axis=(0, 0, 1), angle=way / radius)
+        np.testing.assert_array_equal(path(0.0), start)
+        angle = way / radius
+        expected = start[:3, 3] + radius * np.array([np.sin(angle), 2 * np.sin(0.5 * angle) ** 2, 0.0])
+        relative = 1e-12 + np.spacing(radius) / radius  # of the centre
+        assert np.abs(path(path.length)[:3, 3] - expected).max() < 4 * relative * way + 1e-15
+
+
+@pytest.mark.parametrize("angle", [1e-13, -1e-15, 1e-18, -1e-30, 1e-100, 1e-200, 1e-310, 5e-324, 0.0])
+@pytest.mark.parametrize("rotation", ["keep", "follow"])
+def test_arcs_of_no_length_are_refused_when_they_are_made(angle, rotation):
+    start = cs.pose((0.3, -0.2, 0.5))
+    for radius in (0.0, 1e-9, 0.1, 1.0):
+        center = start[:3, 3] + [radius, 0.0, 0.0]
+        with pytest.raises(InputError, match="one must exceed 1e-12 m or rad"):
+            arc_path(start, center=center, axis=(0, 0, 1), angle=angle, rotation=rotation)
+
+
+@pytest.mark.parametrize("angle", [1e-11, -1e-11, 1e-9, 1e-6])
+def test_arcs_of_some_length_are_paths(angle):
+    start = cs.pose((0.3, -0.2, 0.5))
+    path = arc_path(start, center=(0.3, 0.8, 0.5), axis=(0, 0, 1), angle=angle)
+    assert path.length == pytest.approx(abs(angle))
+    assert path(path.length)[0, 3] - start[0, 3] == pytest.approx(angle, rel=1e-4, abs=1e-16)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
@@ -148,7 +206,7 @@ def test_points_on_a_line_give_a_line():
         (lambda T, G: arc_path(T, G, via=(9, 0, 0)), "not between"),
         (lambda T, G: arc_path(T, T, via=(0.5, 0, 0)), "full circle"),
         (lambda T, G: arc_path(T, center=(1, 0, 0), axis=(0, 0, 0), angle=1), "axis is zero"),
-        (lambda T, G: arc_path(T, center=(1, 0, 0), axis=(0, 0, 1), angle=0), "its angle is zero"),
+        (lambda T, G: arc_path(T, center=(1, 0, 0), axis=(0, 0, 1), angle=0), "has a length of 0:"),
         (lambda T, G: arc_path(T, center=(1, 0, 0), axis=(0, 0, 1), angle=1, rotation="slerp"), "'slerp'"),
         (lambda T, G: arc_path(T, G, via=(0, 1, 0), center=(1, 0, 0)), "needs a goal pose and via="),
         (lambda T, G: line_path(T, G)(1.5), "the path is from 0 to 1"),

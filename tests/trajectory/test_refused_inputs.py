@@ -192,6 +192,69 @@ def test_motions_beyond_the_range_of_numbers(profile, value):
             PANDA.move_to(goal, start=READY, profile=profile, duration=value)
 
 
+MOTION = {"velocity": 1.0, "acceleration": 2.0, "jerk": 10.0}
+KEYWORDS = (
+    *MOTION, "start_velocity", "start_acceleration", "goal_velocity", "goal_acceleration", "duration",
+    "cycle",
+)  # fmt: skip
+MAGNITUDES = (5e-324, 1e-310, 1e-200, 1e-100, 1e-30, 1e-18, 1e30, 1e150, 1e300)
+
+
+def attains_goal_or_is_refused(make, goal):
+    """Whether a motion that is made is finite and ends at its goal."""
+    try:
+        motion = make()
+    except (InputError, InputTypeError):
+        return True
+    q = motion(np.linspace(0.0, motion.duration, 7))
+    return bool(np.isfinite(q).all()) and (not motion or np.abs(q[-1] - goal).max() < 1e-9)
+
+
+@pytest.mark.parametrize("profile", ["double_s", "trapezoidal", "cubic", "quintic", "septic"])
+@pytest.mark.parametrize("keyword", KEYWORDS)
+def test_motions_with_numbers_of_any_size(profile, keyword):
+    goal = 0.9 * READY
+    given = {k: v for k, v in MOTION.items() if profile != "trapezoidal" or k != "jerk"}
+    for value in (*MAGNITUDES, *(-m for m in MAGNITUDES)):
+        for moving in ("start_velocity", "start_acceleration", "goal_velocity"):
+            some = np.where(np.arange(7) < 3, value, MOTION.get(keyword, 0.0))
+            asked = {moving: np.full(7, 0.1), keyword: value if keyword in ("duration", "cycle") else some}
+            assert attains_goal_or_is_refused(
+                lambda asked=asked: PANDA.move_to(goal, start=READY, profile=profile, **{**given, **asked}),
+                goal,
+            ), (value, moving)
+
+
+@pytest.mark.parametrize("synchronize", ["time", "phase", "none"])
+@pytest.mark.parametrize("keyword", [*KEYWORDS, "lowest_velocity", "lowest_acceleration"])
+def test_motions_between_states_with_numbers_of_any_size(synchronize, keyword):
+    goal = 0.9 * READY
+    for value in (*MAGNITUDES, *(-m for m in MAGNITUDES)):
+        for jerk in (None, 10.0):
+            some = np.where(
+                np.arange(7) < 3, value, MOTION.get(keyword, -1.0 if "lowest" in keyword else 0.0)
+            )
+            asked = {keyword: value if keyword in ("duration", "cycle") else some}
+            if synchronize == "time":
+                asked.setdefault("start_velocity", np.full(7, 0.1))
+            given = {**MOTION, "jerk": jerk, "synchronize": synchronize, **asked}
+            assert attains_goal_or_is_refused(
+                lambda given=given: state_to_state(READY, goal, **given), goal
+            ), (value, jerk)
+
+
+@pytest.mark.parametrize("tiny", [0.0, 5e-324, 1e-310, 1e-200, 1e-100])
+@pytest.mark.parametrize("profile", ["quintic", "septic"])
+def test_tiny_states_move_as_zero_does(profile, tiny):
+    goal = 0.9 * READY
+    for moving in ("start_velocity", "goal_velocity"):
+        given = {**MOTION, "start": READY, "profile": profile, moving: np.full(7, 0.1)}
+        plain = PANDA.move_to(goal, **given)
+        for name in ("start_acceleration", "goal_acceleration"):
+            motion = PANDA.move_to(goal, **given, **{name: np.full(7, tiny)})
+            assert motion.duration == pytest.approx(plain.duration, rel=1e-9)
+
+
 @pytest.mark.parametrize("value", ["1e308", "1e200", "1e120"])
 @pytest.mark.parametrize("column", range(1, 7))
 def test_tables_beyond_the_range_of_numbers(value, column, tmp_path):

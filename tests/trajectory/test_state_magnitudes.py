@@ -105,3 +105,28 @@ def test_limits_beyond_all_magnitudes_are_refused(name):
         with pytest.raises(InputError, match=rf"{name} contains 1e\+101.*inf or None is no limit"):
             state_to_state(start, np.ones(2), **limits | {name: 1e101})
         assert state_to_state(start, np.ones(2), **limits | {name: np.inf})
+
+
+@pytest.mark.parametrize("jerk", [None, 20.0])
+@pytest.mark.parametrize("length", [10.0, 1e3, 1e5, 1e7, 1e9])
+@pytest.mark.parametrize("synchronize", ["time", "phase", "none"])
+def test_positions_of_long_motions_jump_by_the_rounding_of_time_alone(length, jerk, synchronize):
+    rng = np.random.default_rng(int(length))
+    for _ in range(30):
+        velocity, acceleration = rng.uniform(0.5, 3, 3), rng.uniform(0.5, 10, 3)
+        way = velocity * rng.uniform(-1, 1, 3) * length
+        start = rng.uniform(-3, 3, 3)
+        moving = velocity if synchronize != "phase" else 0.5 * way / length
+        begin, end = (moving * rng.uniform(-1, 1, 3 if synchronize != "phase" else 1) for _ in range(2))
+        motion = state_to_state(
+            start, start + way, velocity=velocity, acceleration=acceleration, jerk=jerk,
+            synchronize=synchronize, start_velocity=begin,
+            goal_velocity=end if synchronize != "none" else 0.0 * end,
+        )  # fmt: skip
+        inner = motion.knots[1:-1]
+        for j in range(3):
+            before, after = (motion._evaluate_joint(j, inner, 0, side) for side in (True, False))
+            rounding = np.spacing(motion.duration) * velocity[j] + np.spacing(np.abs(way[j]) + 3.0)
+            assert np.abs(after - before).max(initial=0.0) <= 16 * rounding
+        if length <= 1e5:
+            assert motion.continuity == (1 if jerk is None else 2)

@@ -271,23 +271,44 @@ inline mask_of<V> attain_in(const AxisTaskOf<V>& x, V T, CombinationOf<V>& made)
 
 namespace crossing {
 
-// A motion of seven phases as its part of a convex combination: the phase at a time, and when it ends.
+// A moment of a motion: the time since its start, or until its end, so that phases near either end of a long
+// motion have no more than their own rounding.
+struct Moment {
+    double time;
+    bool until_end;
+};
+
+// The time from one moment of a motion of T seconds to another.
+inline double time_between(const Moment& a, const Moment& b, double T) {
+    if (a.until_end == b.until_end) return a.until_end ? a.time - b.time : b.time - a.time;
+    const double rest = T - a.time - b.time;
+    return a.until_end ? -rest : rest;
+}
+
+// A motion of seven phases as its part of a convex combination: the phase at a moment, and when it ends.
 struct Walk {
     const SevenPhases& f;
-    double a0, jerk, sign;
-    int i = -1;
-    double begin = 0, end = 0;
-    void advance_to(double t) {
-        while (i < 6 && (i < 0 || t >= end)) {
-            ++i;
-            begin = end;
-            end += f.t[i];
-        }
+    double a0, jerk, sign, T;
+    Moment ends[8];  // from the start on
+    int i = 0;
+
+    Walk(const SevenPhases& phases, const VelocityChange& change, double side, double duration)
+        : f(phases), a0(change.a0), jerk(change.limits.jerk), sign(side), T(duration) {
+        // What the sum of the phases differs from T by is that of the longest one.
+        const int longest = int(std::max_element(f.t, f.t + 7) - f.t);
+        ends[0] = {0, false};
+        ends[7] = {0, true};
+        for (int k = 1; k <= longest; ++k) ends[k] = {ends[k - 1].time + f.t[k - 1], false};
+        for (int k = 6; k > longest; --k) ends[k] = {ends[k + 1].time + f.t[k], true};
     }
-    Phase at(double t) const {
+    const Moment& end() const { return ends[i + 1]; }
+    void advance_to(const Moment& now) {
+        while (i < 6 && !(time_between(now, end(), T) > 0)) ++i;
+    }
+    Phase at(const Moment& now) const {
         const Phase p = phase_of(f, i, a0, jerk);
         const double j = std::isfinite(p.j) ? p.j : 0;
-        return {end - t, sign * (p.a + j * (t - begin)), sign * j};
+        return {time_between(now, end(), T), sign * (p.a + j * time_between(ends[i], now, T)), sign * j};
     }
 };
 
@@ -315,15 +336,17 @@ inline void append_motion(const AxisTask& x, double T, const Combination& combin
     if (is_still(x)) return out.append({T, 0, 0});
     const SevenPhases up = restore_phases(x.up, combination.up),
                       down = restore_phases(x.down, combination.down);
-    const double jerk = x.up.limits.jerk, theta = combination.theta, other = 1 - theta;
-    Walk a{up, x.up.a0, jerk, 1}, b{down, x.down.a0, jerk, -1};
-    for (double t = 0; t < T;) {
-        a.advance_to(t);
-        b.advance_to(t);
-        const Phase f = a.at(t), g = b.at(t);
-        const double next = std::min(std::min(a.i == 6 ? T : a.end, b.i == 6 ? T : b.end), T);
-        out.append({next - t, theta * f.a + other * g.a, theta * f.j + other * g.j});
-        t = next;
+    const double theta = combination.theta, other = 1 - theta;
+    Walk a(up, x.up, 1, T), b(down, x.down, -1, T);
+    for (Moment now{0, false};;) {
+        a.advance_to(now);
+        b.advance_to(now);
+        const Phase f = a.at(now), g = b.at(now);
+        const Moment next = time_between(a.end(), b.end(), T) >= 0 ? a.end() : b.end();
+        const double h = time_between(now, next, T);
+        if (!(h > 0)) return;
+        out.append({h, theta * f.a + other * g.a, theta * f.j + other * g.j});
+        now = next;
     }
 }
 

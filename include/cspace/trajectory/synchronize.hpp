@@ -15,6 +15,10 @@ namespace cspace::trajectory {
 // Relative difference of two durations that are the same: the rounding of the sum of some phases.
 inline constexpr double duration_rounding = 1e-12;
 
+// Raises of a common duration, per axis: the durations that an axis refuses are a few intervals, and each is
+// passed once.
+inline constexpr std::size_t most_raises = 64;
+
 // Largest part of a vector, relative to its largest entry, across a direction that it is parallel to: states
 // that a program computed are parallel to rounding, those of files to nine digits.
 inline constexpr double parallel_rounding = 1e-9;
@@ -56,13 +60,16 @@ inline double round_up(double t, double cycle) {
     return std::ceil(t / cycle * (1 - 4 * crossing::epsilon)) * cycle;
 }
 
-// The next duration from T on that no axis refuses; cycle: of which it is a multiple, or 0.
+// The next duration from T on that no axis refuses; cycle: of which it is a multiple, or 0. Infinite where
+// rounding leaves none, as with limits of velocity below the rounding of the velocities at the start.
 inline double common_duration(Axis* axes, std::size_t n, double T, double cycle) {
     T = round_up(T, cycle);
+    std::size_t raises = 0;
     for (std::size_t agreed = 0, i = 0; agreed < n; i = (i + 1) % n) {
         const double next = next_duration(axes[i], T);
         agreed = next > T ? 1 : agreed + 1;
         if (next > T) {
+            if (++raises > most_raises * n) return never;
             const double rounded = round_up(next, cycle);
             if (rounded > next) agreed = 0;
             T = rounded;

@@ -60,7 +60,8 @@ def screw_path(T_start: PoseLike, T_goal: PoseLike) -> CartesianPath:
     if screw.is_translation:
         return line_path(start, goal)
     angle, pitch = float(screw.magnitude), float(screw.pitch)
-    return _turning_piece(start, screw.axis, screw.point, angle, pitch, angle * screw.axis)
+    arm = _arm_from(screw.axis, screw.point, start[:3, 3])
+    return _turning_piece(start, screw.axis, arm, angle, pitch, angle * screw.axis)
 
 
 def arc_path(
@@ -106,8 +107,9 @@ def _arc_about(
     if not size > 0.0:
         raise InputError("axis is zero; it needs a direction")
     turn = one_number(angle, "angle", largest=FARTHEST_POINT)
-    spin = turn * direction / size if rotation == "follow" else np.zeros(3)
-    return _turning_piece(start, direction / size, point, turn, 0.0, spin)
+    unit = direction / size
+    spin = turn * unit if rotation == "follow" else np.zeros(3)
+    return _turning_piece(start, unit, _arm_from(unit, point, start[:3, 3]), turn, 0.0, spin)
 
 
 def _arc_through(start: Array, goal: Array, via: ArrayLike, rotation: str) -> CartesianPath:
@@ -121,13 +123,13 @@ def _arc_through(start: Array, goal: Array, via: ArrayLike, rotation: str) -> Ca
         if rotation != "interpolate":
             T[:3, :3] = start[:3, :3]
         return line_path(start, T)
-    axis, point, angle = circle
+    axis, arm, angle = circle
     if rotation == "interpolate":
         _check_turn(start, goal, "the start and the goal pose")
         spin = log_so3(goal[:3, :3] @ start[:3, :3].T)
     else:
         spin = angle * axis if rotation == "follow" else np.zeros(3)
-    return _turning_piece(start, axis, point, angle, 0.0, spin)
+    return _turning_piece(start, axis, arm, angle, 0.0, spin)
 
 
 def pose_path(
@@ -257,44 +259,62 @@ def _power_of_bezier(control: Array) -> Array:
 
 
 def _turning_piece(
-    start: Array, axis: Array, point: Array, angle: float, pitch: float, spin: Array
+    start: Array, axis: Array, arm: Array, angle: float, pitch: float, spin: Array
 ) -> CartesianPath:
-    """The tip on a helix about an axis through a point, while its rotation turns by the vector `spin`."""
-    arm = start[:3, 3] - point
-    along = (arm @ axis) * axis
-    radius = float(np.linalg.norm(arm - along))
-    length = max(abs(angle) * float(np.hypot(radius, pitch)), float(np.linalg.norm(spin)))
-    if not length > 0.0:
-        raise InputError("the arc has no length: its angle is zero, or its radius without a rotation")
+    """The tip on a helix about an axis, while its rotation turns by the vector `spin`.
+
+    arm (3,) [m]: from the nearest point of the axis to the tip at the start.
+    """
+    size = float(np.linalg.norm(spin))
+    length = max(abs(angle) * float(np.hypot(np.linalg.norm(arm), pitch)), size)
+    if not length > REPEATED_POSE:
+        raise InputError(
+            f"the arc or screw has a length of {length:.3g}: the tip moves by no more and turns by {size:.3g}"
+            f" rad; one must exceed {REPEATED_POSE:g} m or rad, so give a larger angle or radius, or none"
+        )
     way, turn = np.array(NO_POLYNOMIAL), np.array(NO_POLYNOMIAL)
-    way[0], way[1] = point + along, angle * pitch / length * axis
+    way[0], way[1] = start[:3, 3], angle * pitch / length * axis
     turn[1] = spin / length
-    piece = CartesianPiece(length, way, turn, start[:3, :3], axis, angle / length, arm - along)
-    return CartesianPath([piece])
+    return CartesianPath([CartesianPiece(length, way, turn, start[:3, :3], axis, angle / length, arm)])
+
+
+def _arm_from(axis: Array, point: Array, tip: Array) -> Array:
+    """The vector to a tip (3,) from the nearest point of an axis through a point (3,)."""
+    arm = tip - point
+    return np.asarray(arm - (arm @ axis) * axis)
 
 
 def _circle_through(first: Array, via: Array, last: Array) -> tuple[Array, Array, float] | None:
-    """Axis, centre and angle of the arc through three points; None if they are on a line."""
-    a, b = via - first, last - first
-    sizes = np.linalg.norm(a), np.linalg.norm(b), np.linalg.norm(last - via)
+    """Axis, arm from the centre to the first point, and angle of the arc through three points; None if they
+    are on a line.
+
+    The change of direction at the middle point is half the angle of the arc (inscribed angle). The radius and
+    the arm follow from it and from the chord, so that the arc ends at the last point even where the centre is
+    far away.
+    """
+    a, b, c = via - first, last - first, last - via
+    sizes = np.linalg.norm(a), np.linalg.norm(b), np.linalg.norm(c)
     if sizes[0] <= REPEATED_POSE or sizes[2] <= REPEATED_POSE:
         raise InputError("via is an end of the arc; it must lie between start and goal")
     if sizes[1] <= REPEATED_POSE:
         raise InputError("the goal of the arc is its start; give center=, axis= and angle= for a full circle")
-    normal = np.cross(a, b)
-    if np.linalg.norm(normal) <= COLLINEAR_POINTS * sizes[0] * sizes[2]:
-        if a @ (last - via) < 0.0:
+    normal = np.cross(a, c)
+    doubled_area, along = float(np.linalg.norm(normal)), float(a @ c)
+    if doubled_area <= COLLINEAR_POINTS * sizes[0] * sizes[2]:
+        if along < 0.0:
             raise InputError(
                 f"via is {sizes[0]:.3g} m from the start and not between start and goal, which lie in one"
                 f" direction from it, to {COLLINEAR_POINTS:g} rad; give a point between them, or a nearer one"
             )
         return None
-    squared = float(normal @ normal)
-    to_center = (np.cross(normal, a) * (b @ b) + np.cross(b, normal) * (a @ a)) / (2.0 * squared)
-    unit = normal / np.sqrt(squared)
-    from_center, to_last = -to_center, b - to_center
-    angle = float(np.arctan2(unit @ np.cross(from_center, to_last), from_center @ to_last))
-    return unit, first + to_center, angle % (2 * np.pi)
+    chord = b / sizes[1]
+    for _ in range(2):  # the first leaves the rounding of a normal whose points are nearly on a line
+        normal = normal - (normal @ chord) * chord
+        normal /= np.linalg.norm(normal)
+    half_angle = float(np.arctan2(doubled_area, along))
+    sine, cosine = np.sin(half_angle), np.cos(half_angle)
+    arm = -(sizes[1] / (2.0 * sine)) * (cosine * np.cross(normal, chord) + sine * chord)
+    return normal, arm, 2.0 * half_angle
 
 
 def _check_turn(first: Array, second: Array, subject: str) -> None:

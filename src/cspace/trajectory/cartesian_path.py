@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
@@ -10,16 +10,24 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace._core import cartesian_poses, cartesian_twists
-from cspace.arrays import Array, as_floats, one_number
-from cspace.errors import InputError, InputTypeError
+from cspace.arrays import Array, as_floats, one_array, one_number
+from cspace.errors import InputError, InputTypeError, check_kind
+from cspace.spatial import as_rotation
 from cspace.tables import count_things, one_line
-from cspace.tolerances import TIME_ROUNDING
+from cspace.tolerances import FARTHEST, TIME_ROUNDING
 
 DEGREE: Final = 5
 """Of the polynomials of a piece."""
 
-PIECE_FIELDS: Final = ("point", "turn", "R", "axis", "rate", "arm")
-"""Of a piece, as the core reads them."""
+PIECE_FIELDS: Final = {
+    "point": (DEGREE + 1, 3),
+    "turn": (DEGREE + 1, 3),
+    "R": (3, 3),
+    "axis": (3,),
+    "rate": (),
+    "arm": (3,),
+}
+"""Of a piece, as the core reads them, and their shapes."""
 
 Indices: TypeAlias = NDArray[np.intp]
 
@@ -28,8 +36,9 @@ Indices: TypeAlias = NDArray[np.intp]
 class CartesianPiece:
     """A stretch of a path over its parameter s from 0 to `length`.
 
-    The point is p(s) = Σ point_k sᵏ + Rot(axis, rate s) arm, and the rotation exp(Σ turn_k sᵏ) R: polynomials
-    for lines and blends, the rotating arm for arcs and screws.
+    The point is p(s) = Σ point_k sᵏ + (Rot(axis, rate s) − 1) arm, and the rotation exp(Σ turn_k sᵏ) R:
+    polynomials for lines and blends, the rotating arm, from the axis to the point at s = 0, for arcs and
+    screws.
 
     point, turn (6, 3); axis (3,), a unit vector; rate [rad per unit of s]; arm (3,) [m]; R (3, 3).
     """
@@ -50,15 +59,25 @@ class CartesianPath:
     moves by at most 1 m and the tip turns by at most 1 rad, in blends up to 1.4 times as much. length: of the
     whole path, in units of s. breaks (k + 1,): where pieces meet. stops: values of s at which the direction
     of the path jumps, so that a motion has to stop there; the ends are not among them.
+
+    Raises InputError for no pieces, for fields of pieces that are not finite or have other shapes, and for
+    stops that are not on the path.
     """
 
-    def __init__(self, pieces: Sequence[CartesianPiece], stops: Sequence[float] = ()) -> None:
-        self.lengths: Array = np.array([piece.length for piece in pieces])
+    def __init__(self, pieces: Sequence[CartesianPiece], stops: ArrayLike = ()) -> None:
+        pieces = _read_pieces(pieces)
+        self.lengths: Array = _read_field(pieces, "length", ())
+        if (self.lengths < 0.0).any():
+            raise InputError(f"length of a piece is {self.lengths.min():g}; it must not be negative")
         self.breaks: Array = np.concatenate([[0.0], np.cumsum(self.lengths)])
-        self.stops: Array = np.array(stops, dtype=float)
-        self._pieces: Any = tuple(
-            np.array([getattr(piece, name) for piece in pieces], dtype=float) for name in PIECE_FIELDS
-        )
+        self.stops: Array = one_array(stops, "stops", (None,), "values of s", largest=FARTHEST)
+        beyond = (self.stops < 0.0) | (self.stops > self.length)
+        if beyond.any():
+            raise InputError(
+                f"stops contains {self.stops[beyond][0]:.9g}; the path is from 0 to {self.length:.9g}"
+            )
+        self._pieces: Any = tuple(_read_field(pieces, *field) for field in PIECE_FIELDS.items())
+        as_rotation(self._pieces[2], "R of the pieces")
 
     @property
     def length(self) -> float:
@@ -119,6 +138,29 @@ class CartesianPath:
         flat = np.clip(values, 0.0, self.length).ravel()
         piece = np.clip(np.searchsorted(self.breaks, flat, side="right") - 1, 0, len(self.lengths) - 1)
         return piece, flat - self.breaks[piece], values.shape
+
+
+def _read_pieces(pieces: Sequence[CartesianPiece]) -> tuple[CartesianPiece, ...]:
+    """At least one piece; InputTypeError for other objects."""
+    rule = "give a sequence of CartesianPiece, or make a path by line_path, arc_path, screw_path or pose_path"
+    if not isinstance(pieces, Iterable):
+        raise InputTypeError(f"pieces is a {type(pieces).__name__}; {rule}")
+    read = tuple(pieces)
+    for k, piece in enumerate(read):
+        check_kind(f"piece {k} of the path", piece, CartesianPiece, rule)
+    if not read:
+        raise InputError(f"pieces is empty; a path has one or more: {rule}")
+    return read
+
+
+def _read_field(pieces: tuple[CartesianPiece, ...], name: str, shape: tuple[int, ...]) -> Array:
+    """A field of all pieces as one array (k, *shape); InputError names the piece that does not fit."""
+    rows = np.empty((len(pieces), *shape))
+    for k, piece in enumerate(pieces):
+        value = getattr(piece, name)
+        plain = type(value) is np.ndarray and value.dtype == np.float64 and value.shape == shape
+        rows[k] = value if plain else one_array(value, f"{name} of piece {k}", shape).reshape(shape)
+    return as_floats(rows, f"{name} of the pieces", largest=FARTHEST)
 
 
 def stay_at(T: Array) -> CartesianPath:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import Final
 
@@ -34,8 +35,7 @@ def fit_path(curve: Callable[[Array, int], Array], length: float, *, tolerance: 
     Returns a Path, whose `remarks` state the error. Raises InputError where the curve is not finite, and
     where halving does not attain the tolerance, such as at a corner.
     """
-    if not callable(curve):
-        raise InputTypeError(f"curve is a {type(curve).__name__}; give a function of s and order")
+    _check_curve(curve)
     length = positive_number(length, "length")
     tolerance = positive_number(tolerance, "tolerance")
     breaks = np.linspace(0.0, length, FIRST_PIECES + 1)
@@ -65,6 +65,21 @@ def _fit_pieces(curve: Callable[[Array, int], Array], breaks: Array) -> tuple[Pa
         gap = path.evaluate_pieces(pieces, np.full(len(path), share)) - _read_curve(curve, s, 0)
         errors = np.maximum(errors, np.linalg.norm(gap, axis=1))
     return path, errors
+
+
+def _check_curve(curve: Callable[[Array, int], Array]) -> None:
+    """InputTypeError for an object that cannot be called with s and order."""
+    rule = "it must accept (s, order) and return the configuration (order 0) and its derivatives by s (1, 2)"
+    if not callable(curve):
+        raise InputTypeError(f"curve is a {type(curve).__name__}; {rule}")
+    try:
+        given = inspect.signature(curve)
+    except (TypeError, ValueError):  # a compiled function without one
+        return
+    try:
+        given.bind(np.zeros(1), 0)
+    except TypeError as error:
+        raise InputTypeError(f"curve has the arguments {given}: {error}; {rule}") from None
 
 
 def _read_curve(curve: Callable[[Array, int], Array], s: Array, order: int) -> Array:

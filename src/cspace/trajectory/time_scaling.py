@@ -12,7 +12,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Limits
-from cspace.tolerances import FARTHEST, LIMIT_ROUNDING
+from cspace.tolerances import FARTHEST, LIMIT_ROUNDING, NEGLIGIBLE_TERM
 from cspace.trajectory.piece_roots import find_piece_roots
 from cspace.trajectory.polynomials import (
     PolynomialTrajectory,
@@ -138,9 +138,11 @@ def find_duration(
     if not changes.any():
         return 0.0, True
     most = np.array([limits.velocity, limits.acceleration, limits.jerk])
-    h = max(float(np.max(np.abs(changes[:3]) / most[: len(changes[:3])])), LIMIT_ROUNDING)
+    with np.errstate(over="ignore"):
+        h = max(float(np.max(np.abs(changes[:3]) / most[: len(changes[:3])])), LIMIT_ROUNDING)
     parts = _split_by_power(states)
     for _ in range(MOST_JUMPS):
+        check_length(h)
         h = _round_up(h, cycle)
         until = _leave_violations(parts, h, most)
         if until <= h:
@@ -188,9 +190,15 @@ def _next_crossing(values: Array, limit: float, order: int, h: float) -> float:
     excess = np.zeros(max(len(values), order + 1))
     excess[: len(values)] = values
     excess[order] -= limit
+    with np.errstate(over="ignore"):
+        excess *= h ** np.arange(len(excess))  # a polynomial of the duration in units of h
+    excess /= np.abs(excess).max()
+    excess[np.abs(excess) < NEGLIGIBLE_TERM] = 0.0
+    if not np.isfinite(excess).all():
+        return np.inf
     roots = np.roots(excess[::-1])
-    later = roots.real[(np.abs(roots.imag) <= LIMIT_ROUNDING * np.abs(roots)) & (roots.real > h)]
-    return float(later.min(initial=np.inf))
+    later = roots.real[(np.abs(roots.imag) <= LIMIT_ROUNDING * np.abs(roots)) & (roots.real > 1.0)]
+    return h * float(later.min(initial=np.inf))
 
 
 def check_boundary(states: Array, limits: Limits, labels: Sequence[str]) -> None:
