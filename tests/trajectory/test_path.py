@@ -89,13 +89,15 @@ def test_the_excursion_is_the_largest_overshoot():
 
 @pytest.mark.parametrize("kind", ["quintic", "circular"])
 def test_blends_deviate_as_stated_and_stay_in_the_hull(kind):
-    for deviation in (1e-4, 0.02, 0.1, 10.0):
-        w = RNG.uniform(-1, 1, (6, 2))
+    rng = np.random.default_rng(8)
+    for deviation in 25 * (1e-4, 0.02, 0.1, 10.0):
+        w = rng.uniform(-1, 1, (6, 2))
         path = cs.blend(w, deviation, kind=kind)
         dense = path(np.linspace(0, path.length, 40_001))
         for corner in w[1:-1]:
             assert np.linalg.norm(dense - corner, axis=1).min() <= deviation * (1 + 1e-3) + 1e-4
-        assert path.continuity == (2 if kind == "quintic" else 1)
+        smooth = 2 if kind == "quintic" else 1
+        assert path.continuity == (0 if path.stops.size else smooth)  # it stops where it nearly turns back
         legs = np.diff(w, axis=0)
         for q in dense[::500]:
             ahead = np.clip(((q - w[:-1]) * legs).sum(1) / (legs**2).sum(1), 0, 1)
