@@ -78,7 +78,8 @@ static void measure_arm(const NamedArm& arm) {
         }
     });
     bench::measure(("ik batch " + arm.name).c_str(), n, 200, [&] {
-        kernels::ik_many(solver, goals.data(), n, ik::max_branches, q.data(), counts.data(), verdicts.data());
+        kernels::ik_many(solver, goals.data(), n, n, ik::max_branches, q.data(), counts.data(),
+                         verdicts.data());
     });
 }
 

@@ -119,9 +119,9 @@ def read_limits(limits: Any, dof: int) -> Limits:
 
 
 def list_bounds(limits: Limits) -> Iterator[Bound]:
-    """Every limit that is finite, joint by joint."""
-    for j in range(len(limits)):
-        for name, order in ORDERS.items():
+    """Every limit that is finite, derivative by derivative."""
+    for name, order in ORDERS.items():
+        for j in range(len(limits)):
             high = limits.upper[j] if order == 0 else getattr(limits, name)[j]
             low = limits.lower[j] if order == 0 else -high
             for sign, level, side in ((1.0, high, "upper"), (-1.0, -low, "lower")):
@@ -139,9 +139,11 @@ class Stretches(NamedTuple):
     last: Array
 
 
-def monotone_stretches(motion: Motion, joint: int, order: int) -> Stretches:
-    """The stretches of a motion on which a derivative of a joint rises or falls throughout."""
-    times = motion._turning_times(order)[joint]
+def monotone_stretches(motion: Motion, joint: int, order: int, times: Array) -> Stretches:
+    """The stretches of a motion on which a derivative of a joint rises or falls throughout.
+
+    times (k,) [s]: where it turns, of motion._turning_times.
+    """
     begin, end = (times[:-1], times[1:]) if len(times) > 1 else (times, times)
     first = motion._evaluate_joint(joint, begin, order, False)
     last = motion._evaluate_joint(joint, end, order, True)
@@ -211,11 +213,14 @@ def merge_violations(a: Violation, b: Violation) -> Violation:
 
 def bounds_with_stretches(motion: Motion, limits: Limits) -> Iterator[tuple[Bound, Stretches]]:
     """Every finite limit with the monotone stretches of what it bounds."""
+    times: dict[int, list[Array]] = {}
     known: dict[tuple[int, int], Stretches] = {}
     for bound in list_bounds(limits):
         key = bound.joint, bound.order
+        if bound.order not in times:
+            times = {bound.order: motion._turning_times(bound.order)}
         if key not in known:
-            known = {key: monotone_stretches(motion, *key)}
+            known = {key: monotone_stretches(motion, *key, times[bound.order][bound.joint])}
         yield bound, known[key]
 
 

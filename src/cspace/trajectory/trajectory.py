@@ -168,8 +168,8 @@ class Trajectory(ABC):
         """
         order = whole_number(order, "order", 0, HIGHEST_ORDER)
         rows = np.empty((4, self.dof))
-        for j in range(self.dof):
-            parts = monotone_stretches(self, j, order)
+        for j, turns in enumerate(self._turning_times(order) if self.dof else ()):
+            parts = monotone_stretches(self, j, order, turns)
             times = np.stack([parts.begin, parts.end], axis=-1).ravel()
             values = np.stack([parts.first, parts.last], axis=-1).ravel()
             low, high = int(np.argmin(values)), int(np.argmax(values))
