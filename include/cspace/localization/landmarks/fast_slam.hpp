@@ -240,6 +240,7 @@ class FastSlam {
         std::array<double, 6> by_pose{};
         Matrix2 own{};  // A Σ Aᵀ + R
     };
+    std::vector<Expected> expected_;  // (readings, particles): of version 1, where readings have names
     Expected expect(const MeasuredNumbers& numbers, const Pose& pose,
                     const ParticleLandmark& landmark) const {
         Expected found;
@@ -297,6 +298,8 @@ class FastSlam {
     }
     // Readings of landmarks with names, at the gate of the mixture of all particles.
     void test_readings() {
+        const std::size_t n = poses_.size();
+        expected_.resize(rule_.version == 1 ? n * numbers_.size() : 0);
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
             if (slots_[i] == none || !is_mapped(slots_[i])) continue;
             Vector2 mean{};
@@ -304,6 +307,7 @@ class FastSlam {
             int count = 0;
             for (std::size_t k = 0; k < poses_.size(); ++k) {
                 const Expected found = expect(numbers_[i], poses_[k], chunks_.read(k, slots_[i]));
+                if (!expected_.empty()) expected_[n * i + k] = found;
                 const Matrix2 own = innovation_covariance(found, noise_);
                 const Vector2& v = found.model.innovation;
                 count = found.model.count;
@@ -344,7 +348,9 @@ class FastSlam {
         if (!is_named_) associate(k, P, is_best);
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
             if (own_slots_[i] == none || !chunks_.read(k, own_slots_[i]).seen) continue;
-            const Expected found = expect(numbers_[i], mean, chunks_.read(k, own_slots_[i]));
+            const Expected found = has_expected(i)
+                                       ? expected_[poses_.size() * i + k]
+                                       : expect(numbers_[i], mean, chunks_.read(k, own_slots_[i]));
             const ScalarInnovation weighed =
                 weigh_innovation(found.model.innovation, innovation_covariance(found, P), found.model.count);
             if (!weighed.is_regular) continue;
@@ -367,6 +373,12 @@ class FastSlam {
         poses_[k] = mean;
         create_landmarks(k);
         if (!is_named_) drop_landmarks(k);
+    }
+    // Whether particles still expect of a reading what they did when it was tested: their poses stay, and so
+    // does a landmark until its first reading.
+    bool has_expected(std::size_t i) const {
+        const auto end = slots_.begin() + std::ptrdiff_t(i);
+        return is_named_ && !expected_.empty() && std::find(slots_.begin(), end, slots_[i]) == end;
     }
     // The Kalman update of the pose alone, with the landmark unknown by its covariance.
     static void refine_pose(const Expected& found, const ScalarInnovation& weighed, Pose& mean,
