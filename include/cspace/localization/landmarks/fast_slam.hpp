@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <unordered_map>
 #include <vector>
 
@@ -27,16 +28,23 @@ namespace cspace::localization {
 
 using Covariance3 = std::array<double, 9>;
 
-// Density and gain of one reading: S with its inverse, and log N(ν; 0, S).
+// Density and gain of one reading: the inverse of S, νᵀ S⁻¹ ν, det S.
 struct ScalarInnovation {
     Matrix2 inverse{};
-    double nis = 0, log_density = 0;
+    double nis = 0, determinant = 0;
+    int count = 0;
     bool is_regular = false;
+
+    // log N(ν; 0, S).
+    double log_density() const {
+        constexpr double log_turn = 1.8378770664093453;  // log 2π
+        return -0.5 * (nis + std::log(determinant) + count * log_turn);
+    }
 };
 inline ScalarInnovation weigh_innovation(const Vector2& v, const Matrix2& S, int count) {
-    constexpr double log_turn = 1.8378770664093453;  // log 2π
     ScalarInnovation found;
-    double determinant = S[0];
+    found.count = count;
+    double& determinant = found.determinant = S[0];
     if (count == 2) {
         determinant = S[0] * S[3] - S[1] * S[2];
         found.inverse = {S[3] / determinant, -S[1] / determinant, -S[2] / determinant, S[0] / determinant};
@@ -46,7 +54,6 @@ inline ScalarInnovation weigh_innovation(const Vector2& v, const Matrix2& S, int
     found.is_regular = determinant > 0;
     found.nis = v[0] * v[0] * found.inverse[0] + v[0] * v[1] * (found.inverse[1] + found.inverse[2]) +
                 v[1] * v[1] * found.inverse[3];
-    found.log_density = -0.5 * (found.nis + std::log(determinant) + count * log_turn);
     return found;
 }
 
@@ -67,7 +74,8 @@ class FastSlam {
           gate_(rule.landmarks.gate),
           pair_gate_(rule.landmarks.pair_share),
           new_gate_(rule.landmarks.new_share),
-          rejections_(rule.landmarks.lost_after) {}
+          rejections_(rule.landmarks.lost_after),
+          mount_(PlanarSpace::read_pose(rule.sensor.mount.data())) {}
 
     void predict(const Pose& increment, const Covariance3& noise) {
         pending_ = PlanarSpace::compose(pending_, increment);
@@ -160,6 +168,7 @@ class FastSlam {
     std::vector<std::int64_t> names_;
     std::uint64_t step_ = 0;
     RejectionSum rejections_;
+    Pose mount_;  // of the sensor
     bool best_expected_ = false;
     LandmarkCounts counts_;
     std::vector<ReadingOutcome> outcomes_;
@@ -240,11 +249,11 @@ class FastSlam {
         std::array<double, 6> by_pose{};
         Matrix2 own{};  // A Σ Aᵀ + R
     };
-    std::vector<Expected> expected_;  // (readings, particles): of version 1, where readings have names
+    std::vector<Expected> expected_;  // (readings, particles), where readings have names
     Expected expect(const MeasuredNumbers& numbers, const Pose& pose,
                     const ParticleLandmark& landmark) const {
         Expected found;
-        const SensorPose at = place_sensor(pose, rule_.sensor.mount);
+        const SensorPose at = place_sensor(pose, mount_);
         found.model = model_reading(numbers, rule_.sensor, at, landmark.point,
                                     {landmark.point[0] - pose.x, landmark.point[1] - pose.y});
         const Symmetric2& C = landmark.covariance;
@@ -262,15 +271,26 @@ class FastSlam {
         }
         return found;
     }
+    // f of the number of measured values as a constant, so that loops over them are unrolled.
+    template <class Function>
+    static auto with_count(int count, const Function& f) {
+        if (count == 2) return f(std::integral_constant<std::size_t, 2>());
+        if (count == 1) return f(std::integral_constant<std::size_t, 1>());
+        return f(std::integral_constant<std::size_t, 0>());
+    }
     // own + H P Hᵀ.
     static Matrix2 innovation_covariance(const Expected& found, const Covariance3& P) {
+        return with_count(found.model.count, [&](auto count) { return add_pose<count()>(found, P); });
+    }
+    template <std::size_t count>
+    static Matrix2 add_pose(const Expected& found, const Covariance3& P) {
         Matrix2 S = found.own;
-        for (std::size_t r = 0; r < std::size_t(found.model.count); ++r) {
+        for (std::size_t r = 0; r < count; ++r) {
             double HP[3] = {};
             for (std::size_t c = 0; c < 3; ++c) {
                 for (std::size_t k = 0; k < 3; ++k) HP[c] += found.by_pose[3 * r + k] * P[3 * k + c];
             }
-            for (std::size_t s = 0; s < std::size_t(found.model.count); ++s) {
+            for (std::size_t s = 0; s < count; ++s) {
                 for (std::size_t c = 0; c < 3; ++c) S[2 * r + s] += HP[c] * found.by_pose[3 * s + c];
             }
         }
@@ -299,7 +319,7 @@ class FastSlam {
     // Readings of landmarks with names, at the gate of the mixture of all particles.
     void test_readings() {
         const std::size_t n = poses_.size();
-        expected_.resize(rule_.version == 1 ? n * numbers_.size() : 0);
+        expected_.resize(n * numbers_.size());
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
             if (slots_[i] == none || !is_mapped(slots_[i])) continue;
             Vector2 mean{};
@@ -307,7 +327,7 @@ class FastSlam {
             int count = 0;
             for (std::size_t k = 0; k < poses_.size(); ++k) {
                 const Expected found = expect(numbers_[i], poses_[k], chunks_.read(k, slots_[i]));
-                if (!expected_.empty()) expected_[n * i + k] = found;
+                expected_[n * i + k] = found;
                 const Matrix2 own = innovation_covariance(found, noise_);
                 const Vector2& v = found.model.innovation;
                 count = found.model.count;
@@ -345,21 +365,23 @@ class FastSlam {
         Pose mean = poses_[k];
         Covariance3 P = noise_;
         own_slots_ = slots_;
+        bool is_refined = false;
         if (!is_named_) associate(k, P, is_best);
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
             if (own_slots_[i] == none || !chunks_.read(k, own_slots_[i]).seen) continue;
-            const Expected found = has_expected(i)
+            const Expected found = !is_refined && has_expected(i)
                                        ? expected_[poses_.size() * i + k]
                                        : expect(numbers_[i], mean, chunks_.read(k, own_slots_[i]));
             const ScalarInnovation weighed =
                 weigh_innovation(found.model.innovation, innovation_covariance(found, P), found.model.count);
             if (!weighed.is_regular) continue;
             if (rule_.version == 1) {
-                log_weights_[k] += weighed.log_density;
+                log_weights_[k] += weighed.log_density();
                 update_landmark(found, chunks_.write(k, own_slots_[i]));
             } else {
-                log_weights_[k] += weighed.log_density;
+                log_weights_[k] += weighed.log_density();
                 refine_pose(found, weighed, mean, P);
+                is_refined = true;
             }
         }
         if (rule_.version == 2) {
@@ -374,16 +396,20 @@ class FastSlam {
         create_landmarks(k);
         if (!is_named_) drop_landmarks(k);
     }
-    // Whether particles still expect of a reading what they did when it was tested: their poses stay, and so
-    // does a landmark until its first reading.
+    // Whether a particle whose pose stays still expects of a reading what it did when the reading was tested:
+    // a landmark stays until its first reading.
     bool has_expected(std::size_t i) const {
         const auto end = slots_.begin() + std::ptrdiff_t(i);
-        return is_named_ && !expected_.empty() && std::find(slots_.begin(), end, slots_[i]) == end;
+        return is_named_ && std::find(slots_.begin(), end, slots_[i]) == end;
     }
     // The Kalman update of the pose alone, with the landmark unknown by its covariance.
     static void refine_pose(const Expected& found, const ScalarInnovation& weighed, Pose& mean,
                             Covariance3& P) {
-        const std::size_t count = std::size_t(found.model.count);
+        with_count(found.model.count, [&](auto count) { refine_by<count()>(found, weighed, mean, P); });
+    }
+    template <std::size_t count>
+    static void refine_by(const Expected& found, const ScalarInnovation& weighed, Pose& mean,
+                          Covariance3& P) {
         double PH[6] = {}, K[6] = {};
         for (std::size_t c = 0; c < 3; ++c) {
             for (std::size_t r = 0; r < count; ++r) {
@@ -405,11 +431,16 @@ class FastSlam {
     }
     // The Kalman update of one landmark at a known pose.
     static void update_landmark(const Expected& found, ParticleLandmark& landmark) {
-        const std::size_t count = std::size_t(found.model.count);
         const ScalarInnovation weighed =
             weigh_innovation(found.model.innovation, found.own, found.model.count);
         ++landmark.seen, landmark.missed = 0;
         if (!weighed.is_regular) return;
+        with_count(found.model.count,
+                   [&](auto count) { correct_landmark<count()>(found, weighed, landmark); });
+    }
+    template <std::size_t count>
+    static void correct_landmark(const Expected& found, const ScalarInnovation& weighed,
+                                 ParticleLandmark& landmark) {
         Symmetric2& C = landmark.covariance;
         double CA[4] = {}, K[4] = {};
         for (std::size_t r = 0; r < count; ++r) {
@@ -429,7 +460,7 @@ class FastSlam {
         }
     }
     void create_landmarks(std::size_t k) {
-        const SensorPose at = place_sensor(poses_[k], rule_.sensor.mount);
+        const SensorPose at = place_sensor(poses_[k], mount_);
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
             if (own_slots_[i] == none || chunks_.read(k, own_slots_[i]).seen) continue;
             ParticleLandmark& made = chunks_.write(k, own_slots_[i]);
@@ -457,9 +488,9 @@ class FastSlam {
                     found.model.innovation, innovation_covariance(found, P), found.model.count);
                 if (!weighed.is_regular) continue;
                 is_new = is_new && weighed.nis > new_limit;
-                if (is_taken[slot] || weighed.nis > pair_limit || weighed.log_density <= best_density)
+                if (is_taken[slot] || weighed.nis > pair_limit || weighed.log_density() <= best_density)
                     continue;
-                best_density = weighed.log_density, own_slots_[i] = slot, chosen = found,
+                best_density = weighed.log_density(), own_slots_[i] = slot, chosen = found,
                 chosen_weight = weighed;
             }
             const bool is_paired = own_slots_[i] != none;
@@ -490,7 +521,7 @@ class FastSlam {
     }
     void miss_landmarks(std::size_t k, const std::vector<char>& is_taken, bool is_best) {
         if (is_best) best_expected_ = false;
-        const SensorPose at = place_sensor(poses_[k], rule_.sensor.mount);
+        const SensorPose at = place_sensor(poses_[k], mount_);
         for (std::size_t slot = 0; slot < is_taken.size(); ++slot) {
             const ParticleLandmark& landmark = chunks_.read(k, slot);
             if (!is_in_view(rule_.sensor, at.see(landmark.point))) continue;

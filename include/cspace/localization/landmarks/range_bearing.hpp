@@ -28,16 +28,20 @@ struct SensorPose {
         return {x + c * seen[0] - s * seen[1], y + s * seen[0] + c * seen[1]};
     }
 };
-inline SensorPose place_sensor(const PlanarSpace::Pose& base, const std::array<double, 3>& mount) {
-    const PlanarSpace::Pose on_base{mount[0], mount[1], std::cos(mount[2]), std::sin(mount[2])};
-    const PlanarSpace::Pose at = PlanarSpace::compose(base, on_base);
+inline SensorPose place_sensor(const PlanarSpace::Pose& base, const PlanarSpace::Pose& mount) {
+    const PlanarSpace::Pose at = PlanarSpace::compose(base, mount);
     return {at.x, at.y, at.c, at.s};
+}
+inline SensorPose place_sensor(const PlanarSpace::Pose& base, const std::array<double, 3>& mount) {
+    return place_sensor(base, PlanarSpace::read_pose(mount.data()));
 }
 
 inline constexpr double closest_landmark = 1e-3;  // [m]: nearer ones have the derivative that they have there
 
 // Range and bearing of a point in the frame of the sensor, and their derivatives by it.
-inline Vector2 predict_reading(Vector2 h) { return {std::hypot(h[0], h[1]), std::atan2(h[1], h[0])}; }
+inline Vector2 predict_reading(Vector2 h) {
+    return {std::sqrt(h[0] * h[0] + h[1] * h[1]), std::atan2(h[1], h[0])};
+}
 inline Matrix2 differentiate_reading(Vector2 h) {
     const double square = std::max(h[0] * h[0] + h[1] * h[1], closest_landmark * closest_landmark);
     const double range = std::sqrt(square);
