@@ -73,7 +73,7 @@ struct PlanarSpace {
     // X exp ξ, with a rotation of unit length.
     static Pose move(const Pose& pose, const double* twist) {
         Pose moved = compose(pose, exponential(twist));
-        const double scale = 1 / std::hypot(moved.c, moved.s);
+        const double scale = 1 / std::sqrt(moved.c * moved.c + moved.s * moved.s);
         moved.c *= scale, moved.s *= scale;
         return moved;
     }

@@ -218,14 +218,15 @@ class FastSlam {
     }
     // Box & Muller 1958.
     Vector3 draw_normals(std::size_t particle) const {
-        double normal[4];
+        Vector3 normal{};
         for (std::uint32_t k = 0; k < 2; ++k) {
             const FourWords drawn = draw_four(particle, k);
             const double radius = std::sqrt(-2 * std::log(uniform(drawn.word[0], drawn.word[1])));
             const double angle = 2 * half_turn * uniform(drawn.word[2], drawn.word[3]);
-            normal[2 * k] = radius * std::cos(angle), normal[2 * k + 1] = radius * std::sin(angle);
+            normal[2 * k] = radius * std::cos(angle);
+            if (k == 0) normal[1] = radius * std::sin(angle);
         }
-        return {normal[0], normal[1], normal[2]};
+        return normal;
     }
 
     // All motion since the last update; version 1 draws its noise at once.
