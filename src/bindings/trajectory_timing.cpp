@@ -101,15 +101,23 @@ const char* name_of(TimingOutcome outcome) {
     return names[int(outcome)];
 }
 using Answer = std::tuple<const char*, std::size_t, double, double, std::optional<GridArrays>, Doubles, bool>;
-Answer show(const Timing& timing) {
-    const bool own = timing.grid.size() > 0;
-    return {name_of(timing.outcome),
-            timing.where,
-            timing.least,
-            timing.most,
-            own ? std::optional(show_grid(timing.grid)) : std::nullopt,
-            Doubles({npy_intp(timing.squared_speed.size())}, timing.squared_speed.data()),
-            timing.converged};
+// The numbers as an array; their own memory is given back.
+template <class T>
+Plain<T> hand_over(std::vector<T>& numbers) {
+    const std::vector<T> given = std::move(numbers);
+    numbers = {};
+    return Plain<T>({npy_intp(given.size())}, given.data());
+}
+Answer show(Timing timing) {
+    Doubles squared_speed = hand_over(timing.squared_speed);
+    std::optional<GridArrays> own;
+    if (TimingGrid& grid = timing.grid; grid.size() > 0) {
+        auto piece = hand_over(grid.piece);
+        Doubles from = hand_over(grid.from);
+        own.emplace(std::move(piece), std::move(from), hand_over(grid.to));
+    }
+    return {name_of(timing.outcome), timing.where,    timing.least, timing.most, own,
+            squared_speed,           timing.converged};
 }
 
 }  // namespace
@@ -141,7 +149,7 @@ void bind_trajectory_timing(nb::module_& m) {
                 timing = grid ? time_on_grid(path, limits, options, given, sampler)
                               : time_path(path, limits, options, sampler);
             }
-            return show(timing);
+            return show(std::move(timing));
         },
         "controls"_a, "lengths"_a, "stops"_a, "velocity"_a, "acceleration"_a, "start"_a, "end"_a,
         "tolerance"_a, "grid"_a.none(), "sample"_a.none(),

@@ -72,6 +72,7 @@ SampledLimits show_samples(const TimingSamples& samples) {
 namespace {
 
 constexpr size_t intervals_between_polls = 256;  // some fifty microseconds
+constexpr size_t many_intervals = 1 << 16;       // memory is given back where it counts
 constexpr int first_parts = 4;                   // of a piece: halved once before anything is known of it
 constexpr double least_part = 0x1p-18;           // of a piece: beyond it rounding shows in the accelerations
 constexpr double share_of_change = 0.3;  // of the mean change of an interval, above which it is halved
@@ -134,6 +135,7 @@ class PathTimer {
             return report(timing, TimingOutcome::start, range_[0]);
         timing.squared_speed.assign(count_ + 1, 0.0);
         raise(timing.squared_speed);
+        if (count_ > many_intervals) range_ = {};
         return timing;
     }
 
@@ -331,13 +333,13 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
         Timing timing = timer.solve();
         const bool timed = timing.outcome == TimingOutcome::timed;
         Seconds now = timed ? measure(timer, timing.squared_speed) : Seconds{};
-        std::vector<double> change(last.each.size(), 0.0);
+        std::vector<double>& change = last.each;  // of the seconds, by the halving
         double changed = 0.0;
         const bool known = timed && !last.each.empty();
         if (known) {
-            visit_range(0, now.each.size(), [&](size_t i) { change[halved.parent[i]] += now.each[i]; });
+            visit_range(0, now.each.size(), [&](size_t i) { change[halved.parent[i]] -= now.each[i]; });
             visit_range(0, change.size(), [&](size_t k) {
-                change[k] = std::fabs(change[k] - last.each[k]);
+                change[k] = std::fabs(change[k]);
                 changed += change[k];
             });
         }

@@ -22,6 +22,7 @@ from cspace.dynamics.rows import EARTH
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
+from cspace.model.values import freeze_array
 from cspace.tables import join_words
 from cspace.tolerances import FARTHEST, LEAST_LIMIT, LIMIT_ROUNDING, TIMED_WITHIN
 from cspace.trajectory.graded_grid import Section
@@ -383,7 +384,7 @@ class _Timer:
         return TimedPath(
             self.path,
             used,
-            squared_speed,
+            freeze_array(squared_speed),
             ratios=self.ratios,
             proved=sample is None,
             converged=converged and grid is None,

@@ -55,7 +55,8 @@ class Grid(NamedTuple):
 
     def lengths(self, path: Path) -> Array:
         """The lengths (k,) of the parameter."""
-        lengths: Array = (self.end - self.begin) * path.lengths[self.piece]
+        lengths: Array = self.end - self.begin
+        lengths *= path.lengths[self.piece]
         return lengths
 
     def divided(self, parts: npt.NDArray[np.intp]) -> Grid:
@@ -108,7 +109,8 @@ class TimedPath(Trajectory):
     ) -> None:
         self.path = path
         self.intervals = intervals
-        self.squared_speed = freeze_array(np.array(squared_speed))
+        is_owned = not squared_speed.flags.writeable  # nobody else changes it
+        self.squared_speed = squared_speed if is_owned else freeze_array(np.array(squared_speed))
         self.proved, self.converged = proved, converged
         self.place, self.speed_range = place, speed_range
         self._ratios = ratios

@@ -254,7 +254,7 @@ class FastSlam {
     Expected expect(const MeasuredNumbers& numbers, const Pose& pose,
                     const ParticleLandmark& landmark) const {
         Expected found;
-        const SensorPose at = place_sensor(pose, mount_);
+        const SensorPose at = place_mounted(pose, mount_);
         found.model = model_reading(numbers, rule_.sensor, at, landmark.point,
                                     {landmark.point[0] - pose.x, landmark.point[1] - pose.y});
         const Symmetric2& C = landmark.covariance;
@@ -461,7 +461,7 @@ class FastSlam {
         }
     }
     void create_landmarks(std::size_t k) {
-        const SensorPose at = place_sensor(poses_[k], mount_);
+        const SensorPose at = place_mounted(poses_[k], mount_);
         for (std::size_t i = 0; i < numbers_.size(); ++i) {
             if (own_slots_[i] == none || chunks_.read(k, own_slots_[i]).seen) continue;
             ParticleLandmark& made = chunks_.write(k, own_slots_[i]);
@@ -522,7 +522,7 @@ class FastSlam {
     }
     void miss_landmarks(std::size_t k, const std::vector<char>& is_taken, bool is_best) {
         if (is_best) best_expected_ = false;
-        const SensorPose at = place_sensor(poses_[k], mount_);
+        const SensorPose at = place_mounted(poses_[k], mount_);
         for (std::size_t slot = 0; slot < is_taken.size(); ++slot) {
             const ParticleLandmark& landmark = chunks_.read(k, slot);
             if (!is_in_view(rule_.sensor, at.see(landmark.point))) continue;

@@ -28,12 +28,12 @@ struct SensorPose {
         return {x + c * seen[0] - s * seen[1], y + s * seen[0] + c * seen[1]};
     }
 };
-inline SensorPose place_sensor(const PlanarSpace::Pose& base, const PlanarSpace::Pose& mount) {
+inline SensorPose place_mounted(const PlanarSpace::Pose& base, const PlanarSpace::Pose& mount) {
     const PlanarSpace::Pose at = PlanarSpace::compose(base, mount);
     return {at.x, at.y, at.c, at.s};
 }
 inline SensorPose place_sensor(const PlanarSpace::Pose& base, const std::array<double, 3>& mount) {
-    return place_sensor(base, PlanarSpace::read_pose(mount.data()));
+    return place_mounted(base, PlanarSpace::read_pose(mount.data()));
 }
 
 inline constexpr double closest_landmark = 1e-3;  // [m]: nearer ones have the derivative that they have there
