@@ -109,8 +109,8 @@ class TimedPath(Trajectory):
     ) -> None:
         self.path = path
         self.intervals = intervals
-        is_owned = not squared_speed.flags.writeable  # nobody else changes it
-        self.squared_speed = squared_speed if is_owned else freeze_array(np.array(squared_speed))
+        is_kept = squared_speed.flags.c_contiguous and not squared_speed.flags.writeable
+        self.squared_speed = squared_speed if is_kept else freeze_array(np.array(squared_speed))
         self.proved, self.converged = proved, converged
         self.place, self.speed_range = place, speed_range
         self._ratios = ratios
