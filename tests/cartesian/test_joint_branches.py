@@ -1,5 +1,7 @@
 """Joint paths along Cartesian paths: they keep to them, and where a branch ends is said."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -164,3 +166,15 @@ def test_limits_hold_between_nodes(name):
                 above = s[rows[:, j] > upper[j]]
                 np.testing.assert_allclose(branch.s_end, above[0], atol=2 * path.length / 2000)
     assert refused
+
+
+def test_branches_are_pickled_with_their_reasons():
+    robot = cs.load_robot("ur5e")
+    start = robot.fk(np.array([0.0, -1.2, 1.5, -1.8, -1.57, 0.0]))
+    goal = start.copy()
+    goal[2, 3] += 3.0
+    found = follow_cartesian(robot, line_path(start, goal))
+    assert not found
+    for branch in found.branches:
+        again = pickle.loads(pickle.dumps(branch))
+        assert again.reason == branch.reason != ""

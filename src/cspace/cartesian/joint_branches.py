@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -196,7 +196,7 @@ def make_branch(q_start: Array, found: Refined) -> JointBranch:
         path = begin_at(found.path, q_start)
         return JointBranch(path, q_start, path.length, "end", None, str, found.deviation)
     text = f"at s = {found.s_lost:.6g}: {BESIDE_SINGULAR}"
-    return JointBranch(None, q_start, found.s_lost, "singularity", None, lambda: text, NO_DEVIATION)
+    return JointBranch(None, q_start, found.s_lost, "singularity", None, partial(str, text), NO_DEVIATION)
 
 
 def begin_at(path: Path, q_start: Array) -> Path:
@@ -220,18 +220,19 @@ def end_at_limits(branch: JointBranch, bounds: Limits, robot: KinematicModel) ->
         return branch
     name = robot.joint_names[end.joint]
     text = f"at s = {end.s:.6g}: {name} would leave its limits"
-    return JointBranch(None, branch.q_start, end.s, "limit", name, lambda: text, NO_DEVIATION)
+    return JointBranch(None, branch.q_start, end.s, "limit", name, partial(str, text), NO_DEVIATION)
 
 
 def _ended(branch: Branch, s_of_row: Array) -> JointBranch:
     row = min(int(branch.end), len(s_of_row) - 2)
     s = float(s_of_row[row] + (branch.end - row) * (s_of_row[row + 1] - s_of_row[row]))
     first = branch.q[0] if len(branch.q) else branch.last
-
-    def explain() -> str:
-        return f"at s = {s:.6g}: {branch.explain_cause()}"
-
+    explain = partial(_explain_end, s, branch)
     return JointBranch(None, first, s, branch.cause, branch.joint, explain, NO_DEVIATION)
+
+
+def _explain_end(s: float, branch: Branch) -> str:
+    return f"at s = {s:.6g}: {branch.explain_cause()}"
 
 
 def _why_none(found: Track, branches: tuple[JointBranch, ...]) -> str:

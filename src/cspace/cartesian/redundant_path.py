@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -183,4 +184,4 @@ class RedundantJoint:
 def end_of_chain(q: Array, s: float, cause: str, reason: str, dof: int) -> JointBranch:
     """The branch of a chain q (k, dof) that ends at s."""
     first = q[0] if len(q) else np.full(dof, np.nan)
-    return JointBranch(None, first, s, cause, None, lambda: reason, NO_DEVIATION)
+    return JointBranch(None, first, s, cause, None, partial(str, reason), NO_DEVIATION)
