@@ -216,11 +216,9 @@ void bind_trajectory_timing(nb::module_& m) {
             }
             return std::make_tuple(timing.found,
                                    Doubles({npy_intp(timing.squares.size() / 3), 3}, timing.squares.data()),
-                                   timing.start_jerk, timing.end_jerk, timing.duration, timing.steps);
+                                   timing.start_jerk, timing.end_jerk);
         },
         "controls"_a, "lengths"_a, "stops"_a, "velocity"_a, "acceleration"_a, "jerk"_a, "grid"_a, "start"_a,
         "end"_a, "duration"_a, "tolerance"_a, "sampled"_a.none(),
-        "Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches, "
-        "seconds,"
-        " steps.");
+        "Whether found, Bernstein coefficients (k, 3) of the squared speed, path jerks of both launches.");
 }

@@ -14,6 +14,9 @@ struct JerkOptions {
     Launch start, end;
     double duration;   // of a motion to begin with; a slower one is found if it exceeds limits
     double tolerance;  // of the duration
+    // Intervals from which on a path is made window by window, in less memory. The first windows are a
+    // sixteenth of it.
+    std::size_t at_once = 20000;
 };
 
 // X (intervals, 3): Bernstein coefficients of the squared path speed, and the path jerks of the launches.
@@ -21,7 +24,6 @@ struct JerkTiming {
     bool found;
     std::vector<double> squares;
     double start_jerk, end_jerk, duration;
-    int steps;  // of Newton's method
 };
 
 // samples: of the grid, or empty.

@@ -148,6 +148,70 @@ TEST(a_straight_line_under_jerk_limits_takes_little_longer_than_seven_phases) {
     }
 }
 
+// A path of cubic pieces, smooth up to the second derivative, with intervals that grow from both ends.
+struct LongPath {
+    int joints = 3, parts;
+    std::vector<double> controls, lengths;
+    std::vector<signed char> stops;
+    TimingGrid grid;
+    double margin = 1e-4;
+
+    LongPath(int pieces, int parts_of_each, double waviness) : parts(parts_of_each) {
+        for (int i = 0; i < pieces; ++i) {
+            lengths.push_back(1.0);
+            for (int k = 0; k < 4; ++k)  // of the uniform cubic B-spline through random points
+                for (int j = 0; j < joints; ++j) {
+                    const auto point = [&](int n) {
+                        return 0.3 * n + std::sin(waviness * n * (1.0 + 0.37 * j) + j);
+                    };
+                    const double a = point(i), b = point(i + 1), c = point(i + 2), d = point(i + 3);
+                    const double at[] = {(a + 4 * b + c) / 6, (2 * b + c) / 3, (b + 2 * c) / 3,
+                                         (b + 4 * c + d) / 6};
+                    controls.push_back(at[k]);
+                }
+            divide(i, i == 0, i + 1 == pieces);
+        }
+        stops.assign(std::size_t(pieces) + 1, 0);
+    }
+    TimingPath path() const { return {3, joints, controls, lengths, stops}; }
+
+  private:
+    void divide(int piece, bool first, bool last) {
+        std::vector<double> places;
+        for (double at = margin; first && at < 1.0 / parts; at *= 1.4) places.push_back(at);
+        for (int k = 0; k < parts; ++k)
+            if (k > 0 || !first) places.push_back(double(k) / parts);
+        std::vector<double> ends;
+        for (double at = margin; last && at < 1.0 / parts; at *= 1.4) ends.push_back(1.0 - at);
+        places.insert(places.end(), ends.rbegin(), ends.rend());
+        if (!last) places.push_back(1.0);
+        for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+            grid.piece.push_back(piece);
+            grid.from.push_back(places[k]);
+            grid.to.push_back(places[k + 1]);
+        }
+    }
+};
+
+// Where waypoints are near each other, a motion brakes over many pieces: the windows have to grow.
+TEST(windows_of_a_path_under_jerk_limits_give_the_motion_that_the_whole_path_gives) {
+    for (const double waviness : {1.3, 0.4, 0.02}) {
+        const LongPath made(120, 12, waviness);
+        const std::vector<double> v(3, 2.0), a(3, 3.0), j(3, 20.0);
+        const Launch launch = {made.margin, 2.0};
+        const auto time = [&](std::size_t at_once) {
+            return time_path_with_jerk(made.path(), {v, a}, j, made.grid,
+                                       {launch, launch, 200.0, 1e-4, at_once}, {});
+        };
+        const JerkTiming whole = time(1 << 20);
+        CHECK(whole.found);
+        for (const std::size_t at_once : {200, 1000}) {
+            const JerkTiming parts = time(at_once);
+            CHECK(parts.found && std::fabs(parts.duration / whole.duration - 1.0) < 3e-4);
+        }
+    }
+}
+
 TEST(pentadiagonal_systems_are_solved) {
     const std::size_t n = 7;
     Pentadiagonal matrix(n);

@@ -183,3 +183,31 @@ def test_a_feed_is_never_slower_than_the_same_speed(seed, feed):
         held = cs.time_parametrize(path, robot, feed=feed, **options)
         limited = cs.time_parametrize(path, robot, speed=feed, **options)
         assert held.duration <= limited.duration * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("near", [False, True])
+def test_long_paths_are_made_window_by_window_and_take_no_longer(near):
+    # From 20,000 intervals on; where waypoints are near each other a motion brakes over hundreds of pieces.
+    rng = np.random.default_rng(43)
+    s = np.linspace(0, 1, 400)[:, None]
+    k = np.arange(3)
+    points = np.sin(3 * s + k) + 0.3 * np.cos(7 * s * k) if near else rng.uniform(-2, 2, (400, 3))
+    path = cs.spline(points)
+    most = {"velocity": 2.0, "acceleration": 5.0, "jerk": 50.0}
+    whole, parts = (cs.time_parametrize(path, **most, grid=n) for n in (19_000, 21_000))
+    assert len(whole.intervals.piece) < 20_000 < len(parts.intervals.piece)
+    assert parts.duration < whole.duration * (1 + 3e-4)
+    t = rng.uniform(0, parts.duration, 20_000)
+    for order, limit in ((1, 2.0), (2, 5.0), (3, 50.0)):
+        assert np.abs(parts(t, order)).max() <= limit * (1 + 1e-9)
+    smooth = np.linspace(0, parts.duration, 200_001)
+    assert np.abs(np.diff(parts(smooth, 2), axis=0)).max() <= 50.0 * smooth[1] * (1 + 1e-6)
+
+
+def test_short_pieces_of_long_smooth_paths_have_fewer_intervals_by_default():
+    s = np.linspace(0, 1, 500)[:, None]
+    path = cs.spline(np.sin(3 * s + np.arange(3)))
+    most = {"velocity": 2.0, "acceleration": 5.0, "jerk": 50.0}
+    own, fine = cs.time_parametrize(path, **most), cs.time_parametrize(path, **most, grid=30 * len(path))
+    assert len(own.intervals.piece) < 0.5 * len(fine.intervals.piece)
+    assert fine.duration <= own.duration < fine.duration * 1.002

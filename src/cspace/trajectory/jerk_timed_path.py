@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.model.values import freeze_array
@@ -35,7 +36,7 @@ class JerkTimedPath(TimedPath):
         path: Path,
         intervals: Grid,
         squares: Array,
-        law: Array,
+        law: npt.NDArray[np.int8],
         launch_jerk: Array,
         *,
         ratios: Ratios | None = None,
@@ -43,7 +44,8 @@ class JerkTimedPath(TimedPath):
         proved: bool = True,
     ) -> None:
         self.path, self.intervals = path, intervals
-        self.squares, self.law, self.launch_jerk = map(freeze_array, (squares, law, launch_jerk))
+        self.squares, self.launch_jerk, self.law = freeze_array(squares), freeze_array(launch_jerk), law
+        law.setflags(write=False)
         self.squared_speed = freeze_array(np.append(squares[:, 0], squares[-1, 2]))
         self.proved, self.converged = proved, False
         self.place, self.speed_range, self._ratios = np.nan, None, ratios

@@ -27,6 +27,12 @@ PIECE_INTERVALS: Final = 30
 DEFAULT_INTERVALS: Final = 150
 """Of a path, by default and at least."""
 
+MANY_INTERVALS: Final = 3000
+"""Of a path, from which on pieces have fewer by default if they are short parts of a smooth path."""
+
+PLAIN_INTERVALS: Final = 8
+"""Of a piece without jerk limits, at least: such a piece needs no more under them."""
+
 FIRST_SLOWER: Final = 1.5
 """Duration of the motion to begin with, over that without jerk limits."""
 
@@ -96,25 +102,30 @@ def _find_margin(path: Path, section: Section) -> float:
     return float(LAUNCH_PART * min(whole, SHORT_PIECE * first, SHORT_PIECE * last))
 
 
+def time_sections(sections: list[Section], plain: TimedPath) -> list[float]:
+    """The seconds of each section in a motion."""
+    breaks = plain.path.breaks[[sections[0].first, *(each.last for each in sections)]]
+    return list(np.diff(np.interp(breaks, plain.grid, plain.knots)).tolist())
+
+
 def time_section(
     path: Path,
     section: Section,
     arrays: tuple[Array, Array, npt.NDArray[np.int8]],
     limits: JerkLimits,
     grid: Grid,
-    plain: TimedPath,
+    seconds: float,
     sampled: SampledLimits | None,
 ) -> SectionLaw | None:
     """The fastest motion along a section from rest to rest; None if none keeps the limits.
 
-    arrays: the path as the core reads it. grid: as of divide_section, or finer. plain: the motion without
-    jerk limits. sampled: those of torque and of a frame, if there are any.
+    arrays: the path as the core reads it. grid: as of divide_section, or finer. seconds: of the motion
+    without jerk limits. sampled: those of torque and of a frame, if there are any.
     """
-    ends, margin = path.breaks[[section.first, section.last]], _find_margin(path, section)
+    margin = _find_margin(path, section)
     launch = find_launch_jerk(path, section.first, margin, limits, at_end=False)
     landing = find_launch_jerk(path, section.last - 1, margin, limits, at_end=True)
-    times = np.interp(ends, plain.grid, plain.knots)
-    found, squares, first, last, _, _ = time_path_with_jerk(
+    found, squares, first, last = time_path_with_jerk(
         *arrays,
         limits.velocity,
         limits.acceleration,
@@ -122,7 +133,7 @@ def time_section(
         (grid.piece, grid.begin, grid.end),
         (margin, launch),
         (margin, landing),
-        FIRST_SLOWER * float(times[1] - times[0]),
+        FIRST_SLOWER * seconds,
         BARRIER_GAP,
         None if sampled is None else sampled(*grid),
     )
@@ -143,6 +154,15 @@ def _add_launches(grid: Grid, section: Section, squares: Array, jerks: tuple[flo
     jerk = np.zeros(len(rows))
     jerk[0], jerk[-1] = jerks
     return SectionLaw(whole, rows, law, jerk)
+
+
+def join_laws(laws: list[SectionLaw]) -> SectionLaw:
+    """One after the other."""
+    if len(laws) == 1:
+        return laws[0]
+    grid = Grid(*(np.concatenate([each.grid[k] for each in laws]) for k in range(3)))
+    squares, law, jerk = (np.concatenate([each[k] for each in laws]) for k in range(1, 4))
+    return SectionLaw(grid, squares, law.astype(np.int8), jerk)
 
 
 def find_launch_jerk(path: Path, piece: int, margin: float, limits: JerkLimits, *, at_end: bool) -> float:
@@ -171,6 +191,11 @@ def find_launch_jerk(path: Path, piece: int, margin: float, limits: JerkLimits, 
             jerk *= 0.5
 
 
-def default_intervals(path: Path) -> int:
-    """How many intervals a path has without a number given."""
-    return max(DEFAULT_INTERVALS, PIECE_INTERVALS * len(path))
+def default_intervals(path: Path, plain: int) -> int:
+    """How many intervals a path has without a number given; plain: those without jerk limits.
+
+    Beyond many, each further one without jerk limits counts fourfold.
+    """
+    pieces = len(path)
+    enough = max(MANY_INTERVALS, PLAIN_INTERVALS * pieces + 4 * (plain - PLAIN_INTERVALS * pieces))
+    return max(DEFAULT_INTERVALS, min(PIECE_INTERVALS * pieces, enough))

@@ -197,7 +197,7 @@ class SampledLimits:
             self.expected = timed.grid, timed.squared_speed
         return self.tighten_by(self.measure(timed))
 
-    def renewed(self, expected: tuple[Array, Array]) -> SampledLimits:
+    def renewed(self, expected: tuple[Array, Array] | None) -> SampledLimits:
         """The same limits, not tightened, for another grid."""
         return SampledLimits(self.path, self.torque, self.frame, expected)
 

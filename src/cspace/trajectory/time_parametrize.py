@@ -34,8 +34,10 @@ from cspace.trajectory.jerk_timing import (
     divide_for_feed,
     divide_section,
     find_sections,
+    join_laws,
     refuse_jumps,
     time_section,
+    time_sections,
 )
 from cspace.trajectory.path import Path
 from cspace.trajectory.sampled_limits import (
@@ -101,8 +103,8 @@ def time_parametrize(
     default limits. gravity (3,) [m/s²]: for torque, (0, 0, −9.81) unless given. start_speed, end_speed:
     speeds ds/dt of the parameter at the ends. grid: about so many intervals; with few the motion may be much
     slower. By default they are halved until that changes the duration by less than `tolerance`, relative
-    (0.001). Under jerk limits 30 of a piece, 150 or more, unless a tolerance is given. positions: whether the
-    limits of position of limits count, too.
+    (0.001). Under jerk limits 30 of a piece (fewer of the short pieces of long paths), 150 or more, unless a
+    tolerance is given. positions: whether the limits of position of limits count, too.
 
     Returns a TimedPath; falsy, with reason, place and speed_range, where no speed keeps the limits, the path
     leaves those of position, or the speeds at the ends are impossible. Raises InputError for a wrong shape,
@@ -284,14 +286,17 @@ class _Timer:
         plain = self.time_once(None, ROUGHLY)
         if not plain:
             return plain
-        number = default_intervals(self.path) if count is None else count
+        number = default_intervals(self.path, len(plain.intervals.piece)) if count is None else count
         sections = find_sections(self.path)
+        seconds = time_sections(sections, plain)
+        expected = None if self.sampled is None else (plain.grid, plain.squared_speed)
+        del plain  # of long paths it takes as much memory as all that follows
         grids = [divide_section(self.path, each, number) for each in sections]
-        timed = self.time_with_jerk_on(sections, grids, plain)
+        timed = self.time_with_jerk_on(sections, grids, seconds, expected)
         while timed and count is None and self.tolerance is not None and number < MOST_JERK_INTERVALS:
             number *= 2
             grids = [divide_section(self.path, each, number) for each in sections]
-            last, timed = timed.duration, self.time_with_jerk_on(sections, grids, plain)
+            last, timed = timed.duration, self.time_with_jerk_on(sections, grids, seconds, expected)
             if abs(last - timed.duration) <= self.tolerance * timed.duration:
                 timed.converged = True
                 break
@@ -304,22 +309,30 @@ class _Timer:
                 divide_for_feed(each, parts[a + 1 : b - 1])
                 for each, (a, b) in zip(grids, pairwise(ends.tolist()), strict=True)
             ]
-            divided = self.time_with_jerk_on(sections, grids, plain)
+            divided = self.time_with_jerk_on(sections, grids, seconds, expected)
             if not divided or divided.duration >= timed.duration:  # uneven grids may cost more than they win
                 break
             timed = divided
         return timed
 
-    def time_with_jerk_on(self, sections: list[Section], grids: list[Grid], plain: TimedPath) -> TimedPath:
-        """The same on a grid of each section; plain: the motion without limits of jerk."""
+    def time_with_jerk_on(
+        self,
+        sections: list[Section],
+        grids: list[Grid],
+        seconds: list[float],
+        expected: tuple[Array, Array] | None,
+    ) -> TimedPath:
+        """The same on a grid of each section.
+
+        seconds, expected: of the motion without limits of jerk, as of time_sections and of SampledLimits.
+        """
         assert self.jerk is not None
         limits = JerkLimits(self.velocity, self.acceleration, self.jerk)
-        expected = plain.grid, plain.squared_speed
         sampled = [None if self.sampled is None else self.sampled.renewed(expected) for _ in sections]
         for _ in range(MOST_ROUNDS + 1):
             laws: list[SectionLaw] = []
-            for section, grid, own in zip(sections, grids, sampled, strict=True):
-                found = time_section(self.path, section, self.arrays, limits, grid, plain, own)
+            for section, grid, own, time in zip(sections, grids, sampled, seconds, strict=True):
+                found = time_section(self.path, section, self.arrays, limits, grid, time, own)
                 if found is None:
                     s = float(self.path.breaks[section.first])
                     return self._refuse(f"no motion from s = {s:.6g} on keeps the limits", s)
@@ -339,12 +352,13 @@ class _Timer:
         return self._refuse(f"limits are still exceeded after {MOST_ROUNDS} rounds; pass a finer grid=")
 
     def _join_sections(self, laws: list[SectionLaw]) -> JerkTimedPath:
+        joined = join_laws(laws)
         return JerkTimedPath(
             self.path,
-            Grid(*(np.concatenate([each.grid[k] for each in laws]) for k in range(3))),
-            np.concatenate([each.squares for each in laws]),
-            np.concatenate([each.law for each in laws]),
-            np.concatenate([each.jerk for each in laws]),
+            joined.grid,
+            joined.squares,
+            joined.law,
+            joined.jerk,
             ratios=self.ratios,
             joint_names=self.joint_names,
             proved=self.sampled is None,
