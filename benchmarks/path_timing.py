@@ -123,12 +123,15 @@ def measure_automatic(path: JointPath, rounds: int) -> Rows:
     timed, x = time_ours(path, None), toppra()
     grid: np.ndarray = toppra.grid  # type: ignore[attr-defined]
     rows: Rows = {}
-    for name, places, squared in (("cspace", timed.grid, timed.squared_speed), ("toppra", grid, x)):
-        over = excess(path, places, squared, VELOCITY, ACCELERATION)
+    for name, places, squared, rises, seconds in (
+        ("cspace", timed.grid, timed.squared_speed, timed.rises, timed.duration),
+        ("toppra", grid, x, 0.0, duration(grid, x)),
+    ):
+        over = excess(path, places, squared, VELOCITY, ACCELERATION, rises)
         rows[name] = {
             "intervals": len(places) - 1,
             "us": times[name],
-            "longer": duration(places, squared) / exact - 1.0,
+            "longer": seconds / exact - 1.0,
             "over_velocity": over[0],
             "over_acceleration": over[1],
         }

@@ -100,7 +100,8 @@ const char* name_of(TimingOutcome outcome) {
     static constexpr const char* names[] = {"timed", "blocked", "stands", "start", "end"};
     return names[int(outcome)];
 }
-using Answer = std::tuple<const char*, std::size_t, double, double, std::optional<GridArrays>, Doubles, bool>;
+using Answer =
+    std::tuple<const char*, std::size_t, double, double, std::optional<GridArrays>, Doubles, Doubles, bool>;
 // The numbers as an array; their own memory is given back.
 template <class T>
 Plain<T> hand_over(std::vector<T>& numbers) {
@@ -116,8 +117,8 @@ Answer show(Timing timing) {
         Doubles from = hand_over(grid.from);
         own.emplace(std::move(piece), std::move(from), hand_over(grid.to));
     }
-    return {name_of(timing.outcome), timing.where,    timing.least, timing.most, own,
-            squared_speed,           timing.converged};
+    return {name_of(timing.outcome), timing.where,    timing.least, timing.most, own, squared_speed,
+            hand_over(timing.rises), timing.converged};
 }
 
 }  // namespace
@@ -154,18 +155,20 @@ void bind_trajectory_timing(nb::module_& m) {
         "controls"_a, "lengths"_a, "stops"_a, "velocity"_a, "acceleration"_a, "start"_a, "end"_a,
         "tolerance"_a, "grid"_a.none(), "sample"_a.none(),
         "Outcome, the interval that is at fault, speeds that are possible, grid unless given, squared "
-        "speeds, whether converged.");
+        "speeds, their rises, whether converged.");
     m.def(
         "sum_times",
-        [](const ConstDoubles& lengths, const ConstDoubles& squared_speed) {
-            require_size(squared_speed.size == lengths.size + 1);
+        [](const ConstDoubles& lengths, const ConstDoubles& squared_speed, const ConstDoubles& rises) {
+            require_size(squared_speed.size == lengths.size + 1 && rises.size == lengths.size);
             Doubles times({squared_speed.size});
             sum_times({lengths.data, std::size_t(lengths.size)},
-                      {squared_speed.data, std::size_t(squared_speed.size)}, times.data);
+                      {squared_speed.data, std::size_t(squared_speed.size)},
+                      {rises.data, std::size_t(rises.size)}, times.data);
             return times;
         },
-        "lengths"_a, "squared_speed"_a,
-        "Seconds (k + 1,) to the places of a grid with intervals of lengths (k,), squared speeds (k + 1,).");
+        "lengths"_a, "squared_speed"_a, "rises"_a,
+        "Seconds (k + 1,) to the places of a grid with intervals of lengths (k,), squared speeds (k + 1,), "
+        "rises (k,).");
     m.def(
         "examine_path",
         [](const ConstDoubles& controls, const ConstDoubles& lengths, double gap, double jump, double slope) {

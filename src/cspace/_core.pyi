@@ -1021,14 +1021,14 @@ def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.ty
     Pieces, from and to (k,) of about so many intervals of a path, two or more in each piece.
     """
 
-def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, numpy.typing.NDArray[numpy.float64], bool]:
+def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], bool]:
     """
-    Outcome, the interval that is at fault, speeds that are possible, grid unless given, squared speeds, whether converged.
+    Outcome, the interval that is at fault, speeds that are possible, grid unless given, squared speeds, their rises, whether converged.
     """
 
-def sum_times(lengths: numpy.typing.NDArray[numpy.float64], squared_speed: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+def sum_times(lengths: numpy.typing.NDArray[numpy.float64], squared_speed: numpy.typing.NDArray[numpy.float64], rises: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
     """
-    Seconds (k + 1,) to the places of a grid with intervals of lengths (k,), squared speeds (k + 1,).
+    Seconds (k + 1,) to the places of a grid with intervals of lengths (k,), squared speeds (k + 1,), rises (k,).
     """
 
 def examine_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], gap: float, jump: float, slope: float) -> tuple[int, float, numpy.typing.NDArray[numpy.int8], numpy.typing.NDArray[numpy.int8]]:

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
+#include <numeric>
 
 #include "cspace/math/interrupts.hpp"
 #include "kernels/trajectory_timing.hpp"
 #include "trajectory_aligned.hpp"
+#include "trajectory_halving.hpp"
 
 namespace cspace::trajectory {
 
@@ -74,13 +75,27 @@ namespace {
 constexpr size_t intervals_between_polls = 256;  // some fifty microseconds
 constexpr size_t many_intervals = 1 << 16;       // memory is given back where it counts
 constexpr int first_parts = 4;                   // of a piece: halved once before anything is known of it
-constexpr double least_part = 0x1p-18;           // of a piece: beyond it rounding shows in the accelerations
-constexpr double share_of_change = 0.3;  // of the mean change of an interval, above which it is halved
 constexpr int most_rounds = 24;
-constexpr size_t least_parts = 2;  // of a piece: with stops at both its ends it has to move between
+constexpr int blocked_rounds = 6;      // in which there may be no motion yet
+constexpr double series_below = 0.01;  // argument below which six terms of a series are exact
+constexpr size_t least_parts = 2;      // of a piece: with stops at both its ends it has to move between
 // Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
 // of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
 constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
+
+// artanh(√z) / √z, which is arctan(√−z) / √−z for negative z.
+double inverse_tangent(double z) {
+    if (std::fabs(z) < series_below)
+        return 1.0 + z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * (1.0 / 9 + z * (1.0 / 11 + z / 13)))));
+    const double root = std::sqrt(std::fabs(z));
+    return (z > 0.0 ? std::atanh(root) : std::atan(root)) / root;
+}
+
+// The time D ∫ dσ / √X of an interval of length D, with the sum of the speeds at its ends and its rise.
+double pass_seconds(double length, double speeds, double rise) {
+    const double ratio = 1.0 / speeds;
+    return 2.0 * length * ratio * (rise == 0.0 ? 1.0 : inverse_tangent(-2.0 * rise * ratio * ratio));
+}
 
 // A path that is timed on one grid after another.
 class PathTimer {
@@ -121,8 +136,10 @@ class PathTimer {
         rows_.sampled = show_samples(samples_);
     }
 
-    Timing solve() {
-        Timing timing{TimingOutcome::timed, 0, 0.0, 0.0, {}, {}, true};
+    // The fastest motion whose squared speed rises above a line as given (intervals,).
+    Timing solve(std::vector<double> rises) {
+        Timing timing{TimingOutcome::timed, 0, 0.0, 0.0, {}, {}, std::move(rises), true};
+        rows_.rises = timing.rises.data();
         const std::ptrdiff_t blocked = bound({end_, end_});
         if (blocked >= 0) {
             if (end_ > 0.0) return explain_end(timing);
@@ -139,9 +156,46 @@ class PathTimer {
         return timing;
     }
 
-    // Seconds in interval i; inf if the motion stands at both ends.
-    double seconds(size_t i, const std::vector<double>& x) const {
-        return 2.0 * rows_.length(i) / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));
+    // The same, or without rises where those leave no motion.
+    Timing solve_or_flatten(std::vector<double> rises) {
+        const bool is_flat = std::all_of(rises.begin(), rises.end(), [](double rise) { return rise == 0.0; });
+        Timing timing = solve(std::move(rises));
+        if (is_flat || timing.outcome == TimingOutcome::timed) return timing;
+        return solve(std::vector<double>(count_, 0.0));
+    }
+
+    // The seconds of every interval.
+    Passing measure(const Timing& timing) const {
+        Passing passing;
+        passing.seconds.resize(count_);
+        visit_range(0, count_, [&](size_t i) {
+            const double speeds = std::sqrt(timing.squared_speed[i]) + std::sqrt(timing.squared_speed[i + 1]);
+            passing.stands |= speeds == 0.0;
+            if (speeds > 0.0) passing.seconds[i] = pass_seconds(rows_.length(i), speeds, timing.rises[i]);
+            passing.total += passing.seconds[i];
+        });
+        return passing;
+    }
+
+    // The rises of a law with these squared speeds, were it smooth: of the second derivatives at both ends of
+    // an interval the smaller one, and none where they differ in sign. Where pieces meet there is none; the
+    // next one inside the piece stands for it.
+    std::vector<double> find_rises(const std::vector<double>& x) const {
+        std::vector<double> second(count_ + 1, 0.0), rises(count_, 0.0);
+        const Intervals& grid = rows_.intervals;
+        visit_range(1, count_, [&](size_t i) {
+            const double before = rows_.length(i - 1), after = rows_.length(i);
+            const double bend = (x[i + 1] - x[i]) / after - (x[i] - x[i - 1]) / before;
+            second[i] = 2.0 * bend / (before + after);
+        });
+        visit_range(0, count_, [&](size_t i) {
+            const bool is_first = grid.from[i] == 0.0, is_last = grid.to[i] == 1.0;
+            if ((is_first && is_last) || x[i] == 0.0 || x[i + 1] == 0.0) return;
+            const double length = rows_.length(i);
+            const double a = second[is_first ? i + 2 : i], b = second[is_last ? i - 1 : i + 1];
+            if (a * b > 0.0) rises[i] = -0.25 * length * length * (std::fabs(a) < std::fabs(b) ? a : b);
+        });
+        return rises;
     }
 
   private:
@@ -229,60 +283,6 @@ TimingGrid divide_pieces(const TimingPath& path, const std::vector<size_t>& part
     return grid;
 }
 
-// A halved grid, and of every part the interval that it is from.
-struct Halved {
-    TimingGrid grid;
-    std::vector<std::uint32_t> parent;
-};
-
-template <class Splits>
-Halved halve(const TimingGrid& grid, const Splits& splits) {
-    std::vector<char> is_split(grid.size());
-    size_t count = grid.size();
-    visit_range(0, grid.size(), [&](size_t i) {
-        is_split[i] = grid.to[i] - grid.from[i] > least_part && splits(i);
-        count += size_t(is_split[i]);
-    });
-    Halved made;
-    made.grid.piece.reserve(count);
-    made.grid.from.reserve(count);
-    made.grid.to.reserve(count);
-    made.parent.reserve(count);
-    const auto add = [&](size_t i, double from, double to) {
-        made.grid.piece.push_back(grid.piece[i]);
-        made.grid.from.push_back(from);
-        made.grid.to.push_back(to);
-        made.parent.push_back(std::uint32_t(i));
-    };
-    visit_range(0, grid.size(), [&](size_t i) {
-        const double from = grid.from[i], to = grid.to[i], middle = 0.5 * (from + to);
-        if (!is_split[i]) return add(i, from, to);
-        add(i, from, middle);
-        add(i, middle, to);
-    });
-    return made;
-}
-
-// The seconds of every interval; those in which the motion stands have none.
-struct Seconds {
-    std::vector<double> each;
-    double total = 0.0;
-    bool stands = false;
-};
-
-Seconds measure(const PathTimer& timer, const std::vector<double>& x) {
-    Seconds seconds;
-    seconds.each.resize(x.size() - 1);
-    visit_range(0, seconds.each.size(), [&](size_t i) {
-        const double t = timer.seconds(i, x);
-        const bool moves = t < std::numeric_limits<double>::infinity();
-        seconds.each[i] = moves ? t : 0.0;
-        seconds.stands |= !moves;
-        seconds.total += seconds.each[i];
-    });
-    return seconds;
-}
-
 // Whether the motion stands at both ends of an interval: it would never pass it.
 void find_stand(Timing& timing) {
     const std::vector<double>& x = timing.squared_speed;
@@ -295,13 +295,14 @@ void find_stand(Timing& timing) {
 
 }  // namespace
 
-void sum_times(std::span<const double> lengths, std::span<const double> squared_speed, double* times) {
+void sum_times(std::span<const double> lengths, std::span<const double> squared_speed,
+               std::span<const double> rises, double* times) {
     double speed = std::sqrt(squared_speed[0]);
     times[0] = 0.0;
     for (size_t i = 0; i < lengths.size(); ++i) {
         const double last = speed;
         speed = std::sqrt(squared_speed[i + 1]);
-        times[i + 1] = times[i] + 2.0 * lengths[i] / (last + speed);
+        times[i + 1] = times[i] + pass_seconds(lengths[i], last + speed, rises[i]);
     }
 }
 
@@ -318,7 +319,7 @@ Timing time_on_grid(const TimingPath& path, const TimingLimits& limits, const Ti
                     const TimingGrid& grid, const Sampler& sample) {
     PathTimer timer(path, limits, options);
     timer.set_grid(grid, sample);
-    Timing timing = timer.solve();
+    Timing timing = timer.solve(std::vector<double>(grid.size(), 0.0));
     find_stand(timing);
     return timing;
 }
@@ -327,42 +328,37 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
                  const Sampler& sample) {
     PathTimer timer(path, limits, options);
     Halved halved{divide_pieces(path, std::vector<size_t>(path.lengths.size(), first_parts)), {}};
-    Seconds last;
+    std::vector<double> rises(halved.grid.size(), 0.0), losses, last_speed;
+    Passing last;
     for (int round = 0;; ++round) {
         timer.set_grid(halved.grid, sample);
-        Timing timing = timer.solve();
+        Timing timing = timer.solve_or_flatten(std::move(rises));
         const bool timed = timing.outcome == TimingOutcome::timed;
-        Seconds now = timed ? measure(timer, timing.squared_speed) : Seconds{};
-        std::vector<double>& change = last.each;  // of the seconds, by the halving
-        double changed = 0.0;
-        const bool known = timed && !last.each.empty();
-        if (known) {
-            visit_range(0, now.each.size(), [&](size_t i) { change[halved.parent[i]] -= now.each[i]; });
-            visit_range(0, change.size(), [&](size_t k) {
-                change[k] = std::fabs(change[k]);
-                changed += change[k];
+        Passing now = timed ? timer.measure(timing) : Passing{};
+        const bool known = timed && !last.seconds.empty();
+        losses = known ? estimate_losses({last_speed, last.seconds}, {timing.squared_speed, now.seconds},
+                                         halved.parent, losses)
+                       : std::vector<double>{};
+        const double allowed = options.tolerance * now.total;
+        timing.converged =
+            known && !now.stands && std::accumulate(losses.begin(), losses.end(), 0.0) <= allowed;
+        Halved next;
+        if (!timing.converged && round < most_rounds && (timed || round < blocked_rounds)) {
+            const double enough = allowed / double(halved.grid.size());
+            // A motion that stands, or none at all, may come of a coarse grid.
+            next = halve(halved.grid, [&](size_t i) {
+                return !known || losses[i] > enough ||
+                       timing.squared_speed[i] + timing.squared_speed[i + 1] == 0.0;
             });
         }
-        timing.converged = known && !now.stands && changed <= options.tolerance * now.total;
-        if (timing.converged || round == most_rounds) {
+        if (next.grid.size() <= halved.grid.size()) {
             timing.grid = std::move(halved.grid);
             find_stand(timing);
             return timing;
         }
-        // A motion that stands, or none at all, may come of a coarse grid.
-        const double enough = share_of_change * options.tolerance * now.total / double(last.each.size());
-        Halved next = halve(halved.grid, [&](size_t i) {
-            // An interval also holds back those beside it.
-            const size_t before = i - (i > 0), after = i + (i + 1 < halved.grid.size());
-            return !known || change[halved.parent[before]] > enough || change[halved.parent[i]] > enough ||
-                   change[halved.parent[after]] > enough ||
-                   timing.squared_speed[i] + timing.squared_speed[i + 1] == 0.0;
-        });
-        if (next.grid.size() == halved.grid.size() || (!timed && round >= 6)) {
-            timing.grid = std::move(halved.grid);
-            find_stand(timing);
-            return timing;
-        }
+        const std::vector<double> own = timed ? timer.find_rises(timing.squared_speed) : timing.rises;
+        rises = halve_rises(own, next.parent);
+        last_speed = std::move(timing.squared_speed);
         last = std::move(now);
         halved = std::move(next);
     }

@@ -48,6 +48,7 @@ struct Timing {
     double least, most;                 // path speeds
     TimingGrid grid;                    // empty if one was given
     std::vector<double> squared_speed;  // (intervals + 1,)
+    std::vector<double> rises;          // (intervals,)
     bool converged;                     // the halving ended before its limits
 };
 
@@ -62,7 +63,8 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
                  const Sampler& sample);
 
 // Seconds from the start to each place of a grid (intervals + 1,): intervals of these lengths between squared
-// speeds (intervals + 1,).
-void sum_times(std::span<const double> lengths, std::span<const double> squared_speed, double* times);
+// speeds (intervals + 1,), with rises (intervals,).
+void sum_times(std::span<const double> lengths, std::span<const double> squared_speed,
+               std::span<const double> rises, double* times);
 
 }  // namespace cspace::trajectory

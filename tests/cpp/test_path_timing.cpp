@@ -21,7 +21,7 @@ double draw(double low, double high) { return random_numbers.uniform(low, high);
 struct OnePiece {
     int degree, joints, padded = 8;
     std::vector<double> slopes, ones;
-    double length, least = 0.0;
+    double length, least = 0.0, rise = 0.0;
     Interval part;
     signed char stops[2] = {0, 0};
 
@@ -37,7 +37,7 @@ struct OnePiece {
         return {degree,        joints,      padded,
                 slopes.data(), &length,     &least,
                 ones.data(),   ones.data(), {&part.piece, &part.from, &part.to},
-                stops,         {}};
+                &rise,         stops,       {}};
     }
     // q' and q'' of a joint at a share of the interval, by de Casteljau.
     std::array<double, 2> slope_and_bend(int j, double share) const {
@@ -51,14 +51,16 @@ struct OnePiece {
     }
     // The largest share of any limit at samples of the interval.
     double used(double x, double y) const {
-        const double u = (y - x) / (2.0 * rows().length(0));
         double most = 0.0;
         for (int k = 0; k <= 200; ++k) {
-            const double share = k / 200.0, squared = x + share * (y - x);
+            const double share = k / 200.0;
+            const double squared = x + share * (y - x) + 2.0 * share * (1.0 - share) * rise;
+            const double u = (y - x + 2.0 * (1.0 - 2.0 * share) * rise) / (2.0 * rows().length(0));
+            if (squared < -1e-9 * (x + y)) return 2.0;
             for (int j = 0; j < joints; ++j) {
                 const auto [slope, bend] = slope_and_bend(j, share);
-                most = std::max(
-                    {most, std::fabs(slope * u + bend * squared), std::fabs(slope) * std::sqrt(squared)});
+                most = std::max({most, std::fabs(slope * u + bend * squared),
+                                 std::fabs(slope) * std::sqrt(std::max(squared, 0.0))});
             }
         }
         return most;
@@ -84,10 +86,39 @@ void check_rows() {
     }
 }
 
+// With rises of either sign: what the rows leave keeps the limits, and the squared speed stays positive.
+template <int m>
+void check_risen_rows() {
+    int found = 0;
+    for (int round = 0; round < 4000; ++round) {
+        OnePiece piece(m, 1 + int(draw(0.0, 7.99)));
+        std::vector<double> memory(std::size_t(3 * row_capacity(piece.rows())));
+        SpeedRange flat[2] = {{0.0, no_end}, {0.0, no_end}};
+        CHECK(bound_speeds<m>(piece.rows(), 0, 1, flat, memory.data()) == -1);
+        piece.rise = draw(-0.5, 0.5) * std::exp(draw(-4.0, 0.0)) * flat[0].high;
+        SpeedRange range[2] = {{0.0, no_end}, {0.0, no_end}};
+        if (bound_speeds<m>(piece.rows(), 0, 1, range, memory.data()) >= 0) continue;
+        ++found;
+        const TimedRows path = piece.rows();
+        const Rows rows = build_rows<m>(path, 0, memory.data());
+        for (const double part : {0.0, 0.3, 1.0}) {
+            const double x = range[0].low + part * (range[0].high - range[0].low);
+            const Edges edges = bound_next(rows, x, range[1]);
+            for (const double share : {0.0, 0.5, 1.0}) {
+                const double y = edges.low.value + share * (edges.high.value - edges.low.value);
+                CHECK(piece.used(x, std::max(y, 0.0)) <= 1.0 + 1e-9);
+            }
+        }
+    }
+    CHECK(found > 2000);
+}
+
 }  // namespace
 
 TEST(no_limit_of_a_cubic_piece_is_exceeded_between_the_ends) { check_rows<2>(); }
 TEST(no_limit_of_a_quintic_piece_is_exceeded_between_the_ends) { check_rows<4>(); }
+TEST(no_limit_of_a_cubic_piece_is_exceeded_where_squared_speeds_are_quadratic) { check_risen_rows<2>(); }
+TEST(no_limit_of_a_quintic_piece_is_exceeded_where_squared_speeds_are_quadratic) { check_risen_rows<4>(); }
 
 // On a straight line the answer is a trapezoid of speed: d = v²/a + v t.
 TEST(a_straight_line_takes_as_long_as_the_trapezoid) {

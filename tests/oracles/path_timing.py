@@ -99,15 +99,23 @@ def duration(grid: np.ndarray, squared_speed: np.ndarray) -> float:
 
 
 def excess(
-    path: Path, grid: np.ndarray, x: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray
+    path: Path,
+    grid: np.ndarray,
+    x: np.ndarray,
+    velocity: np.ndarray,
+    acceleration: np.ndarray,
+    rises: np.ndarray | float = 0.0,
 ) -> tuple[float, float]:
-    """By which share velocities and accelerations exceed their limits, at ten places of each interval."""
+    """By which share velocities and accelerations exceed their limits, at ten places of each interval.
+
+    x: squared speeds at the places of the grid, quadratic between them with rises, or linear.
+    """
     step = np.diff(grid)
-    u = np.diff(x) / (2.0 * step)
     most = np.zeros(2)
     for share in np.linspace(0.0, 1.0, 11):
         s = np.clip(grid[:-1] + share * step, 0.0, path.length)
-        squared = np.maximum(x[:-1] + share * np.diff(x), 0.0)
+        squared = np.maximum(x[:-1] + share * np.diff(x) + 2.0 * share * (1.0 - share) * rises, 0.0)
+        u = (np.diff(x) + 2.0 * (1.0 - 2.0 * share) * rises) / (2.0 * step)
         slope, bend = path(s, 1), path(s, 2)
         qd, qdd = slope * np.sqrt(squared)[:, None], bend * squared[:, None] + slope * u[:, None]
         most = np.maximum(most, [(np.abs(qd) / velocity).max(), (np.abs(qdd) / acceleration).max()])

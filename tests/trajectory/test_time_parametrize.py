@@ -103,7 +103,7 @@ def test_the_motion_is_the_path_and_its_derivatives(name):
         assert not timed([0.0, timed.duration], 1).any()
     t = rng.uniform(0, timed.duration, 300)
     assert np.allclose(timed(t), path(timed.parameter(t)), atol=1e-12)
-    h = 1e-5
+    h = 1e-6
     inside = np.abs(t[:, None] - timed.knots).min(axis=1) > 2 * h
     for order in range(3):
         slope = (timed(t[inside] + h, order) - timed(t[inside] - h, order)) / (2 * h)
@@ -494,3 +494,31 @@ def test_a_grid_is_not_refined_to_a_tolerance():
     path = cs.spline(np.random.default_rng(1).uniform(-1.0, 1.0, (5, 3)))
     with pytest.raises(InputTypeError, match="exclude each other"):
         cs.time_parametrize(path, acceleration=8.0, grid=100, tolerance=0.01)
+
+
+@pytest.mark.parametrize("name", ["cubic", "quintic", "blend", "b_spline"])
+def test_a_tenth_of_the_tolerance_takes_few_more_intervals(name):
+    # What is lost falls by the square of the intervals' length: 10 times for 3.2 times as many.
+    rng = np.random.default_rng(51)
+    path = MAKERS[name](np.cumsum(rng.normal(size=(12, 4)), axis=0))
+    rough, fine = (
+        cs.time_parametrize(path, velocity=2.0, acceleration=5.0, tolerance=tolerance)
+        for tolerance in (1e-3, 1e-5)
+    )
+    assert rough.converged
+    assert fine.converged
+    assert fine.duration <= rough.duration * (1 + 1e-9) <= fine.duration * (1 + 2e-3)
+    assert len(fine.rises) < 15 * len(rough.rises)
+
+
+def test_squared_speeds_are_quadratic_between_places_and_keep_all_limits():
+    rng = np.random.default_rng(52)
+    path = cs.blend(np.cumsum(0.3 * rng.normal(size=(30, 5)), axis=0), 0.1)
+    timed = cs.time_parametrize(path, velocity=2.0, acceleration=5.0)
+    assert np.count_nonzero(timed.rises) > 0.2 * len(timed.rises)
+    x, r = timed.squared_speed, timed.rises
+    places = timed.grid[:-1] + 0.25 * np.diff(timed.grid)
+    t = np.interp(places, timed.parameter(ts := np.linspace(0, timed.duration, 2_000_001)), ts)
+    expected = 0.75 * x[:-1] + 0.25 * x[1:] + 0.375 * r
+    assert timed.parameter(t, 1) ** 2 == pytest.approx(expected, rel=1e-5, abs=1e-6)
+    assert excess(timed, np.full(5, 2.0), np.full(5, 5.0)) <= 1e-12

@@ -85,6 +85,7 @@ def test_a_changed_file_is_refused_or_makes_a_motion_of_finite_numbers(tmp_path)
     texts = []
     for one in (
         cs.time_parametrize(cs.spline([[0.0, 1], [1, 0], [2, 1]]), acceleration=1.0, grid=6),
+        cs.time_parametrize(cs.spline([[0.0, 1], [1, 0], [2, 1]]), acceleration=1.0, tolerance=0.1),
         cs.time_parametrize(cs.spline([[0.0, 1], [1, 0], [2, 1]]), acceleration=1.0, jerk=9.0, grid=20),
         motion().then(motion().reversed()),
     ):

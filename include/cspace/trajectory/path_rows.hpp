@@ -1,11 +1,12 @@
 // Limits along a path as rows that are linear in the squared speeds at the two ends of an interval.
 //
-// On an interval of length D the squared path speed goes linearly from x to y, so that the path acceleration
-// (y − x) / 2D is constant. Velocities and accelerations of the joints are then polynomials of the place; a
-// row bounds one of their Bernstein coefficients, so that no limit is exceeded anywhere in the interval.
-// With Bernstein coefficients d of q' on the interval, of degree m, and δ_k = d_{k+1} − d_k, those of 2D q̈
-// are (d_k + 2k δ_{k−1}) y − (d_k − 2(m−k) δ_k) x. (Reachability: Pham and Pham 2018; Bernstein bounds:
-// Farouki 2012.)
+// On an interval of length D the squared path speed X is quadratic from x to y, with the Bernstein
+// coefficients x, (x + y) / 2 + r and y; its rise r is given. The path acceleration is then linear, from
+// (y − x + 2r) / 2D to (y − x − 2r) / 2D, and velocities and accelerations of the joints are polynomials of
+// the place. A row bounds one of their Bernstein coefficients, so that no limit is exceeded anywhere in the
+// interval: with those of q' the rows of q̈ = q''X + q'ü come of products. Where r is that of the fastest
+// motion, what a row gives away falls by the square of the length instead of the length.
+// (Reachability: Pham and Pham 2018; Bernstein bounds: Farouki 2012.)
 #pragma once
 
 #include <cstddef>
@@ -60,6 +61,7 @@ struct TimedRows {
     const double* inverse_acceleration;  // (padded,) [s²/rad or s²/m], 0 without a limit
     const double* inverse_velocity;      // (padded,)
     Intervals intervals;
+    const double* rises;       // (intervals,): of the squared path speed
     const signed char* stops;  // (intervals + 1,): 1 where the path has to stand
     SampledLimits sampled;
 
@@ -68,7 +70,7 @@ struct TimedRows {
 
 // Numbers of rows that build_rows writes at most, in multiples of the widest pack.
 inline int row_capacity(const TimedRows& path) {
-    return (path.degree + 1 + 3) * path.padded + 2 * joint_padding;
+    return (path.degree + 2 + 3) * path.padded + 2 * joint_padding;
 }
 
 constexpr double binomial(int n, int k) {
@@ -103,11 +105,12 @@ struct RaisedWeights {
 
 namespace cspace::trajectory::inline CSPACE_ISA {
 
-// Rows y ∈ [low + slope x, high + slope x] of one interval; largest_x and largest_y bound x and y alone.
+// Rows y ∈ [low + slope x, high + slope x] of one interval; largest_x and largest_y bound x and y alone, and
+// y ≥ least_sum − x keeps the squared speed positive inside of it.
 struct Rows {
     double *slope, *low, *high;
     int count;  // a multiple of joint_padding
-    double largest_x, largest_y;
+    double largest_x, largest_y, least_sum;
 };
 
 // Bernstein coefficients on [from, to] from those on [0, 1], by two subdivisions.
@@ -134,16 +137,33 @@ CSPACE_INLINE void write_rows(const Rows& rows, int at, V alpha, V beta, V low, 
     store(rows.high + at, max(a, b));
 }
 
-// The rows of the accelerations of a pack of joints; c: coefficients of q' over the limit.
+// The rows of the accelerations of a pack of joints, one less without a rise; d: coefficients of q' over the
+// limit.
+//
+// 2D q̈ is q' times y − x + 2r … y − x − 2r, and 2q'' times x, (x + y) / 2 + r, y. With δ_k = d_{k+1} − d_k
+// and without r it has coefficients (d_k + 2k δ_{k−1}) y − (d_k − 2(m − k) δ_k) x; with r one degree more.
 template <int m, class V>
-CSPACE_INLINE void write_acceleration_rows(const Rows& rows, int at, int stride, const V (&c)[m + 1],
-                                           double length) {
+CSPACE_INLINE void write_acceleration_rows(const Rows& rows, int at, int stride, const V (&d)[m + 1],
+                                           double length, double rise) {
     const V bound = fill<V>(2.0 * length * (1.0 - rounding_share));
+    V alpha[m + 1], beta[m + 1];
     for (int k = 0; k <= m; ++k) {
-        V alpha = -c[k], beta = c[k];
-        if (k < m) alpha += (2.0 * (m - k)) * (c[k + 1] - c[k]);
-        if (k > 0) beta += (2.0 * k) * (c[k] - c[k - 1]);
-        write_rows(rows, at + k * stride, alpha, beta, -bound, bound);
+        alpha[k] = -d[k];
+        beta[k] = d[k];
+        if (k < m) alpha[k] += (2.0 * (m - k)) * (d[k + 1] - d[k]);
+        if (k > 0) beta[k] += (2.0 * k) * (d[k] - d[k - 1]);
+    }
+    if (rise == 0.0) {
+        for (int k = 0; k <= m; ++k) write_rows(rows, at + k * stride, alpha[k], beta[k], -bound, bound);
+        return;
+    }
+    for (int k = 0; k <= m + 1; ++k) {
+        const int own = k <= m ? k : m, last = k > 0 ? k - 1 : 0;
+        const double up = double(k) / (m + 1), down = 1.0 - up;
+        const V gamma = (2.0 * down * (1 + 2 * k)) * d[own] - (2.0 * (up + 2.0 * k * down)) * d[last];
+        const V offset = rise * gamma;
+        write_rows(rows, at + k * stride, down * alpha[own] + up * alpha[last],
+                   down * beta[own] + up * beta[last], -bound - offset, bound - offset);
     }
 }
 
@@ -169,26 +189,29 @@ CSPACE_INLINE V largest_lanes(V v) {
     return v;
 }
 
-// The rows of the velocities: with P_k no less than the coefficients of any (q' / limit)², those of degree
-// 2m + 1 of the largest q̇² are ((2m + 1 − k) P_k x + k P_{k−1} y) / (2m + 1).
+// The rows of the velocities, with P_k no less than the coefficients of any (q' / limit)²: P X ≤ 1, of degree
+// 2m + 2.
 template <int m>
-CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const double (&P)[2 * m + 1]) {
+CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const double (&P)[2 * m + 1], double rise) {
     using V = Pack<native_width>;
-    constexpr int last = 2 * m + 1, padded = (last + joint_padding - 1) / joint_padding * joint_padding;
-    double alpha[padded] = {},
-           beta[padded] = {};  // of rows 1 to 2m; row 0 is largest_x, row 2m + 1 largest_y
+    constexpr ProductWeights<2 * m, 2> weights;
+    constexpr int last = 2 * m + 2, padded = (last - 1 + joint_padding - 1) / joint_padding * joint_padding;
+    // Of rows 1 to 2m + 1; row 0 is largest_x, row 2m + 2 largest_y.
+    double alpha[padded] = {}, beta[padded] = {}, offset[padded] = {};
     for (int k = 1; k < last; ++k) {
-        alpha[k - 1] = (double(last - k) / last) * P[k];
-        beta[k - 1] = (double(k) / last) * P[k - 1];
+        const double middle = k - 1 <= 2 * m ? weights.at[k - 1][1] * P[k - 1] : 0.0;
+        alpha[k - 1] = (k <= 2 * m ? weights.at[k][0] * P[k] : 0.0) + 0.5 * middle;
+        beta[k - 1] = (k >= 2 ? weights.at[k - 2][2] * P[k - 2] : 0.0) + 0.5 * middle;
+        offset[k - 1] = middle * rise;
     }
     rows.largest_x = 1.0 / max(P[0], 1.0 / no_end);
     rows.largest_y = 1.0 / max(P[2 * m], 1.0 / no_end);
     for (int k = 0; k < padded; k += Lanes<V>::count) {
-        const V a = load<V>(alpha + k), b = load<V>(beta + k);
+        const V a = load<V>(alpha + k), b = load<V>(beta + k), c = load<V>(offset + k);
         const V inverse = 1.0 / max(b, no_row * a + no_size);
         store(rows.slope + at + k, -a * inverse);
-        store(rows.low + at + k, -inverse);
-        store(rows.high + at + k, (1.0 - rounding_share) * inverse);
+        store(rows.low + at + k, (-1.0 - c) * inverse);
+        store(rows.high + at + k, (1.0 - rounding_share - c) * inverse);
     }
     rows.count = at + padded;
 }
@@ -209,6 +232,7 @@ template <class V>
 CSPACE_INLINE void write_sampled_rows(const Rows& rows, int at, const TimedRows& path, std::size_t i, int j,
                                       double length) {
     const SampledLimits& given = path.sampled;
+    const double rise = path.rises[i];
     const std::size_t width = std::size_t(path.padded);
     V limit = load<V>(given.limit + j);
     if (given.margin) limit = limit - load<V>(given.margin + i * width + std::size_t(j));
@@ -217,8 +241,9 @@ CSPACE_INLINE void write_sampled_rows(const Rows& rows, int at, const TimedRows&
         const V along = (0.5 / length) * load<V>(given.along + row);
         const V across = load<V>(given.across + row), offset = load<V>(given.offset + row);
         const double share = 0.5 * part;
+        const V risen = (2.0 * (1 - part) * rise) * along + (part == 1 ? 0.5 * rise : 0.0) * across;
         write_rows(rows, at + part * path.padded, (1.0 - share) * across - along, share * across + along,
-                   -limit - offset, limit - offset);
+                   -limit - offset - risen, limit - offset - risen);
     }
 }
 
@@ -227,7 +252,8 @@ template <int m>
 CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memory) {
     using V = Pack<native_width>;
     const int capacity = row_capacity(path), padded = path.padded;
-    Rows rows{memory, memory + capacity, memory + 2 * capacity, 0, no_end, no_end};
+    const double rise = path.rises[i];
+    Rows rows{memory, memory + capacity, memory + 2 * capacity, 0, no_end, no_end, -2.0 * rise};
     const Interval part = path.intervals[i];
     const double length = path.length(i);
     const double* slopes = path.slopes + std::size_t(part.piece) * std::size_t((m + 1) * padded);
@@ -239,7 +265,7 @@ CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memo
         restrict_to<m>(d, part.from, part.to);
         const V per_acceleration = load<V>(path.inverse_acceleration + j);
         for (int k = 0; k <= m; ++k) scaled[k] = d[k] * per_acceleration;
-        write_acceleration_rows<m>(rows, j, padded, scaled, length);
+        write_acceleration_rows<m>(rows, j, padded, scaled, length, rise);
         const V per_velocity = load<V>(path.inverse_velocity + j);
         for (int k = 0; k <= m; ++k) scaled[k] = d[k] * per_velocity;
         raise_squares<m>(scaled, squares);
@@ -248,7 +274,7 @@ CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memo
     for (int k = 0; k <= 2 * m; ++k)
         P[k] = max(lane(largest_lanes(squares[k]), 0), path.least_inverse_square[part.piece]);
     if (path.sampled.inverse_square) raise_to_quadratic<m>(P, path.sampled.inverse_square + 3 * i);
-    write_velocity_rows<m>(rows, (m + 1) * padded, P);
+    write_velocity_rows<m>(rows, (rise == 0.0 ? m + 1 : m + 2) * padded, P, rise);
     if (path.sampled.along) {
         for (int j = 0; j < padded; j += Lanes<V>::count)
             write_sampled_rows<V>(rows, rows.count + j, path, i, j, length);

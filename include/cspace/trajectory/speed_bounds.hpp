@@ -86,6 +86,8 @@ CSPACE_INLINE Edges bound_next(const Rows& rows, double x, const SpeedRange& nex
     const double most = min(next.high, rows.largest_y);
     if (most < edges.high.value) edges.high = {most, 0.0, most};
     if (next.low > edges.low.value) edges.low = {next.low, 0.0, next.low};
+    const double rest = rows.least_sum - x;
+    if (rest > edges.low.value) edges.low = {rest, -1.0, rows.least_sum};
     return edges;
 }
 
@@ -123,7 +125,7 @@ inline std::ptrdiff_t bound_speeds(const TimedRows& path, std::size_t begin, std
         const SpeedRange& next = range[i + 1];
         const double most =
             find_end(rows, path.stops[i] ? 0.0 : min(rows.largest_x, range[i].high), -1.0, next);
-        const bool may_stand = next.low == 0.0 && !path.sampled.along;
+        const bool may_stand = next.low == 0.0 && path.rises[i] == 0.0 && !path.sampled.along;
         double least = may_stand ? 0.0 : find_end(rows, 0.0, 1.0, next);
         if (next.high == 0.0) least = max(least, moving_share * most);  // or it would stand at both ends
         if (most < 0.0 || least < 0.0 || least > most) return std::ptrdiff_t(i);

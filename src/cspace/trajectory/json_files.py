@@ -90,12 +90,13 @@ def _describe_timed(timed: TimedPath) -> dict[str, Any]:
         "proved": timed.proved,
     }
     if isinstance(timed, JerkTimedPath):
-        laws = {"squares": timed.squares, "law": timed.law, "launch_jerk": timed.launch_jerk}
+        laws: dict[str, Any] = {"squares": timed.squares, "law": timed.law, "launch_jerk": timed.launch_jerk}
         return {"kind": "jerk_timed_path", **values, **{name: row.tolist() for name, row in laws.items()}}
     return {
         "kind": "timed_path",
         **values,
         "squared_speed": timed.squared_speed.tolist(),
+        "rises": timed.rises.tolist(),
         "converged": timed.converged,
         "place": timed.place if np.isfinite(timed.place) else None,
         "speed_range": timed.speed_range,
@@ -158,11 +159,15 @@ def _read_timed(values: Any, path: Path, grid: Grid) -> TimedPath:
         raise InputError("squared_speed must be one number of 0 or more per place of the grid")
     if ((squared_speed[1:] == 0.0) & (squared_speed[:-1] == 0.0)).any():
         raise InputError("squared_speed is 0 at two places in a row")
+    rises = as_floats(values.get("rises", np.zeros(len(grid.piece))), "rises").reshape(-1)
+    if len(rises) != len(grid.piece) or (0.5 * (squared_speed[1:] + squared_speed[:-1]) + rises < 0.0).any():
+        raise InputError("rises must be one number per interval, that leaves its squared speed 0 or more")
     place, speeds = values["place"], values["speed_range"]
     return TimedPath(
         path,
         grid,
         squared_speed,
+        np.array(rises),
         proved=bool(values["proved"]),
         converged=bool(values["converged"]),
         place=np.nan if place is None else float(place),

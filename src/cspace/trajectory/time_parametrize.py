@@ -89,7 +89,7 @@ def time_parametrize(
 ) -> TimedPath:
     """The fastest motion along a path within limits of velocity, acceleration, torque and tip speed.
 
-    The squared speed of the parameter is linear on each interval of a grid, and quadratic under jerk limits.
+    The squared speed of the parameter is quadratic on each interval of a grid, linear if the grid is given.
     Limits of velocity, acceleration and jerk hold everywhere on an interval, which is proved by Bernstein
     coefficients. Limits of torque and of a frame are sampled at three places of an interval, checked at ten
     and tightened where exceeded.
@@ -375,7 +375,7 @@ class _Timer:
         return TIMED_WITHIN if self.tolerance is None else self.tolerance
 
     def _solve(self, grid: Grid | None, sample: SampledLimits | None, tolerance: float) -> TimedPath:
-        outcome, where, least, most, own, squared_speed, converged = time_path(
+        outcome, where, least, most, own, squared_speed, rises, converged = time_path(
             *self.arrays,
             self.velocity,
             self.acceleration,
@@ -399,6 +399,7 @@ class _Timer:
             self.path,
             used,
             freeze_array(squared_speed),
+            rises,
             ratios=self.ratios,
             proved=sample is None,
             converged=converged and grid is None,

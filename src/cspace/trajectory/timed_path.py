@@ -1,4 +1,4 @@
-"""TimedPath: a motion along a path whose squared speed is linear between the places of a grid."""
+"""TimedPath: a motion along a path whose squared speed is quadratic between the places of a grid."""
 
 from __future__ import annotations
 
@@ -18,6 +18,13 @@ from cspace.tolerances import FEED_HELD, FEED_LOST
 from cspace.trajectory.limit_check import BindingLimit
 from cspace.trajectory.path import HIGHEST_ORDER, Path, _powers_to_bernstein, restrict_pieces
 from cspace.trajectory.piece_roots import find_piece_roots
+from cspace.trajectory.square_law import (
+    add_polynomials,
+    derive_polynomials,
+    move_within,
+    multiply_polynomials,
+    seconds_between,
+)
 from cspace.trajectory.trajectory import Trajectory, read_factor
 
 MOST_PARTS: Final = 8
@@ -26,6 +33,10 @@ MOST_PARTS: Final = 8
 NEAR_LIMIT: Final = 0.99
 """Share of a limit from which on it binds: an interval attains its limit at one place and keeps below it
 elsewhere, by as much as its acceleration changes."""
+
+
+BLOCK: Final = 4096
+"""Intervals whose turning times are found at once."""
 
 
 FEED: Final = "feed"
@@ -86,9 +97,10 @@ Ratios = Callable[[Path, Places], list[tuple[str, str, Array]]]
 class TimedPath(Trajectory):
     """A motion along a path within limits; falsy where there is none.
 
-    path: the Path. squared_speed (k + 1,): the squared speed ṡ² of its parameter on the grid, linear between.
-    grid (k + 1,): the parameters of its places. proved: no limit is exceeded anywhere, and not only at
-    samples. converged: halving the intervals would not change the duration by more than the tolerance.
+    path: the Path. squared_speed (k + 1,): the squared speed ṡ² of its parameter on the grid. rises (k,): of
+    the middle Bernstein coefficient of ṡ² between two places above their mean; without a rise ṡ² is linear.
+    grid (k + 1,): the parameters of the places. proved: no limit is exceeded anywhere, not only at samples.
+    converged: halving the intervals would not change the duration by more than the tolerance.
     reason, place: why there is no motion and at which parameter (nan where it is no single place).
     speed_range: if the speed at the start or the end is at fault, the least and the largest possible one.
     """
@@ -98,6 +110,7 @@ class TimedPath(Trajectory):
         path: Path,
         intervals: Grid,
         squared_speed: Array,
+        rises: Array | None = None,
         *,
         ratios: Ratios | None = None,
         proved: bool = True,
@@ -111,11 +124,13 @@ class TimedPath(Trajectory):
         self.intervals = intervals
         is_kept = squared_speed.flags.c_contiguous and not squared_speed.flags.writeable
         self.squared_speed = squared_speed if is_kept else freeze_array(np.array(squared_speed))
+        self.rises = freeze_array(np.zeros(len(intervals.piece)) if rises is None else rises)
         self.proved, self.converged = proved, converged
         self.place, self.speed_range = place, speed_range
         self._ratios = ratios
         self._lengths = intervals.lengths(path)
-        self._times = sum_times(self._lengths, self.squared_speed) if len(squared_speed) else np.zeros(1)
+        moves = len(squared_speed) > 0
+        self._times = sum_times(self._lengths, self.squared_speed, self.rises) if moves else np.zeros(1)
         super().__init__(path.dof, float(self._times[-1]), joint_names, reason)
 
     @property
@@ -123,15 +138,10 @@ class TimedPath(Trajectory):
         """The times (k + 1,) [s] of the places of the grid."""
         return self._times
 
-    @cached_property
-    def _speeds(self) -> Array:
-        """The speeds (k + 1,) of the parameter."""
-        return np.sqrt(self.squared_speed)
-
-    @cached_property
-    def _accelerations(self) -> Array:
-        """The accelerations (k,) of the parameter."""
-        return np.asarray(np.diff(self.squared_speed) / (2.0 * self._lengths))
+    def _squares(self, i: Any) -> Array:
+        """Bernstein coefficients (m, 3) of the squared speed on intervals i (m,)."""
+        x, y = self.squared_speed[:-1][i], self.squared_speed[1:][i]
+        return np.stack([x, 0.5 * (x + y) + self.rises[i], y], axis=-1)
 
     @property
     def _no_motion(self) -> str:
@@ -152,14 +162,22 @@ class TimedPath(Trajectory):
         side = "left" if before else "right"
         i = np.searchsorted(self._times[1:-1], times, side=side)  # type: ignore[call-overload]
         since, until = times - self._times[i], self._times[i + 1] - times
-        u, length = self._accelerations[i], self._piece_lengths[i]
-        early = since <= until
-        begin, end = self._speeds[i], self._speeds[i + 1]
-        ahead = self.intervals.begin[i] + since * (begin + 0.5 * u * since) / length
-        back = self.intervals.end[i] - until * (end - 0.5 * u * until) / length
-        local = np.clip(np.where(early, ahead, back), self.intervals.begin[i], self.intervals.end[i])
-        speed = np.maximum(0.0, np.where(early, begin + u * since, end - u * until))
-        return Places(self.intervals.piece[i].astype(np.int64), local, speed, u)
+        early = self._is_early(i, since, until)
+        squares = self._squares(i)
+        squares = np.where(early[:, None], squares, squares[:, ::-1])
+        ahead, speed, u, w = self._move(i, squares, np.where(early, since, until))
+        share = np.where(early, ahead, 1.0 - ahead)
+        begin, end = self.intervals.begin[i], self.intervals.end[i]
+        local = np.clip(begin + (end - begin) * share, begin, end)
+        return Places(self.intervals.piece[i].astype(np.int64), local, speed, np.where(early, u, -u), w)
+
+    def _is_early(self, i: Any, since: Array, until: Array) -> Any:
+        """Whether the begin of intervals i is nearer than their end."""
+        return since <= until
+
+    def _move(self, i: Any, squares: Array, t: Array) -> tuple[Array, Array, Array, Array]:
+        """Share of an interval, speed, acceleration and jerk, a time t (m,) after its begin."""
+        return move_within(squares, self._lengths[i], t)
 
     def _evaluate(self, times: Array, order: int, before: bool = False) -> Array:
         if len(self._times) == 1:
@@ -183,41 +201,53 @@ class TimedPath(Trajectory):
         return np.asarray((s, at.speed, at.acceleration)[order].reshape(times.shape))
 
     def _turning_times(self, order: int) -> list[Array]:
-        """The knots, and the roots of the next derivative of q(s(t)), a polynomial on every interval."""
+        """The knots, and where the next derivative of q(s(t)) is zero."""
         if len(self._times) == 1:
             return [self._times] * self.dof
-        c = self._polynomials
-        for _ in range(order + 1):
-            c = c[..., 1:] * np.arange(1.0, c.shape[-1]) if c.shape[-1] > 1 else np.zeros_like(c)
-        count, n = c.shape[:2]
-        flat = c.reshape(count * n, -1)
-        control = flat @ _powers_to_bernstein(flat.shape[1] - 1).T
-        turns = (control.min(axis=1) < 0.0) & (control.max(axis=1) > 0.0)  # others have no root inside
-        found = find_piece_roots(flat[turns], np.zeros(turns.sum()), np.ones(turns.sum()))
-        roots = np.full((count * n, found.shape[1]), np.nan)
-        roots[turns] = found
-        roots = roots.reshape(count, n, -1)
-        seconds = np.diff(self._times)
-        times = self._times[:-1, None, None] + seconds[:, None, None] * roots
-        return [np.unique(np.append(t[np.isfinite(t)], self._times)) for t in times.transpose(1, 0, 2)]
+        found = [[self._times] for _ in range(self.dof)]
+        for begin in range(0, len(self.intervals.piece), BLOCK):
+            rows = np.arange(begin, min(begin + BLOCK, len(self.intervals.piece)))
+            for j, times in enumerate(self._turns_within(rows, order)):
+                found[j].append(times)
+        return [np.unique(np.clip(np.concatenate(each), 0.0, self.duration)) for each in found]
 
-    @cached_property
-    def _polynomials(self) -> Array:
-        """Coefficients (k, dof, 2 degree + 1) of q by the share of time of each interval."""
-        control = self.path.control_points[self.intervals.piece]
-        control = restrict_pieces(control, self.intervals.begin, self.intervals.end)
-        powers = np.einsum("ij,kjn->kin", np.linalg.inv(_powers_to_bernstein(self.path.degree)), control)
-        total = (self._speeds[:-1] + self._speeds[1:])[:, None]
-        first = 2.0 * self._speeds[:-1, None] / total  # σ = first t + (1 − first) t²
-        made = np.zeros((*powers.shape[::2], 2 * self.path.degree + 1))
-        made[..., 0] = powers[:, -1]
-        for i in range(self.path.degree - 1, -1, -1):
-            shifted = np.zeros_like(made)
-            shifted[..., 1:] += first[..., None] * made[..., :-1]
-            shifted[..., 2:] += (1.0 - first)[..., None] * made[..., :-2]
-            shifted[..., 0] += powers[:, i]
-            made = shifted
-        return made
+    def _turns_within(self, rows: Any, order: int) -> list[Array]:
+        """Of every joint, when the next derivative is zero within intervals rows (m,)."""
+        at, joint, roots = _find_turns(self._place_polynomials(rows, order))
+        begin = np.zeros(len(at))
+        since = seconds_between(self._squares(rows[at]), self._lengths[rows[at]], begin, roots)
+        times = self._times[rows[at]] + since
+        return [times[joint == j] for j in range(self.dof)]
+
+    def _powers(self, rows: Any) -> Array:
+        """Coefficients (k, dof, degree + 1) of q by the share of an interval."""
+        grid = self.intervals
+        control = restrict_pieces(
+            self.path.control_points[grid.piece[rows]], grid.begin[rows], grid.end[rows]
+        )
+        return np.asarray(
+            np.einsum("ij,kjn->kni", np.linalg.inv(_powers_to_bernstein(self.path.degree)), control)
+        )
+
+    def _place_polynomials(self, rows: Any, order: int) -> Array:
+        """What has the sign of the derivative of that order by place: of q', q̈, its slope, or the jerk's."""
+        q = self._powers(rows)
+        x = self._squares(rows) @ np.array([[1.0, -2.0, 1.0], [0.0, 2.0, -2.0], [0.0, 0.0, 1.0]])
+        if order == 0:
+            return derive_polynomials(q)
+        slope, bend = derive_polynomials(q), derive_polynomials(derive_polynomials(q))
+        acceleration = add_polynomials(
+            multiply_polynomials(bend, x), 0.5 * multiply_polynomials(slope, derive_polynomials(x))
+        )
+        if order == 1:
+            return acceleration
+        jerk = derive_polynomials(acceleration)  # over the path speed
+        if order == 2:
+            return jerk
+        return add_polynomials(
+            multiply_polynomials(derive_polynomials(jerk), x),
+            0.5 * multiply_polynomials(jerk, derive_polynomials(x)),
+        )
 
     def binding(self, limits: Any = None) -> tuple[BindingLimit, ...]:
         """Which limit determines the speed, when: on each interval the one of which most is used.
@@ -297,11 +327,12 @@ class TimedPath(Trajectory):
         grid, x = self.intervals, self.squared_speed
         t = np.array(shares)[:, None]
         local = grid.begin + t * (grid.end - grid.begin)
-        speed = np.sqrt(x[:-1] + t * np.diff(x))
-        shape = local.shape
-        piece = np.broadcast_to(grid.piece, shape).ravel().astype(np.int64)
-        u = np.broadcast_to(self._accelerations, shape).ravel()
-        return Places(piece, local.ravel(), speed.ravel(), u)
+        rise = 2.0 * self.rises * (1.0 - t)
+        speed = np.sqrt(np.maximum(x[:-1] + t * (np.diff(x) + rise), 0.0))
+        u = (np.diff(x) + 2.0 * self.rises * (1.0 - 2.0 * t)) / (2.0 * self._lengths)
+        w = -2.0 * self.rises / self._lengths**2 * speed
+        piece = np.broadcast_to(grid.piece, local.shape).ravel().astype(np.int64)
+        return Places(piece, local.ravel(), speed.ravel(), u.ravel(), w.ravel())
 
     def scaled(self, factor: float) -> TimedPath:
         """The same path, slower by a factor: its duration is multiplied by it.
@@ -310,7 +341,7 @@ class TimedPath(Trajectory):
         """
         factor = read_factor(factor)
         proved = self.proved and factor >= 1.0
-        return self._remade(self.path, self.intervals, self.squared_speed / factor**2, proved)
+        return self._remade(self.path, self.intervals, factor**-2, proved)
 
     def reversed(self) -> TimedPath:
         """The same motion backwards in time."""
@@ -320,13 +351,16 @@ class TimedPath(Trajectory):
             1.0 - self.intervals.end[::-1],
             1.0 - self.intervals.begin[::-1],
         )
-        return self._remade(self.path.reversed(), grid, self.squared_speed[::-1], self.proved)
+        return self._remade(self.path.reversed(), grid, 1.0, self.proved)
 
-    def _remade(self, path: Path, grid: Grid, squared_speed: Array, proved: bool) -> TimedPath:
+    def _remade(self, path: Path, grid: Grid, factor: float, proved: bool) -> TimedPath:
+        """The motion with squared speeds times a factor, backwards if the path is another one."""
+        turn = slice(None) if path is self.path else slice(None, None, -1)
         return TimedPath(
             path,
             grid,
-            squared_speed,
+            factor * self.squared_speed[turn],
+            factor * self.rises[turn],
             ratios=self._ratios,
             proved=proved,
             converged=self.converged,
@@ -371,6 +405,17 @@ def _find_runs(values: npt.NDArray[np.intp]) -> list[tuple[int, int]]:
     """Begins and ends of the runs of equal values (k,)."""
     begins = np.flatnonzero(np.append(True, np.diff(values) != 0))
     return list(zip(begins.tolist(), np.append(begins[1:], len(values)).tolist(), strict=True))
+
+
+def _find_turns(c: Array) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], Array]:
+    """The roots within 0 … 1 of polynomials (k, dof, n): their intervals, joints and places, (m,) each."""
+    count, dof, n = c.shape
+    flat = c.reshape(count * dof, n)
+    control = flat @ _powers_to_bernstein(n - 1).T
+    turns = np.flatnonzero((control.min(axis=1) < 0.0) & (control.max(axis=1) > 0.0))  # others have none
+    roots = find_piece_roots(flat[turns], np.zeros(len(turns)), np.ones(len(turns)))
+    at, k = np.nonzero(np.isfinite(roots))
+    return turns[at] // dof, turns[at] % dof, roots[at, k]
 
 
 def move_along(path: Path, at: Places, order: int) -> Array:
