@@ -48,6 +48,10 @@ SOURCES = {
         *("include/cspace/math", "include/cspace/trajectory", "src/cspace/trajectory"),
         "src/bindings/trajectory_timing.cpp",
     ],
+    "timing_memory": [
+        *("include/cspace/trajectory", "src/cspace/trajectory", "src/bindings/trajectory_timing.cpp"),
+        *("src/library/trajectory_timing.cpp", "src/library/trajectory_jerk.cpp"),
+    ],
     "cartesian": [
         *("include/cspace/ik/tracking", "include/cspace/trajectory", "src/cspace/trajectory"),
         *("src/cspace/cartesian", "src/cspace/plan_motion", "src/bindings/ik_tracking.cpp"),

@@ -56,6 +56,7 @@ def measured_names() -> list[str]:
         "simulation",
         "trajectory",
         "path_timing",
+        "timing_memory",
         "cartesian",
         *localization_tables.MEASURED,
     ]

@@ -17,7 +17,8 @@ def cell(entry: dict[str, float]) -> str:
 def section(results: Results) -> str:
     """States, timing of paths, Cartesian motion."""
     parts = [states_table(results["trajectory"]), timing_table(results["path_timing"])]
-    return "\n\n".join([*parts, cartesian_table(results["cartesian"])])
+    parts += [memory_table(results["timing_memory"]), cartesian_table(results["cartesian"])]
+    return "\n\n".join(parts)
 
 
 def states_table(measured: Results) -> str:
@@ -65,6 +66,16 @@ def timing_table(measured: Results) -> str:
         ]
         tables.append(table(["quintic splines with limits of jerk", "intervals", "ms", "duration"], rows))
     return "\n\n".join(tables)
+
+
+def memory_table(measured: Results) -> str:
+    if not measured:
+        return "Memory of timing: not measured."
+    body = [
+        [name, f"{entry['MB']:.0f}", f"{entry['seconds']:.1f}", f"{entry['intervals']:,.0f}"]
+        for name, entry in measured["rows"].items()
+    ]
+    return table(["10⁴ waypoints of seven joints", "MB, whole process", "s", "intervals"], body)
 
 
 def cartesian_table(measured: Results) -> str:
@@ -168,6 +179,18 @@ def torque_row(results: Results) -> Row:
     return row(what, "≤ 1 ms", "≤ 0.3 ms", f"{ms:.2f} ms", ms <= 1.0, ms <= 0.3)
 
 
+def memory_row(results: Results) -> Row:
+    what = "memory of timing 10⁴ waypoints, whole process, the worst kind of path, without / with jerk limits"
+    measured = results["timing_memory"]
+    if not measured:
+        return row(what, "≤ 200 MB", "", "", None)
+    worst = [
+        max(entry["MB"] for name, entry in measured["rows"].items() if ("jerk" in name) == jerk)
+        for jerk in (False, True)
+    ]
+    return row(what, "≤ 200 MB", "", f"{worst[0]:.0f} / {worst[1]:.0f} MB", max(worst) <= 200.0)
+
+
 def line_row(results: Results) -> Row:
     what = "a line of a UR5e: all branches followed, ranked, the best timed, median"
     measured = results["cartesian"]
@@ -204,6 +227,7 @@ ROWS = [
     automatic_row,
     torque_row,
     jerk_row,
+    memory_row,
     line_row,
     redundant_row,
     move_row,

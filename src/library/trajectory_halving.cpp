@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cspace::trajectory {
 namespace {
@@ -26,45 +27,44 @@ double surviving(double there, double here) { return here * there > 0.0 ? std::m
 // inside of it.
 class Gains {
   public:
-    Gains(const GridMotion& before, const GridMotion& now, const std::vector<std::uint32_t>& parent)
-        : before_(before), change_(before.squared_speed.size()), seconds_(before.seconds) {
+    Gains(GridMotion before, const std::vector<double>& squared_speed, const std::vector<double>& seconds,
+          const std::vector<std::uint32_t>& parent)
+        : change_(std::move(before.squared_speed)), weight_(std::move(before.seconds)), gained_(weight_) {
+        for (size_t i = 0; i < weight_.size(); ++i) {
+            const double sum = change_[i] + change_[i + 1];
+            weight_[i] = sum > 0.0 ? 0.5 * weight_[i] / sum : 0.0;
+        }
         visit_range(0, parent.size(), [&](size_t i) {
-            seconds_[parent[i]] -= now.seconds[i];
+            gained_[parent[i]] -= seconds[i];
             if (i == 0 || parent[i] != parent[i - 1])
-                change_[parent[i]] = now.squared_speed[i] - before.squared_speed[parent[i]];
+                change_[parent[i]] = squared_speed[i] - change_[parent[i]];
         });
-        change_.back() = now.squared_speed.back() - before.squared_speed.back();
+        change_.back() = squared_speed.back() - change_.back();
     }
 
     // Of every interval: an interval that is passed faster raises the speeds after it, or before it where the
     // motion brakes, up to where another limit binds.
-    std::vector<double> find() const {
-        const size_t count = seconds_.size();
-        std::vector<double> gains(count), ahead(count + 1, 0.0);
+    std::vector<double> find() && {
+        const size_t count = gained_.size();
+        std::vector<double> ahead(count + 1, 0.0);
         for (size_t i = count; i-- > 0;)
-            ahead[i] = weight(i) + surviving(change_[i + 1], change_[i]) * (weight(i) + ahead[i + 1]);
+            ahead[i] = weight_[i] + surviving(change_[i + 1], change_[i]) * (weight_[i] + ahead[i + 1]);
         double behind = 0.0;
         for (size_t i = 0; i < count; ++i) {
             if (i > 0)
-                behind = weight(i - 1) + surviving(change_[i - 1], change_[i]) * (weight(i - 1) + behind);
+                behind = weight_[i - 1] + surviving(change_[i - 1], change_[i]) * (weight_[i - 1] + behind);
             const double rise = change_[i + 1] - change_[i];
-            const double inside = seconds_[i] - weight(i) * (change_[i] + change_[i + 1]);
-            gains[i] = std::fabs(inside) +
-                       (rise > 0.0 ? rise * (weight(i) + ahead[i + 1]) : -rise * (weight(i) + behind));
+            const double inside = gained_[i] - weight_[i] * (change_[i] + change_[i + 1]);
+            gained_[i] = std::fabs(inside) +
+                         (rise > 0.0 ? rise * (weight_[i] + ahead[i + 1]) : -rise * (weight_[i] + behind));
         }
-        return gains;
+        return std::move(gained_);
     }
 
   private:
-    // Seconds of interval i by the squared speed at one of its ends.
-    double weight(size_t i) const {
-        const double sum = before_.squared_speed[i] + before_.squared_speed[i + 1];
-        return sum > 0.0 ? 0.5 * before_.seconds[i] / sum : 0.0;
-    }
-
-    const GridMotion before_;
-    std::vector<double> change_;   // of the squared speeds
-    std::vector<double> seconds_;  // that the halving gains in every interval
+    std::vector<double> change_;  // of the squared speeds
+    std::vector<double> weight_;  // seconds of an interval by the squared speed at one of its ends
+    std::vector<double> gained_;  // seconds of an interval
 };
 
 // visit(part, its interval, whether that was halved).
@@ -87,14 +87,15 @@ std::vector<double> halve_rises(const std::vector<double>& rises, const std::vec
     return made;
 }
 
-std::vector<double> estimate_losses(const GridMotion& before, const GridMotion& now,
+std::vector<double> estimate_losses(GridMotion before, const std::vector<double>& squared_speed,
+                                    const std::vector<double>& seconds,
                                     const std::vector<std::uint32_t>& parent,
                                     const std::vector<double>& losses) {
-    const std::vector<double> gains = Gains(before, now, parent).find();
+    const std::vector<double> gains = Gains(std::move(before), squared_speed, seconds, parent).find();
     std::vector<double> made(parent.size());
     over_parts(parent, [&](size_t part, size_t whole, bool is_half) {
         if (is_half)
-            made[part] = left_over(now.squared_speed[part], now.squared_speed[part + 1]) * gains[whole];
+            made[part] = left_over(squared_speed[part], squared_speed[part + 1]) * gains[whole];
         else
             made[part] = std::max(losses.empty() ? 0.0 : losses[whole], carried_over * gains[whole]);
     });

@@ -18,7 +18,7 @@ struct Passing {
 
 // A motion on a grid: squared speeds at its places, seconds of its intervals.
 struct GridMotion {
-    const std::vector<double>&squared_speed, &seconds;
+    std::vector<double> squared_speed, seconds;
 };
 
 // A grid in which some intervals are halved, and of every part the interval that it is from.
@@ -60,9 +60,10 @@ Halved halve(const TimingGrid& grid, const Splits& splits) {
 // The rises of parts of intervals with these rises.
 std::vector<double> halve_rises(const std::vector<double>& rises, const std::vector<std::uint32_t>& parent);
 
-// The seconds that each interval of a grid costs beyond what any finer grid could give, from the motions on
-// the grid before and on the parts of its intervals. losses: those of the grid before, or none.
-std::vector<double> estimate_losses(const GridMotion& before, const GridMotion& now,
+// The seconds that each interval of a grid costs beyond what any finer grid could give, from the motion on
+// the grid before and that on the parts of its intervals. losses: those of the grid before, or none.
+std::vector<double> estimate_losses(GridMotion before, const std::vector<double>& squared_speed,
+                                    const std::vector<double>& seconds,
                                     const std::vector<std::uint32_t>& parent,
                                     const std::vector<double>& losses);
 

@@ -328,17 +328,17 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
                  const Sampler& sample) {
     PathTimer timer(path, limits, options);
     Halved halved{divide_pieces(path, std::vector<size_t>(path.lengths.size(), first_parts)), {}};
-    std::vector<double> rises(halved.grid.size(), 0.0), losses, last_speed;
-    Passing last;
+    std::vector<double> rises(halved.grid.size(), 0.0), losses;
+    GridMotion last;
     for (int round = 0;; ++round) {
         timer.set_grid(halved.grid, sample);
         Timing timing = timer.solve_or_flatten(std::move(rises));
         const bool timed = timing.outcome == TimingOutcome::timed;
         Passing now = timed ? timer.measure(timing) : Passing{};
         const bool known = timed && !last.seconds.empty();
-        losses = known ? estimate_losses({last_speed, last.seconds}, {timing.squared_speed, now.seconds},
-                                         halved.parent, losses)
-                       : std::vector<double>{};
+        losses =
+            known ? estimate_losses(std::move(last), timing.squared_speed, now.seconds, halved.parent, losses)
+                  : std::vector<double>{};
         const double allowed = options.tolerance * now.total;
         timing.converged =
             known && !now.stands && std::accumulate(losses.begin(), losses.end(), 0.0) <= allowed;
@@ -358,8 +358,7 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
         }
         const std::vector<double> own = timed ? timer.find_rises(timing.squared_speed) : timing.rises;
         rises = halve_rises(own, next.parent);
-        last_speed = std::move(timing.squared_speed);
-        last = std::move(now);
+        last = {std::move(timing.squared_speed), std::move(now.seconds)};
         halved = std::move(next);
     }
 }

@@ -146,15 +146,10 @@ template <int m, class V>
 CSPACE_INLINE void write_acceleration_rows(const Rows& rows, int at, int stride, const V (&d)[m + 1],
                                            double length, double rise) {
     const V bound = fill<V>(2.0 * length * (1.0 - rounding_share));
-    V alpha[m + 1], beta[m + 1];
-    for (int k = 0; k <= m; ++k) {
-        alpha[k] = -d[k];
-        beta[k] = d[k];
-        if (k < m) alpha[k] += (2.0 * (m - k)) * (d[k + 1] - d[k]);
-        if (k > 0) beta[k] += (2.0 * k) * (d[k] - d[k - 1]);
-    }
+    const auto of_begin = [&](int k) { return k < m ? (2.0 * (m - k)) * (d[k + 1] - d[k]) - d[k] : -d[k]; };
+    const auto of_end = [&](int k) { return k > 0 ? d[k] + (2.0 * k) * (d[k] - d[k - 1]) : d[k]; };
     if (rise == 0.0) {
-        for (int k = 0; k <= m; ++k) write_rows(rows, at + k * stride, alpha[k], beta[k], -bound, bound);
+        for (int k = 0; k <= m; ++k) write_rows(rows, at + k * stride, of_begin(k), of_end(k), -bound, bound);
         return;
     }
     for (int k = 0; k <= m + 1; ++k) {
@@ -162,8 +157,8 @@ CSPACE_INLINE void write_acceleration_rows(const Rows& rows, int at, int stride,
         const double up = double(k) / (m + 1), down = 1.0 - up;
         const V gamma = (2.0 * down * (1 + 2 * k)) * d[own] - (2.0 * (up + 2.0 * k * down)) * d[last];
         const V offset = rise * gamma;
-        write_rows(rows, at + k * stride, down * alpha[own] + up * alpha[last],
-                   down * beta[own] + up * beta[last], -bound - offset, bound - offset);
+        write_rows(rows, at + k * stride, down * of_begin(own) + up * of_begin(last),
+                   down * of_end(own) + up * of_end(last), -bound - offset, bound - offset);
     }
 }
 
@@ -189,31 +184,51 @@ CSPACE_INLINE V largest_lanes(V v) {
     return v;
 }
 
-// The rows of the velocities, with P_k no less than the coefficients of any (q' / limit)²: P X ≤ 1, of degree
-// 2m + 2.
-template <int m>
-CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const double (&P)[2 * m + 1], double rise) {
+// Writes rows α x + β y + γ ≤ 1, less what is left to rounding; the arrays are padded to packs by rows of
+// zero.
+template <int padded>
+CSPACE_INLINE void write_upper_rows(Rows& rows, int at, const double (&alpha)[padded],
+                                    const double (&beta)[padded], const double (&gamma)[padded]) {
     using V = Pack<native_width>;
-    constexpr ProductWeights<2 * m, 2> weights;
-    constexpr int last = 2 * m + 2, padded = (last - 1 + joint_padding - 1) / joint_padding * joint_padding;
-    // Of rows 1 to 2m + 1; row 0 is largest_x, row 2m + 2 largest_y.
-    double alpha[padded] = {}, beta[padded] = {}, offset[padded] = {};
-    for (int k = 1; k < last; ++k) {
-        const double middle = k - 1 <= 2 * m ? weights.at[k - 1][1] * P[k - 1] : 0.0;
-        alpha[k - 1] = (k <= 2 * m ? weights.at[k][0] * P[k] : 0.0) + 0.5 * middle;
-        beta[k - 1] = (k >= 2 ? weights.at[k - 2][2] * P[k - 2] : 0.0) + 0.5 * middle;
-        offset[k - 1] = middle * rise;
-    }
-    rows.largest_x = 1.0 / max(P[0], 1.0 / no_end);
-    rows.largest_y = 1.0 / max(P[2 * m], 1.0 / no_end);
     for (int k = 0; k < padded; k += Lanes<V>::count) {
-        const V a = load<V>(alpha + k), b = load<V>(beta + k), c = load<V>(offset + k);
+        const V a = load<V>(alpha + k), b = load<V>(beta + k), c = load<V>(gamma + k);
         const V inverse = 1.0 / max(b, no_row * a + no_size);
         store(rows.slope + at + k, -a * inverse);
         store(rows.low + at + k, (-1.0 - c) * inverse);
         store(rows.high + at + k, (1.0 - rounding_share - c) * inverse);
     }
     rows.count = at + padded;
+}
+
+constexpr int padded_rows(int count) { return (count + joint_padding - 1) / joint_padding * joint_padding; }
+
+// The rows of the velocities, with P_k no less than the coefficients of any (q' / limit)²: those of P X ≤ 1,
+// of degree 2m + 2, or 2m + 1 without a rise. The first and the last are largest_x and largest_y.
+template <int m>
+CSPACE_INLINE void write_velocity_rows(Rows& rows, int at, const double (&P)[2 * m + 1], double rise) {
+    rows.largest_x = 1.0 / max(P[0], 1.0 / no_end);
+    rows.largest_y = 1.0 / max(P[2 * m], 1.0 / no_end);
+    if (rise == 0.0) {
+        constexpr int last = 2 * m + 1;
+        double alpha[padded_rows(last - 1)] = {}, beta[padded_rows(last - 1)] = {};
+        constexpr double gamma[padded_rows(last - 1)] = {};
+        for (int k = 1; k < last; ++k) {
+            alpha[k - 1] = (double(last - k) / last) * P[k];
+            beta[k - 1] = (double(k) / last) * P[k - 1];
+        }
+        return write_upper_rows(rows, at, alpha, beta, gamma);
+    }
+    constexpr ProductWeights<2 * m, 2> weights;
+    constexpr int last = 2 * m + 2;
+    double alpha[padded_rows(last - 1)] = {}, beta[padded_rows(last - 1)] = {},
+                                    gamma[padded_rows(last - 1)] = {};
+    for (int k = 1; k < last; ++k) {
+        const double middle = weights.at[k - 1][1] * P[k - 1];
+        alpha[k - 1] = (k <= 2 * m ? weights.at[k][0] * P[k] : 0.0) + 0.5 * middle;
+        beta[k - 1] = (k >= 2 ? weights.at[k - 2][2] * P[k - 2] : 0.0) + 0.5 * middle;
+        gamma[k - 1] = middle * rise;
+    }
+    write_upper_rows(rows, at, alpha, beta, gamma);
 }
 
 // Raises P to the coefficients of a quadratic polynomial.

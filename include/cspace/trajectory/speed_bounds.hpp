@@ -86,8 +86,7 @@ CSPACE_INLINE Edges bound_next(const Rows& rows, double x, const SpeedRange& nex
     const double most = min(next.high, rows.largest_y);
     if (most < edges.high.value) edges.high = {most, 0.0, most};
     if (next.low > edges.low.value) edges.low = {next.low, 0.0, next.low};
-    const double rest = rows.least_sum - x;
-    if (rest > edges.low.value) edges.low = {rest, -1.0, rows.least_sum};
+    if (rows.least_sum > x + edges.low.value) edges.low = {rows.least_sum - x, -1.0, rows.least_sum};
     return edges;
 }
 

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cspace._core import sum_times
 from cspace.arrays import Array
 from cspace.model.values import freeze_array
 from cspace.trajectory.path import Path, _powers_to_bernstein
-from cspace.trajectory.square_law import derive_polynomials, move_within, seconds_between
+from cspace.trajectory.square_law import derive_polynomials, move_within
 from cspace.trajectory.timed_path import Grid, Places, Ratios, TimedPath, _find_turns
 from cspace.trajectory.trajectory import Trajectory
 
@@ -48,10 +49,10 @@ class JerkTimedPath(TimedPath):
         self.proved, self.converged = proved, False
         self.place, self.speed_range, self._ratios = np.nan, None, ratios
         self._lengths = intervals.lengths(path)
-        seconds = seconds_between(squares, self._lengths, np.zeros(len(squares)), np.ones(len(squares)))
+        seconds = np.diff(sum_times(self._lengths, self.squared_speed, self.rises))
         launched = law != QUADRATIC
         seconds[launched] = np.cbrt(6.0 * self._lengths[launched] / launch_jerk[launched])
-        self._times = np.concatenate([[0.0], np.cumsum(seconds)])
+        self._times = np.append(0.0, np.cumsum(seconds))
         Trajectory.__init__(self, path.dof, float(self._times[-1]), joint_names)
 
     def _squares(self, i: Any) -> Array:
