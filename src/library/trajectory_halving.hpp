@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cspace/math/interrupts.hpp"
+#include "cspace/trajectory/speed_bounds.hpp"
 #include "trajectory_timing.hpp"
 
 namespace cspace::trajectory {
@@ -16,9 +17,11 @@ struct Passing {
     bool stands = false;
 };
 
-// A motion on a grid: squared speeds at its places, seconds of its intervals.
+// A motion on a grid: squared speeds at its places and how they depend on each other, seconds of its
+// intervals.
 struct GridMotion {
     std::vector<double> squared_speed, seconds;
+    std::vector<Carry> carry;
 };
 
 // A grid in which some intervals are halved, and of every part the interval that it is from.

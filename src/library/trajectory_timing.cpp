@@ -198,6 +198,9 @@ class PathTimer {
         return rises;
     }
 
+    // How the squared speeds of the last motion depend on each other (intervals + 1,).
+    std::vector<Carry> take_carry() { return std::move(carry_); }
+
   private:
     void bound_noise() {
         const size_t width = size_t(padded_), rows = size_t(rows_.degree + 1);
@@ -216,10 +219,11 @@ class PathTimer {
     std::ptrdiff_t bound(SpeedRange last) {
         range_.assign(count_ + 1, {0.0, no_end});
         range_[count_] = last;
+        carry_.assign(count_ + 1, {0.0, true});
         for (size_t end = count_; end > 0;) {
             const size_t begin = end > intervals_between_polls ? end - intervals_between_polls : 0;
             const std::ptrdiff_t blocked =
-                kernels::bound_path_speeds(rows_, begin, end, range_.data(), memory_.data());
+                kernels::bound_path_speeds(rows_, begin, end, range_.data(), carry_.data(), memory_.data());
             if (blocked >= 0) return blocked;
             end = begin;
             poll_interrupts();
@@ -231,7 +235,8 @@ class PathTimer {
         speed[0] = start_;
         for (size_t begin = 0; begin < count_; begin += intervals_between_polls) {
             const size_t end = std::min(count_, begin + intervals_between_polls);
-            kernels::raise_path_speeds(rows_, begin, end, range_.data(), speed.data(), memory_.data());
+            kernels::raise_path_speeds(rows_, begin, end, range_.data(), speed.data(), carry_.data(),
+                                       memory_.data());
             poll_interrupts();
         }
     }
@@ -268,6 +273,7 @@ class PathTimer {
     size_t count_ = 0;  // of the intervals
     std::vector<signed char> stops_;
     std::vector<SpeedRange> range_;
+    std::vector<Carry> carry_;
 };
 
 TimingGrid divide_pieces(const TimingPath& path, const std::vector<size_t>& parts) {
@@ -358,7 +364,7 @@ Timing time_path(const TimingPath& path, const TimingLimits& limits, const Timin
         }
         const std::vector<double> own = timed ? timer.find_rises(timing.squared_speed) : timing.rises;
         rises = halve_rises(own, next.parent);
-        last = {std::move(timing.squared_speed), std::move(now.seconds)};
+        last = {std::move(timing.squared_speed), std::move(now.seconds), timer.take_carry()};
         halved = std::move(next);
     }
 }

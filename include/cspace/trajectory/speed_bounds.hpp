@@ -6,6 +6,7 @@
 // rows.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,18 @@ namespace cspace::trajectory {
 // Squared speeds from which the rest of the path can be followed; empty if low is above high.
 struct SpeedRange {
     double low, high;
+};
+
+// How a squared speed changes with the one after it, if it is the greatest from which the rest of the path
+// can be followed, or with the one before it.
+struct Carry {
+    float ratio;
+    bool is_from_after;
+
+    Carry(double exact, bool after) : ratio(float(std::clamp(exact, -most, most))), is_from_after(after) {}
+
+  private:
+    static constexpr double most = 2.0;  // more comes of rows that hardly count
 };
 
 // Share of y by which the width of what remains may be negative: the rounding of two rows.
@@ -90,45 +103,54 @@ CSPACE_INLINE Edges bound_next(const Rows& rows, double x, const SpeedRange& nex
     return edges;
 }
 
-// Newton's method for the end of the x with a y, from outside. side: −1 from above, +1 from below. Negative
-// if there is none.
-CSPACE_INLINE double find_end(const Rows& rows, double x, double side, const SpeedRange& next) {
+// An end of the x with a y, negative if there is none, and how it changes with the greatest y.
+struct FoundEnd {
+    double x, ratio;
+};
+
+// Newton's method from outside. side: −1 from above, +1 from below.
+CSPACE_INLINE FoundEnd find_end(const Rows& rows, double x, double side, const SpeedRange& next) {
     constexpr int most_steps = 100;  // each changes a row, and two in a hundred paths need more than four
     double share = std::numeric_limits<double>::epsilon();
     for (int step = 0; step < most_steps; ++step) {
         const Edges edges = bound_next(rows, x, next);
         const double width = edges.high.value - edges.low.value;
-        if (width >= -closed_width * (std::fabs(edges.high.value) + std::fabs(edges.low.value))) return x;
+        if (width >= -closed_width * (std::fabs(edges.high.value) + std::fabs(edges.low.value))) {
+            const bool is_from_next = step > 0 && edges.high.slope == 0.0 && edges.high.offset == next.high;
+            return {x, is_from_next ? 1.0 / edges.low.slope : 0.0};
+        }
         const double slope = edges.high.slope - edges.low.slope;
-        if (!(side * slope > 0.0)) return -1.0;
+        if (!(side * slope > 0.0)) return {-1.0, 0.0};
         double found = (edges.low.offset - edges.high.offset) / slope;
         if (!(side * (found - x) > 0.0)) {
             // Within rounding of the end that this row has; where it is steep, it hides those of the others.
             found = x + side * share * x;
             share *= 2.0;
         }
-        if (found == x) return x;
-        if (found < 0.0) return -1.0;
+        if (found == x) return {x, 0.0};
+        if (found < 0.0) return {-1.0, 0.0};
         x = found;
     }
-    return x;
+    return {x, 0.0};
 }
 
 // Backwards through the intervals end − 1 … begin: range[i] from range[i + 1]. Returns the interval that
 // nothing passes, or −1. memory: three times row_capacity numbers.
 template <int m>
 inline std::ptrdiff_t bound_speeds(const TimedRows& path, std::size_t begin, std::size_t end,
-                                   SpeedRange* range, double* memory) {
+                                   SpeedRange* range, Carry* carry, double* memory) {
     for (std::size_t i = end; i-- > begin;) {
         const Rows rows = build_rows<m>(path, i, memory);
         const SpeedRange& next = range[i + 1];
-        const double most =
+        const FoundEnd top =
             find_end(rows, path.stops[i] ? 0.0 : min(rows.largest_x, range[i].high), -1.0, next);
+        const double most = top.x;
         const bool may_stand = next.low == 0.0 && path.rises[i] == 0.0 && !path.sampled.along;
-        double least = may_stand ? 0.0 : find_end(rows, 0.0, 1.0, next);
+        double least = may_stand ? 0.0 : find_end(rows, 0.0, 1.0, next).x;
         if (next.high == 0.0) least = max(least, moving_share * most);  // or it would stand at both ends
         if (most < 0.0 || least < 0.0 || least > most) return std::ptrdiff_t(i);
         range[i] = {least, most};
+        carry[i] = {top.ratio, true};
     }
     return -1;
 }
@@ -143,11 +165,13 @@ CSPACE_INLINE double greatest_next(const Edges& edges) {
 // Forwards through the intervals begin … end − 1: the greatest speed[i + 1] from speed[i], within the ranges.
 template <int m>
 inline void raise_speeds(const TimedRows& path, std::size_t begin, std::size_t end, const SpeedRange* range,
-                         double* speed, double* memory) {
+                         double* speed, Carry* carry, double* memory) {
     for (std::size_t i = begin; i < end; ++i) {
         const Rows rows = build_rows<m>(path, i, memory);
         const Edges edges = bound_next(rows, speed[i], range[i + 1]);
-        speed[i + 1] = max(range[i + 1].low, min(greatest_next(edges), range[i + 1].high));
+        const SpeedRange& next = range[i + 1];
+        speed[i + 1] = max(next.low, min(greatest_next(edges), next.high));
+        if (speed[i + 1] < next.high) carry[i + 1] = {edges.high.slope, false};
     }
 }
 
