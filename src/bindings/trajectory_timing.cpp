@@ -137,23 +137,24 @@ void bind_trajectory_timing(nb::module_& m) {
         [](const ConstDoubles& controls, const ConstDoubles& lengths, const Flags& stops,
            const ConstDoubles& velocity, const ConstDoubles& acceleration, double start, double end,
            double tolerance, const std::optional<std::tuple<Integers, ConstDoubles, ConstDoubles>>& grid,
-           const nb::object& sample) {
+           const nb::object& sample, const std::optional<ConstDoubles>& rises) {
             const TimingPath path = read_path(controls, lengths, stops);
             const TimingLimits limits = read_limits(path, velocity, acceleration);
             const Sampler sampler = make_sampler(sample, path.joints);
             const TimingOptions options = {start, end, tolerance};
             TimingGrid given;
             if (grid) given = read_grid(path, std::get<0>(*grid), std::get<1>(*grid), std::get<2>(*grid));
+            std::vector<double> bends = read_samples(rises, given.size());
             Timing timing;
             {
                 const nb::gil_scoped_release release;
-                timing = grid ? time_on_grid(path, limits, options, given, sampler)
+                timing = grid ? time_on_grid(path, limits, options, given, sampler, std::move(bends))
                               : time_path(path, limits, options, sampler);
             }
             return show(std::move(timing));
         },
         "controls"_a, "lengths"_a, "stops"_a, "velocity"_a, "acceleration"_a, "start"_a, "end"_a,
-        "tolerance"_a, "grid"_a.none(), "sample"_a.none(),
+        "tolerance"_a, "grid"_a.none(), "sample"_a.none(), "rises"_a.none(),
         "Outcome, the interval that is at fault, speeds that are possible, grid unless given, squared "
         "speeds, their rises, whether converged.");
     m.def(

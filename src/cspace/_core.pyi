@@ -1021,7 +1021,7 @@ def divide_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.ty
     Pieces, from and to (k,) of about so many intervals of a path, two or more in each piece.
     """
 
-def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], bool]:
+def time_path(controls: numpy.typing.NDArray[numpy.float64], lengths: numpy.typing.NDArray[numpy.float64], stops: numpy.typing.NDArray[numpy.int8], velocity: numpy.typing.NDArray[numpy.float64], acceleration: numpy.typing.NDArray[numpy.float64], start: float, end: float, tolerance: float, grid: tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, sample: object | None, rises: numpy.typing.NDArray[numpy.float64] | None) -> tuple[str, int, float, float, tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]] | None, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], bool]:
     """
     Outcome, the interval that is at fault, speeds that are possible, grid unless given, squared speeds, their rises, whether converged.
     """

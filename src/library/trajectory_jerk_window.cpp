@@ -17,6 +17,7 @@ constexpr double sharper = 8.0;      // factor from one barrier to the next
 constexpr double to_boundary = 0.9;  // of the longest step
 constexpr double centered = 0.5;     // squared Newton decrement at which a barrier is sharpened
 constexpr double settled = 3e-4;     // relative change of the duration, likewise
+constexpr int patience = 12;         // steps after which that change is enough: tangents may alternate
 constexpr int most_steps = 400;      // of Newton's method in all
 // Relative to the diagonal of the Hessian.
 constexpr double least_ridge = 1e-14, most_ridge = 1e-3;
@@ -117,15 +118,16 @@ void JerkWindow::minimize(double tolerance) {
     const double sampled = 0.5 * double(path_.torque_rows() + path_.speed_rows());
     const double rows = double(count_) * (own + sampled + 6.0) + 2.0;
     double weight = rows / (first_gap * seconds()), last = seconds();
-    for (int steps = 0; steps < most_steps; ++steps) {
+    for (int steps = 0, still = 0; steps < most_steps; ++steps) {
         double decrement;
         if (!step(weight, decrement)) break;
         const double now = seconds();
-        const bool still = std::fabs(now - last) < settled * now;
+        still = std::fabs(now - last) < settled * now ? still + 1 : 0;
         last = now;
-        if (decrement > centered || !still) continue;
+        if (still == 0 || (decrement > centered && still < patience)) continue;
         if (rows / weight < tolerance * now) break;
         weight *= sharper;
+        still = 0;
     }
 }
 

@@ -81,7 +81,7 @@ constexpr double series_below = 0.01;  // argument below which six terms of a se
 constexpr size_t least_parts = 2;      // of a piece: with stops at both its ends it has to move between
 // Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
 // of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
-constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-3;
+constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-6;
 
 // artanh(√z) / √z, which is arctan(√−z) / √−z for negative z.
 double inverse_tangent(double z) {
@@ -322,10 +322,11 @@ TimingGrid divide_evenly(const TimingPath& path, std::size_t intervals) {
 }
 
 Timing time_on_grid(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options,
-                    const TimingGrid& grid, const Sampler& sample) {
+                    const TimingGrid& grid, const Sampler& sample, std::vector<double> rises) {
     PathTimer timer(path, limits, options);
     timer.set_grid(grid, sample);
-    Timing timing = timer.solve(std::vector<double>(grid.size(), 0.0));
+    rises.resize(grid.size(), 0.0);
+    Timing timing = timer.solve_or_flatten(std::move(rises));
     find_stand(timing);
     return timing;
 }

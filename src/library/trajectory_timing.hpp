@@ -55,9 +55,9 @@ struct Timing {
 // About so many intervals, two or more in each piece.
 TimingGrid divide_evenly(const TimingPath& path, std::size_t intervals);
 
-// The fastest motion on a grid. sample may be empty.
+// The fastest motion on a grid. sample may be empty. rises (intervals,): of the squared speeds, or empty.
 Timing time_on_grid(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options,
-                    const TimingGrid& grid, const Sampler& sample);
+                    const TimingGrid& grid, const Sampler& sample, std::vector<double> rises);
 // The same on a grid that is halved where this changes the duration.
 Timing time_path(const TimingPath& path, const TimingLimits& limits, const TimingOptions& options,
                  const Sampler& sample);

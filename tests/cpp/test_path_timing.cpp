@@ -74,7 +74,8 @@ void check_rows() {
         const TimedRows path = piece.rows();
         std::vector<double> memory(std::size_t(3 * row_capacity(path)));
         SpeedRange range[2] = {{0.0, no_end}, {0.0, no_end}};
-        CHECK(bound_speeds<m>(path, 0, 1, range, memory.data()) == -1);
+        Carry carry[2] = {{0.0, true}, {0.0, true}};
+        CHECK(bound_speeds<m>(path, 0, 1, range, carry, memory.data()) == -1);
         CHECK(range[0].low == 0.0 && range[0].high > 0.0);
         const Rows rows = build_rows<m>(path, 0, memory.data());
         for (const double part : {0.0, 0.3, 1.0}) {
@@ -94,10 +95,11 @@ void check_risen_rows() {
         OnePiece piece(m, 1 + int(draw(0.0, 7.99)));
         std::vector<double> memory(std::size_t(3 * row_capacity(piece.rows())));
         SpeedRange flat[2] = {{0.0, no_end}, {0.0, no_end}};
-        CHECK(bound_speeds<m>(piece.rows(), 0, 1, flat, memory.data()) == -1);
+        Carry carry[2] = {{0.0, true}, {0.0, true}};
+        CHECK(bound_speeds<m>(piece.rows(), 0, 1, flat, carry, memory.data()) == -1);
         piece.rise = draw(-0.5, 0.5) * std::exp(draw(-4.0, 0.0)) * flat[0].high;
         SpeedRange range[2] = {{0.0, no_end}, {0.0, no_end}};
-        if (bound_speeds<m>(piece.rows(), 0, 1, range, memory.data()) >= 0) continue;
+        if (bound_speeds<m>(piece.rows(), 0, 1, range, carry, memory.data()) >= 0) continue;
         ++found;
         const TimedRows path = piece.rows();
         const Rows rows = build_rows<m>(path, 0, memory.data());

@@ -211,3 +211,25 @@ def test_short_pieces_of_long_smooth_paths_have_fewer_intervals_by_default():
     own, fine = cs.time_parametrize(path, **most), cs.time_parametrize(path, **most, grid=30 * len(path))
     assert len(own.intervals.piece) < 0.5 * len(fine.intervals.piece)
     assert fine.duration <= own.duration < fine.duration * 1.002
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_limits_of_jerk_cost_little_whatever_the_distances_of_waypoints(seed):
+    # Tangents of the limits may alternate from step to step; that must not end the minimisation.
+    rng = np.random.default_rng(seed)
+    for k in range(12):
+        n, dof = int(rng.integers(12, 40)), int(rng.integers(1, 4))
+        steps = 10.0 ** rng.uniform(-3, 1, (n, 1)) * rng.normal(size=(n, dof))
+        path = cs.spline(np.cumsum(steps, 0)) if k % 3 else cs.blend(np.cumsum(steps, 0), 0.01)
+        most = {"velocity": 2.0, "acceleration": 1.0}
+        timed, plain = cs.time_parametrize(path, **most, jerk=20.0), cs.time_parametrize(path, **most)
+        assert plain.duration * (1 - 1e-3) < timed.duration < 1.3 * plain.duration
+
+
+def test_windows_of_paths_with_long_and_short_pieces_take_no_longer():
+    rng = np.random.default_rng(3)
+    steps = 10.0 ** rng.uniform(-1, 1, (60, 1)) * rng.normal(size=(60, 3))
+    path = cs.blend(np.cumsum(steps, axis=0), 0.01)
+    most = {"velocity": 2.0, "acceleration": 1.0, "jerk": 30.0}
+    whole, parts = (cs.time_parametrize(path, **most, grid=n).duration for n in (19_000, 21_000))
+    assert parts < whole * (1 + 3e-4)

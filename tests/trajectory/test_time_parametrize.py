@@ -522,3 +522,50 @@ def test_squared_speeds_are_quadratic_between_places_and_keep_all_limits():
     expected = 0.75 * x[:-1] + 0.25 * x[1:] + 0.375 * r
     assert timed.parameter(t, 1) ** 2 == pytest.approx(expected, rel=1e-5, abs=1e-6)
     assert excess(timed, np.full(5, 2.0), np.full(5, 5.0)) <= 1e-12
+
+
+@pytest.mark.parametrize(("bend", "deviation"), [(0.3, 1e-4), (0.1, 1e-5), (0.03, 1e-5), (0.003, 1e-6)])
+def test_small_corners_are_resolved(bend, deviation):
+    # Halving such a corner gains little at first, and more each time.
+    path = cs.blend([[0, 0], [1, 0], [2, bend]], deviation)
+    own, fine = (
+        cs.time_parametrize(path, velocity=2.0, acceleration=5.0, tolerance=tolerance)
+        for tolerance in (None, 1e-5)
+    )
+    assert own.converged
+    assert own.duration < fine.duration * (1 + 1.5e-3)
+
+
+def test_automatic_grids_of_random_nearly_straight_blends_are_as_exact_as_they_say():
+    rng = np.random.default_rng(53)
+    for _ in range(60):
+        n, count = int(rng.integers(2, 8)), int(rng.integers(3, 8))
+        steps = rng.normal(size=n) + 10.0 ** rng.uniform(-4, 0) * rng.normal(size=(count, n))
+        path = cs.blend(np.cumsum(steps, axis=0), 10.0 ** rng.uniform(-6, -1))
+        v, a = rng.uniform(1, 3, n) * 10.0 ** rng.uniform(-1, 1, n), rng.uniform(1, 15, n)
+        own, fine = (
+            cs.time_parametrize(path, velocity=v, acceleration=a, tolerance=tolerance)
+            for tolerance in (None, 3e-5)
+        )
+        assert own.converged
+        assert own.duration < fine.duration * (1 + 1.5e-3)
+
+
+def test_motions_with_a_speed_or_a_feed_are_as_exact_as_others():
+    robot = cs.load_robot("ur5e")
+    path = cs.spline(np.random.default_rng(54).uniform(-1.5, 1.5, (4, 6)))
+    most = {"velocity": 3.0, "acceleration": 10.0, "robot": robot}
+    for asked in ({"speed": 0.4}, {"feed": 0.2}):
+        timed = cs.time_parametrize(path, **most, **asked)
+        assert timed.converged
+        assert timed.rises.any()
+    slow = cs.time_parametrize(path, **most, speed=0.4)
+    assert slow.duration < cs.time_parametrize(path, **most, speed=0.4, grid=20_000).duration * (1 + 1e-3)
+
+
+def test_an_impossible_speed_beside_the_possible_ones_is_told_apart_from_them():
+    timed = cs.time_parametrize(
+        cs.spline([[0.0], [1.0]]), velocity=np.inf, acceleration=2.0, start_speed=2.0 + 1e-9
+    )
+    assert not timed
+    assert "from 0 to 1.99999" in timed.reason

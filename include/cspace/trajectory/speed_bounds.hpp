@@ -39,6 +39,9 @@ inline constexpr double closed_width = 8e-16;
 // intervals are short and motions fast.
 inline constexpr double speed_rounding = 4.5e-16;
 
+// Share by which a squared speed may be below the greatest possible one and count as that.
+inline constexpr double same_speed = 1e-9;
+
 // Share of the greatest speed from which a motion comes to a stand within an interval; any would do.
 inline constexpr double moving_share = 1e-2;
 
@@ -171,7 +174,7 @@ inline void raise_speeds(const TimedRows& path, std::size_t begin, std::size_t e
         const Edges edges = bound_next(rows, speed[i], range[i + 1]);
         const SpeedRange& next = range[i + 1];
         speed[i + 1] = max(next.low, min(greatest_next(edges), next.high));
-        if (speed[i + 1] < next.high) carry[i + 1] = {edges.high.slope, false};
+        if (speed[i + 1] < (1.0 - same_speed) * next.high) carry[i + 1] = {edges.high.slope, false};
     }
 }
 

@@ -243,13 +243,16 @@ class _Timer:
             raise InputError(f"no limit applies to the joints that move at s = {s:.6g}; pass acceleration=")
         return None
 
-    def time_once(self, grid: Grid | None, tolerance: float) -> TimedPath:
-        """The fastest motion whose sampled limits are not yet checked; on a grid of its own without one."""
+    def time_once(self, grid: Grid | None, tolerance: float, rises: Array | None = None) -> TimedPath:
+        """The fastest motion whose sampled limits are not yet checked; on a grid of its own without one.
+
+        rises: of the squared speeds on a grid that is given.
+        """
         if self.sampled is not None and self.sampled.torque is not None and self.sampled.torque.resists:
-            plain = self._solve(grid, None, tolerance)
+            plain = self._solve(grid, None, tolerance, rises)
             if plain:
                 self.sampled.expected = plain.grid, plain.squared_speed
-        return self._solve(grid, self.sampled, tolerance)
+        return self._solve(grid, self.sampled, tolerance, rises)
 
     def time(self, grid: Grid | None) -> TimedPath:
         """The fastest motion; on a grid of its own without one, on which a feed is held."""
@@ -260,12 +263,14 @@ class _Timer:
                 break
             assert self.sampled is not None
             self.sampled = self.sampled.renewed((timed.grid, timed.squared_speed))
-            timed = self.time_on(timed.intervals.divided(parts))
+            converged, rises = timed.converged, np.repeat(np.where(parts == 1, timed.rises, 0.0), parts)
+            timed = self.time_on(timed.intervals.divided(parts), rises)
+            timed.converged = converged
         return timed
 
-    def time_on(self, grid: Grid | None) -> TimedPath:
+    def time_on(self, grid: Grid | None, rises: Array | None = None) -> TimedPath:
         """The fastest motion on a grid, or one of its own."""
-        timed = self.time_once(grid, self.within)
+        timed = self.time_once(grid, self.within, rises)
         if self.sampled is None:
             return timed
         converged = timed.converged
@@ -273,7 +278,7 @@ class _Timer:
             if not timed or self.sampled.tighten(timed):
                 timed.converged = converged
                 return timed
-            timed = self._solve(timed.intervals, self.sampled, self.within)
+            timed = self._solve(timed.intervals, self.sampled, self.within, timed.rises)
         if timed and not self.sampled.tighten(timed):
             return self._refuse(f"limits are still exceeded after {MOST_ROUNDS} rounds; pass a finer grid=")
         return timed
@@ -374,7 +379,9 @@ class _Timer:
         """By how much less finer grids change the duration, relative."""
         return TIMED_WITHIN if self.tolerance is None else self.tolerance
 
-    def _solve(self, grid: Grid | None, sample: SampledLimits | None, tolerance: float) -> TimedPath:
+    def _solve(
+        self, grid: Grid | None, sample: SampledLimits | None, tolerance: float, given: Array | None = None
+    ) -> TimedPath:
         outcome, where, least, most, own, squared_speed, rises, converged = time_path(
             *self.arrays,
             self.velocity,
@@ -383,6 +390,7 @@ class _Timer:
             tolerance,
             grid,
             sample,
+            given,
         )
         used = grid or Grid(*(own or EMPTY_GRID))
         if outcome == "blocked":
@@ -392,7 +400,9 @@ class _Timer:
             return self._refuse(f"the motion stands at s = {s:.6g}; pass a finer grid=", s)
         if outcome != "timed":
             speed = self.ends[outcome == "end"]
-            reason = f"{outcome}_speed is {speed:.6g}; from {least:.6g} to {most:.6g} are possible"
+            digits = 6 if f"{speed:.6g}" not in (f"{least:.6g}", f"{most:.6g}") else 15
+            shown = (f"{value:.{digits}g}" for value in (speed, least, most))
+            reason = "{}_speed is {}; from {} to {} are possible".format(outcome, *shown)
             s = 0.0 if outcome == "start" else self.path.length
             return self._refuse(reason, s, (least, most))
         return TimedPath(
