@@ -81,7 +81,7 @@ constexpr double series_below = 0.01;  // argument below which six terms of a se
 constexpr size_t least_parts = 2;      // of a piece: with stops at both its ends it has to move between
 // Where all slopes vanish the path speed is bounded by their rounding alone, relative to the largest slopes
 // of the piece: multiples of squared speed at which it is a hundredth of what a limit may be exceeded by.
-constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-6;
+constexpr double noise_of_velocity = 1e-8, noise_of_acceleration = 1e-4;
 
 // artanh(√z) / √z, which is arctan(√−z) / √−z for negative z.
 double inverse_tangent(double z) {

@@ -569,3 +569,14 @@ def test_an_impossible_speed_beside_the_possible_ones_is_told_apart_from_them():
     )
     assert not timed
     assert "from 0 to 1.99999" in timed.reason
+
+
+@pytest.mark.parametrize("count", [2_000, 20_000])
+def test_waypoints_close_to_each_other_do_not_slow_a_motion_down(count):
+    def time(number):
+        s = np.linspace(0, 1, number)[:, None]
+        k = np.arange(3)
+        path = cs.spline(np.sin(3 * s + k) + 0.3 * np.cos(7 * s * k))
+        return cs.time_parametrize(path, velocity=2.0, acceleration=5.0).duration
+
+    assert time(count) == pytest.approx(time(200), rel=3e-3)
