@@ -18,7 +18,7 @@ namespace {
 
 std::optional<Doubles> find_direction(SolverArgument solver, const ConstDoubles& q, bool whole_pose) {
     const ik::BuiltArm& arm = solver.arm();
-    require_sizes(arm.room && q.size == arm.dof);
+    require_sizes(q.size == arm.dof);
     double direction[ik::max_joints];
     if (!ik::self_motion_direction(arm, q.data, whole_pose, direction)) return {};
     return Doubles({arm.dof}, direction);
@@ -27,7 +27,7 @@ std::optional<Doubles> find_direction(SolverArgument solver, const ConstDoubles&
 std::tuple<Doubles, Doubles, int> follow_curve(SolverArgument solver, const ConstDoubles& q,
                                                const ConstDoubles& direction, bool whole_pose) {
     const ik::BuiltArm& arm = solver.arm();
-    require_sizes(arm.room && q.size == arm.dof && direction.size == arm.dof);
+    require_sizes(q.size == arm.dof && direction.size == arm.dof);
     const ik::SelfMotionCurve curve = ik::follow_self_motion(arm, q.data, direction.data, whole_pose);
     const npy_intp rows = npy_intp(curve.q.size()) / arm.dof;
     return {Doubles({rows, arm.dof}, curve.q.data()), Doubles({rows, arm.dof}, curve.tangents.data()),
@@ -39,7 +39,7 @@ std::tuple<Doubles, Doubles> project_rows(SolverArgument solver, const ConstDoub
                                           bool whole_pose) {
     const ik::BuiltArm& arm = solver.arm();
     const npy_intp n = arm.dof, k = near.size / n;
-    require_sizes(arm.room && q.size == n && near.size == k * n && along.size == k * n);
+    require_sizes(q.size == n && near.size == k * n && along.size == k * n);
     const Doubles rows({k, n}, near.data), tangents({k, n}, along.data);
     ik::project_on_self_motion(arm, q.data, whole_pose, int(k), rows.data, tangents.data);
     return {rows, tangents};

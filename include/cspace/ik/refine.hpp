@@ -23,6 +23,7 @@ struct PoseError {
 // The smallest singular value with its vectors: J v = σ u.
 struct WeakDirection {
     double sigma, v[6], u[6];
+    bool settled = false;  // whether the iteration told it from the next one
 };
 
 }  // namespace cspace::ik
@@ -93,6 +94,80 @@ inline void newton_pose_step(PoseError& error, double* dq) {
     }
 }
 
+// The direction in which an arm of six joints can hardly move its tip, by inverse iteration on the Jacobian.
+
+inline double make_unit6(double* v) {
+    const double size = std::sqrt(dot_n(v, v, 6));
+    for (int i = 0; i < 6; ++i) v[i] /= size > 0 ? size : 1;
+    return size;
+}
+
+// J = Q R of a Jacobian of six columns, as of linear::factor_qr.
+struct SquareQr {
+    double A[6][6], diagonal[6], factor[6];
+};
+inline SquareQr factor_jacobian(const PoseSvd& jacobian) {
+    SquareQr out;
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) out.A[i][j] = jacobian.us[j][i];
+    linear::factor_qr(out.A, out.diagonal, out.factor);
+    double floor = 0;
+    for (const double d : out.diagonal) floor = max(floor, tolerance::last_digits * std::fabs(d));
+    for (double& d : out.diagonal)
+        if (std::fabs(d) < floor) d = std::copysign(floor, d);
+    return out;
+}
+// x := R⁻¹ x and x := R⁻ᵀ x.
+inline void solve_upper(const SquareQr& qr, double* x) {
+    for (int k = 5; k >= 0; --k) {
+        for (int j = k + 1; j < 6; ++j) x[k] -= qr.A[k][j] * x[j];
+        x[k] /= qr.diagonal[k];
+    }
+}
+inline void solve_lower(const SquareQr& qr, double* x) {
+    for (int k = 0; k < 6; ++k) {
+        for (int j = 0; j < k; ++j) x[k] -= qr.A[j][k] * x[j];
+        x[k] /= qr.diagonal[k];
+    }
+}
+
+// A bound below the smallest singular value: the five others multiply to at most the fifth power of their
+// mean square's root.
+inline double bound_weakest(const SquareQr& qr, const PoseSvd& jacobian) {
+    double squares = 0, determinant = 1;
+    for (int j = 0; j < 6; ++j) {
+        squares += dot_n(jacobian.us[j], jacobian.us[j], 6) / 5;
+        determinant *= std::fabs(qr.diagonal[j]);
+    }
+    return determinant / (squares * squares * std::sqrt(squares));
+}
+inline WeakDirection weak_direction(const SquareQr& qr) {
+    constexpr double alone = 1e-6;  // relative change of 1/σ², the square of that of the direction
+    WeakDirection out{1, {0.41, -0.37, 0.43, 0.31, -0.47, 0.45}, {}};
+    double growth = 1;
+    for (int step = 0; step < 4; ++step) {
+        make_unit6(out.v);
+        solve_lower(qr, out.v);
+        for (int k = 0; k < 6; ++k) out.u[k] = out.v[k];
+        solve_upper(qr, out.v);
+        const double before = growth;
+        growth = make_unit6(out.v);
+        out.settled = std::fabs(growth - before) < alone * growth;
+    }
+    out.sigma = 1 / std::sqrt(growth);
+    make_unit6(out.u);
+    for (int k = 5; k >= 0; --k) linear::reflect(qr.A, 6, k, qr.factor[k], out.u);
+    return out;
+}
+// Of a Jacobian of six columns that is not decomposed. Where sigma is certainly above `enough`, a bound below
+// it is returned, without directions.
+inline WeakDirection weak_direction(const PoseSvd& jacobian,
+                                    double enough = std::numeric_limits<double>::infinity()) {
+    const SquareQr qr = factor_jacobian(jacobian);
+    const double bound = bound_weakest(qr, jacobian);
+    return bound > enough ? WeakDirection{bound, {}, {}} : weak_direction(qr);
+}
+
 // Applies a step, shortened to a stride; returns the remaining error.
 inline double take_step(const Chain& chain, const Posed& goal, double length, const double* from,
                         const double* dq, double* to, PoseError& error) {
@@ -130,32 +205,110 @@ inline bool solve_by_newton(const Chain& chain, const Posed& goal, double length
     return true;
 }
 
+// The step of a valley: to its floor, and along it from the floor on. False where the smallest singular value
+// is not between rounding and `narrow`.
+inline bool step_in_valley(PoseError& error, double narrow, double* dq) {
+    PoseSvd& J = error.jacobian;
+    const SquareQr qr = factor_jacobian(J);
+    if (bound_weakest(qr, J) > narrow) return false;
+    WeakDirection weak = weak_direction(qr);
+    if (!weak.settled) {
+        PoseSvd whole = J;
+        decompose(whole);
+        const int k = weakest_direction(whole);
+        weak.sigma = whole.sigma[k];
+        for (int i = 0; i < 6; ++i) {
+            weak.v[i] = whole.v[k][i];
+            weak.u[i] = whole.us[k][i] / (weak.sigma > 0 ? weak.sigma : 1);
+        }
+    }
+    if (!(weak.sigma < narrow) || weak.sigma <= tolerance::free_joint) return false;
+    const double along = dot_n(weak.u, error.e, 6);
+    const bool on_floor = dot_n(error.e, error.e, 6) < 1.01 * along * along;
+    for (int i = 0; i < 6; ++i) dq[i] = error.e[i] - along * weak.u[i];
+    for (int k = 0; k < 6; ++k) linear::reflect(qr.A, 6, k, qr.factor[k], dq);
+    solve_upper(qr, dq);
+    const double shift = (on_floor ? along / weak.sigma : 0) - dot_n(weak.v, dq, 6);
+    for (int i = 0; i < 6; ++i) dq[i] += shift * weak.v[i];
+    return true;
+}
+
 // In a valley with an almost flat floor, Newton's steps along the floor leave it sideways by more than the
 // error on the floor. Here steps to the floor and along it alternate. For six joints; true if it converged, q
 // is then a solution, else unchanged.
 inline bool follow_valley(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
     constexpr int most_steps = 96;
+    constexpr int patience = 4;  // steps that do not halve the error where it is rounding
     constexpr double narrow = 1e-2, settled = tolerance::last_digits, arrived = 1e-12;
-    double at[max_joints], size = 1;
+    double at[max_joints], best[max_joints], least = arrived;
     for (int i = 0; i < chain.n; ++i) at[i] = q[i];
     measure_error(chain, goal, length, at, error);
-    for (int step = 0; step < most_steps; ++step) {
-        size = size_of_error(error);
-        if (size < settled) break;
-        PoseSvd& J = error.jacobian;
-        decompose(J);
-        const int weak = weakest_direction(J);
-        if (!(J.sigma[weak] < narrow) || J.sigma[weak] <= tolerance::free_joint) break;
-        const double along = dot_n(J.us[weak], error.e, 6) / J.sigma[weak];
-        const bool on_floor = size * size < 1.01 * along * along;
+    for (int step = 0, idle = 0; step < most_steps && least >= settled && idle < patience; ++step) {
+        const double size = size_of_error(error);
+        idle += least < arrived;
+        if (size < least) {
+            if (size < 0.5 * least) idle = 0;
+            least = size;
+            for (int i = 0; i < chain.n; ++i) best[i] = at[i];
+            if (least < settled) break;
+        }
         double dq[max_joints];
-        step_to_floor(error, weak, dq);
-        for (int i = 0; i < chain.n && on_floor; ++i) dq[i] += along / J.sigma[weak] * J.v[weak][i];
+        if (!step_in_valley(error, narrow, dq)) break;
         take_step(chain, goal, length, at, dq, at, error);
     }
-    if (!(size < arrived)) return false;
-    for (int i = 0; i < chain.n; ++i) q[i] = at[i];
+    if (!(least < arrived)) return false;
+    for (int i = 0; i < chain.n; ++i) q[i] = best[i];
     return true;
+}
+
+// The Jacobian of a descent, decomposed where its singular values are needed. The directions of the last
+// decomposition shorten the next.
+struct LazySvd {
+    PoseSvd& jacobian;
+    bool is_fresh = false, has_directions = false;
+
+    void decompose_once() {
+        if (is_fresh) return;
+        decompose(jacobian, has_directions);
+        is_fresh = has_directions = true;
+    }
+};
+
+// What measure_error has written.
+inline void copy_measured(const PoseError& from, PoseError& to) {
+    for (int k = 0; k < 6; ++k) to.e[k] = from.e[k];
+    to.position = from.position;
+    to.rotation = from.rotation;
+    for (int i = 0; i < from.jacobian.columns; ++i)
+        for (int k = 0; k < 6; ++k) to.jacobian.us[i][k] = from.jacobian.us[i][k];
+}
+
+// The damped step from a Jacobian that is not decomposed: the rows of √damping times the identity are
+// reflected into J one after the other (Golub & Van Loan 2013, section 6.5.3).
+inline void damped_step_by_reflections(const PoseError& error, double damping, double* dq) {
+    const int n = error.jacobian.columns;
+    const double root = std::sqrt(damping);
+    double J[max_joints][6], e[6], R[max_joints][max_joints];
+    for (int k = 0; k < 6; ++k) e[k] = error.e[k];
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < 6; ++k) J[i][k] = error.jacobian.us[i][k];
+    for (int k = 0; k < n; ++k) {
+        const double square = dot_n(J[k], J[k], 6), diagonal = -std::sqrt(damping + square);
+        const double head = root - diagonal, factor = 2 / (head * head + square);
+        R[k][k] = diagonal;
+        for (int j = k + 1; j < n; ++j) {
+            const double along = factor * dot_n(J[k], J[j], 6);
+            R[k][j] = -along * head;
+            for (int i = 0; i < 6; ++i) J[j][i] -= along * J[k][i];
+        }
+        const double along = factor * dot_n(J[k], e, 6);
+        dq[k] = -along * head;
+        for (int i = 0; i < 6; ++i) e[i] -= along * J[k][i];
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        for (int j = k + 1; j < n; ++j) dq[k] -= R[k][j] * dq[j];
+        dq[k] /= R[k][k];
+    }
 }
 
 // Moves q to the nearest configuration that reaches the goal, or to a local minimum of the error, by damped
@@ -166,25 +319,36 @@ inline bool follow_valley(const Chain& chain, const Posed& goal, double length, 
 inline double descend_to_goal(const Chain& chain, const Posed& goal, double length, double* q,
                               PoseError& error, int most_steps, double settled = tolerance::last_digits) {
     constexpr double noise = 1e-13;
+    constexpr double coarse = 1e-20;         // damping from which normal equations are exact enough
     constexpr double least_damping = 1e-20;  // rises to one within thirty steps
     constexpr double growth = 4;
     double damping = 0, grow = growth;
     int stalls = 0;
+    LazySvd svd{error.jacobian};
     measure_error(chain, goal, length, q, error);
     double size = size_of_error(error);
-    decompose(error.jacobian);
     for (int step = 0; step < most_steps && size > settled && stalls < 6; ++step) {
         double dq[max_joints], next[max_joints];
         PoseError trial;
-        damped_pose_step(error, damping + size * size, dq);
+        const double damped = damping + size * size;
+        if (svd.is_fresh || damped < coarse) {
+            svd.decompose_once();
+            damped_pose_step(error, damped, dq);
+        } else {
+            damped_step_by_reflections(error, damped, dq);
+        }
         const double trial_size = take_step(chain, goal, length, q, dq, next, trial);
         const bool closer = trial_size < size, stalled = trial_size > 0.99 * size;
-        const double sigma = error.jacobian.sigma[weakest_direction(error.jacobian)];
         if (!closer && (size < noise || damping > 1e3)) break;
+        double sigma = 0;
+        if (stalled) {
+            svd.decompose_once();
+            sigma = error.jacobian.sigma[weakest_direction(error.jacobian)];
+        }
         if (closer) {
             for (int i = 0; i < chain.n; ++i) q[i] = next[i];
-            error = trial;
-            decompose(error.jacobian);
+            copy_measured(trial, error);
+            svd.is_fresh = false;
             size = trial_size;
             stalls = stalled ? stalls + 1 : 0;
         }
@@ -197,6 +361,7 @@ inline double descend_to_goal(const Chain& chain, const Posed& goal, double leng
             grow *= growth;
         }
     }
+    svd.decompose_once();
     return size;
 }
 
@@ -241,56 +406,6 @@ CSPACE_INLINE mask_of<V> polish_solution(const Chain& chain, const Pose<V>& goal
     const V first = newton_step(chain, goal, length, q);
     const V second = newton_step(chain, goal, length, q);
     return (first < tolerance::polish_reach) && (second < tolerance::polished);
-}
-
-// The direction in which an arm of six joints can hardly move its tip, by inverse iteration on the Jacobian.
-
-inline double make_unit6(double* v) {
-    const double size = std::sqrt(dot_n(v, v, 6));
-    for (int i = 0; i < 6; ++i) v[i] /= size > 0 ? size : 1;
-    return size;
-}
-
-// Of a Jacobian of six columns that is not decomposed. Where sigma is certainly above `enough`, a bound below
-// it is returned, without directions: the five other singular values multiply to at most the fifth power of
-// their mean square's root.
-inline WeakDirection weak_direction(const PoseSvd& jacobian,
-                                    double enough = std::numeric_limits<double>::infinity()) {
-    const auto& columns = jacobian.us;
-    double A[6][6], diagonal[6], factor[6];
-    for (int i = 0; i < 6; ++i)
-        for (int j = 0; j < 6; ++j) A[i][j] = columns[j][i];
-    linear::factor_qr(A, diagonal, factor);
-    double squares = 0, determinant = 1, floor = 0;
-    for (int j = 0; j < 6; ++j) {
-        squares += dot_n(columns[j], columns[j], 6) / 5;
-        determinant *= std::fabs(diagonal[j]);
-    }
-    const double bound = determinant / (squares * squares * std::sqrt(squares));
-    if (bound > enough) return {bound, {}, {}};
-    for (const double d : diagonal) floor = max(floor, tolerance::last_digits * std::fabs(d));
-    for (double& d : diagonal)
-        if (std::fabs(d) < floor) d = std::copysign(floor, d);
-    WeakDirection out{1, {0.41, -0.37, 0.43, 0.31, -0.47, 0.45}, {}};
-    double growth = 1;
-    for (int step = 0; step < 4; ++step) {
-        double* v = out.v;
-        make_unit6(v);
-        for (int k = 0; k < 6; ++k) {  // Rᵀ y = v
-            for (int j = 0; j < k; ++j) v[k] -= A[j][k] * v[j];
-            v[k] /= diagonal[k];
-        }
-        for (int k = 5; k >= 0; --k) {  // R z = y
-            for (int j = k + 1; j < 6; ++j) v[k] -= A[k][j] * v[j];
-            v[k] /= diagonal[k];
-        }
-        growth = make_unit6(v);
-    }
-    out.sigma = 1 / std::sqrt(growth);
-    for (int j = 0; j < 6; ++j)
-        for (int i = 0; i < 6; ++i) out.u[i] += columns[j][i] * out.v[j];
-    make_unit6(out.u);
-    return out;
 }
 
 // The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some generic

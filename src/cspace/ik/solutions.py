@@ -137,7 +137,9 @@ class Solutions(Answers, _core.SolutionsBase):
         """The one-parameter self-motions among the solutions, empty unless the pose is singular."""
         solver, q = self._whole
         rows = np.flatnonzero(self._is_self_motion)
-        return tuple(self_motion_at(solver, int(row), q[row], not self._is_point) for row in rows)
+        locked = {} if self._about is None else {k: float(v) for k, v in self._about.locked.items()}
+        whole_pose = not self._is_point
+        return tuple(self_motion_at(solver, int(row), q[row], whole_pose, locked) for row in rows)
 
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)

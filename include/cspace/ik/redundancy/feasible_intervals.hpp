@@ -72,7 +72,7 @@ inline CellView view_of(const Redundant& arm, const SweptRows& rows, int paramet
         const int b = rows.branch[k];
         if (b >= max_branches) continue;
         out.there |= 1u << b;
-        if (is_within(arm, rows.q[k], 0, parameter)) out.within |= 1u << b;
+        if (is_within(arm, rows.q[k], limit_slack, parameter)) out.within |= 1u << b;
         for (int i = 0; i < arm.chain.n; ++i) out.q[b][i] = rows.q[k][i];
     }
     return out;
@@ -103,7 +103,7 @@ inline Critical bisect_change(const Redundant& arm, const Sweep& sweep, Looks& l
         cause = end_fold;
         for (int i = 0; i < arm.chain.n && there.there >> branch & 1; ++i) {
             const double q = there.q[branch][i];
-            if (i == sweep.parameter || !(excess(arm, i, q) > 0)) continue;
+            if (i == sweep.parameter || !(excess(arm, i, q) > limit_slack)) continue;
             cause = i;
             side = std::fabs(short_way(q - arm.upper[i])) < std::fabs(short_way(q - arm.lower[i]));
         }

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, whole_number
+from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
@@ -34,15 +35,23 @@ class SelfMotion:
     q: Array
     direction: Array
     joints: tuple[str, ...]
-    _solver: Any = field(repr=False)
+    _solver: Solver = field(repr=False)
     _whole_pose: bool = field(repr=False)
+    _moving: npt.NDArray[np.intp] = field(repr=False)
 
     def __repr__(self) -> str:
         return one_line("SelfMotion", f"of row {self.row}: {', '.join(self.joints)} move")
 
     @cached_property
     def _arc(self) -> Arc | None:
-        return arc_through(self._solver, self.q, self.direction, self._whole_pose)
+        own = self._moving
+        return arc_through(self._solver, self.q[own], self.direction[own], self._whole_pose)
+
+    def _with_locked(self, q: Array) -> Array:
+        """Configurations (..., dof) of the arm from those of the joints that are not locked."""
+        whole = np.broadcast_to(self.q, (*q.shape[:-1], len(self.q))).copy()
+        whole[..., self._moving] = q
+        return whole
 
     @property
     def bounds(self) -> Array:
@@ -64,7 +73,7 @@ class SelfMotion:
         """
         if self._arc is None:
             return np.full((len(self.q), 2), np.nan)
-        return self._arc.bounds()
+        return self._with_locked(self._arc.bounds().T).T
 
     def sample(self, n: int) -> Array:
         """n configurations along the self-motion, (n, dof) [rad, m], evenly spread, each keeping the tip.
@@ -78,30 +87,44 @@ class SelfMotion:
             return np.empty((0, len(self.q)))
         endless = np.flatnonzero(np.isinf(self.bounds).any(axis=1))
         if len(endless):
-            name = self._solver.joint_names[int(endless[0])]
+            name = self._solver.joint_names[int(np.searchsorted(self._moving, endless[0]))]
             raise InputError(f"the self-motion is unbounded: {name} has no limits; give the robot limits")
         q = self._arc.sample(count)
-        goes_round = self._arc.is_loop & (np.ptp(self.bounds, axis=1) >= 2 * np.pi)
-        return np.where(goes_round, wrap_joints(q, self._solver.joint_types), q)
+        goes_round = self._arc.is_loop & (np.ptp(self._arc.bounds(), axis=1) >= 2 * np.pi)
+        return self._with_locked(np.where(goes_round, wrap_joints(q, self._solver.joint_types), q))
 
     def nearest(self, q: Array) -> Array:
         """The configuration of the family that is nearest to q (dof,), (dof,) [rad, m].
 
         Limits aside; each revolute joint by the turn that brings it closest.
         """
-        return nearest_member(self._solver, self.q, self.direction, self._whole_pose, q)
+        return self._nearest_within(q, None)
 
-    def _nearest_within(self, q: Array, limits: Limits) -> Array:
-        """The same within limits; self.q where none of the family is."""
-        return nearest_member(self._solver, self.q, self.direction, self._whole_pose, q, limits)
+    def _nearest_within(self, q: Array, limits: Limits | None) -> Array:
+        """The same within limits, if any; self.q where none of the family is."""
+        own = self._moving
+        seed = as_floats(q, "q", last=self.q.shape)
+        bounds = None if limits is None else Limits(limits.lower[own], limits.upper[own])
+        here, along = self.q[own], self.direction[own]
+        return self._with_locked(
+            nearest_member(self._solver, here, along, self._whole_pose, seed[own], bounds)
+        )
 
 
-def self_motion_at(solver: Solver, row: int, q: Array, whole_pose: bool) -> SelfMotion:
-    """The self-motion through q: the joint velocity that keeps the tip's twist, or its velocity, zero."""
+def self_motion_at(
+    solver: Solver, row: int, q: Array, whole_pose: bool, locked: Mapping[int, float]
+) -> SelfMotion:
+    """The self-motion through q: the joint velocity that keeps the tip's twist, or its velocity, zero.
+
+    locked: values of joints, by number, that stay where they are.
+    """
+    own = np.array([k for k in range(len(q)) if k not in locked])
+    solver = solver.lock(locked)
+    found = _core._ik_direction(solver, np.ascontiguousarray(q[own]), whole_pose)
     rows = 6 if whole_pose else 3
-    found = _core._ik_direction(solver, np.ascontiguousarray(q), whole_pose)
-    direction = np.linalg.svd(solver.jacobian(q)[:rows])[2][-1] if found is None else found
-    direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
-    moving = np.abs(direction) > MOVING_JOINT
-    names = tuple(itertools.compress(solver.joint_names, moving))
-    return SelfMotion(row, q, np.where(moving, direction, 0.0), names, solver, whole_pose)
+    along = np.linalg.svd(solver.jacobian(q[own])[:rows])[2][-1] if found is None else found
+    along = along * np.sign(along[np.argmax(np.abs(along))])
+    direction = np.zeros(len(q))
+    direction[own] = np.where(np.abs(along) > MOVING_JOINT, along, 0.0)
+    names = tuple(itertools.compress(solver.joint_names, direction[own] != 0))
+    return SelfMotion(row, q, direction, names, solver, whole_pose, own)
