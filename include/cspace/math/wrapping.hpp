@@ -26,7 +26,9 @@ template <class V>
 CSPACE_INLINE V wrap_angle(V t) {
     return wrap_once(short_way(t));
 }
-// The angle in [start, start + 2π).
-inline double wrap_above(double t, double start) { return t - 2 * pi * std::floor((t - start) / (2 * pi)); }
+// The angle in [start, start + 2π). The quotient of an angle just below a whole turn rounds to it.
+inline double wrap_above(double t, double start) {
+    return max(start, t - 2 * pi * std::floor((t - start) / (2 * pi)));
+}
 
 }  // namespace cspace::inline CSPACE_ISA

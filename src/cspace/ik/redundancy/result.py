@@ -14,7 +14,7 @@ from cspace.errors import InputError
 from cspace.ik.solver import Solver
 from cspace.math.wrapping import TURN
 from cspace.tables import html_table, one_line, shown
-from cspace.tolerances import FARTHEST
+from cspace.tolerances import FARTHEST, ON_LIMIT
 
 MOST_SAMPLES = 100_000
 """Values of a free joint that one call answers for."""
@@ -46,7 +46,7 @@ class Interval:
         number = float(value)  # type: ignore[arg-type]
         if not self._slides and math.isfinite(number):
             number -= TURN * round((number - 0.5 * (self.lower + self.upper)) / TURN)
-        return self.lower <= number <= self.upper
+        return self.lower - ON_LIMIT <= number <= self.upper + ON_LIMIT
 
 
 @dataclass(frozen=True, eq=False)
