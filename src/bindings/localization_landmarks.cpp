@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "cspace/localization/landmarks/rejection_sum.hpp"
+#include "cspace/math/trig.hpp"
 #include "maps_points.hpp"
 
 namespace nb = nanobind;
@@ -46,7 +47,7 @@ std::unique_ptr<LandmarkFilter> make_particles(const Row9& sensor, const std::ar
 // Whether rows name, range, bearing can be used: names whole numbers from 0, or all −1; ranges not below
 // zero; bearings within two turns; one of the two at least.
 bool are_readings(std::span<const Row3> rows) {
-    constexpr double most_bearing = 6.283185307179587, most_name = 9007199254740992.0;
+    constexpr double most_bearing = 2 * cspace::pi, most_name = 9007199254740992.0;
     for (const Row3& row : rows) {
         const bool is_named = row[0] >= 0, is_name = row[0] == std::floor(row[0]) && row[0] < most_name;
         const bool is_range = std::isnan(row[1]) || (row[1] >= 0 && !std::isinf(row[1]));

@@ -698,8 +698,8 @@ CHAIN_CORRECTION: Final = 1e-4
 """Singular value below which a chain is not corrected towards its poses: the joints would have to jump."""
 
 CHAIN_HELD: Final = 1e-6
-"""Share of the stiffness of a chain that holds it where nothing else does: one joint that turns the tip about
-its free axis may be anywhere."""
+"""Damping of a chain, as a share of its stiffness: a joint that turns the tip about its free axis may be
+anywhere, and nothing else holds it."""
 
 POSE_ROUNDING: Final = 1e-13
 """[m or rad] Of a pose that is reached."""

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "cspace/math/threads.hpp"
+#include "cspace/math/wrapping.hpp"
 #include "kernels/collision.hpp"
 #include "shapes_distance.hpp"
 
@@ -214,11 +215,10 @@ void Checker::GiveBack::operator()(WorkspaceMemory* memory) const {
 }
 
 void Checker::round_edge(const double* from, const double* to, float* a, float* b) const {
-    constexpr double turn = 6.28318530717958647692, half_turn = turn / 2;
     for (int k = 0; k < dof(); ++k) {
         const double middle = 0.5 * (from[k] + to[k]);
-        const bool is_far = std::fabs(middle) > half_turn && shifts_[std::size_t(k)];
-        const double shift = is_far ? turn * std::round(middle / turn) : 0.0;
+        const bool is_far = std::fabs(middle) > pi && shifts_[std::size_t(k)];
+        const double shift = is_far ? nearest_multiple(middle) : 0.0;
         a[k] = float(from[k] - shift), b[k] = float(to[k] - shift);
     }
 }

@@ -8,6 +8,7 @@
 #include "cspace/ik/arm.hpp"
 #include "cspace/ik/goal.hpp"
 #include "cspace/math/threads.hpp"
+#include "cspace/math/wrapping.hpp"
 #include "kernels/ik.hpp"
 
 namespace cspace::ik {
@@ -154,15 +155,14 @@ bool is_ruled_out(const BuiltArm& built, const double* goal) {
 
 double turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper,
                     const double* seed, double* q) {
-    constexpr double turn = 6.283185307179586, on_limit = 1e-9;
+    constexpr double turn = 2 * pi, on_limit = 1e-9;
     double excess = 0;
     for (int i = 0; i < n; ++i) {
         if (q[i] >= lower[i] && q[i] <= upper[i] && std::fabs(seed[i] - q[i]) < turn / 2) continue;
-        const double least = std::ceil((lower[i] - on_limit - q[i]) / turn);
-        const double most = std::floor((upper[i] + on_limit - q[i]) / turn);
-        const double wanted = std::nearbyint((seed[i] - q[i]) / turn);
-        const double allowed = least <= most ? std::fmin(std::fmax(wanted, least), most) : wanted;
-        const double turns = prismatic[i] ? 0 : allowed;
+        const double wanted = count_turns(seed[i] - q[i]);
+        const double turns =
+            prismatic[i] ? 0
+                         : turns_within(q[i], q[i], lower[i] - on_limit, upper[i] + on_limit, wanted, wanted);
         const double moved = q[i] + turn * turns, inside = std::fmin(std::fmax(moved, lower[i]), upper[i]);
         const double over = std::fabs(moved - inside);
         q[i] = over <= on_limit ? inside : moved;

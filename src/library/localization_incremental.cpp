@@ -1,12 +1,11 @@
 #include "localization_incremental.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
 
 #include "cspace/localization/graph/incremental_graph.hpp"
 #include "cspace/localization/graph/spatial_space.hpp"
+#include "cspace/math/linear.hpp"
 #include "localization_fronts.hpp"
 
 namespace cspace {
@@ -125,25 +124,18 @@ class IncrementalOf : public IncrementalSolver {
     IncrementalGraph<Space, KernelFronts> graph_;
 };
 
-template <int size>
-bool is_clearly_positive(const double* W) {
+bool is_clearly_positive(const double* W, int size) {
     constexpr double share = 1e-6;  // of the largest entry: far above what counts as singular
-    double L[size][size], largest = 0;
-    for (int k = 0; k < size; ++k) largest = std::max(largest, W[k * (size + 1)]);
+    double rows[36], largest = 0;
     for (int r = 0; r < size; ++r) {
-        for (int c = 0; c <= r; ++c) {
-            double sum = W[r * size + c];
-            if (!(sum == W[c * size + r])) return false;
-            for (int k = 0; k < c; ++k) sum -= L[r][k] * L[c][k];
-            if (r != c) {
-                L[r][c] = sum / L[c][c];
-            } else {
-                if (!(sum > share * largest) || !std::isfinite(sum)) return false;
-                L[r][r] = std::sqrt(sum);
-            }
+        largest = std::max(largest, W[r * (size + 1)]);
+        for (int c = 0; c < size; ++c) {
+            if (!(W[r * size + c] == W[c * size + r])) return false;
+            rows[r * size + c] = W[r * size + c];
         }
     }
-    return true;
+    MatrixRows<double> A{rows, size};
+    return factor_ldl(A, size, share * largest);
 }
 
 }  // namespace
@@ -158,12 +150,7 @@ std::unique_ptr<IncrementalSolver> make_incremental_solver(bool is_spatial, doub
 bool are_clearly_positive(std::span<const double> matrices, int size) {
     const auto numbers = std::size_t(size) * std::size_t(size);
     for (std::size_t k = 0; k + numbers <= matrices.size(); k += numbers) {
-        const double* const W = matrices.data() + k;
-        const bool is_positive = size == 2   ? is_clearly_positive<2>(W)
-                                 : size == 3 ? is_clearly_positive<3>(W)
-                                 : size == 6 ? is_clearly_positive<6>(W)
-                                             : false;
-        if (!is_positive) return false;
+        if (!is_clearly_positive(matrices.data() + k, size)) return false;
     }
     return true;
 }

@@ -9,6 +9,7 @@
 #include "cspace/localization/particles/modes.hpp"
 #include "cspace/localization/particles/systematic.hpp"
 #include "cspace/math/threads.hpp"
+#include "cspace/math/wrapping.hpp"
 #include "kernels/localization_particles.hpp"
 
 namespace cspace::localization {
@@ -103,10 +104,8 @@ class SightingModel {
             square += error * error;
         }
         if (!std::isnan(readings_.bearings[k])) {
-            constexpr double two_pi = 6.28318530717958647693;
             const double error =
-                std::remainder(readings_.bearings[k] - (std::atan2(dy, dx) - angle), two_pi) /
-                readings_.bearing_sigma;
+                short_way(readings_.bearings[k] - (std::atan2(dy, dx) - angle)) / readings_.bearing_sigma;
             square += error * error;
         }
         return std::exp(-0.5 * square);

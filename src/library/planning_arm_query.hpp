@@ -226,7 +226,7 @@ class ArmQuery {
         for (std::size_t k = 0; k < width_; ++k) {
             const double turned = edges_.box().is_wrapping(int(k)) ? nearest_multiple(row[k] - goal[k]) : 0.0;
             row[k] = turned == 0 ? goal[k] : goal[k] + turned;
-            plan_.turns[k] = int(std::round(turned / (2 * pi)));
+            plan_.turns[k] = int(count_turns(turned));
         }
     }
 

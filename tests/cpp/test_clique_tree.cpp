@@ -5,11 +5,12 @@
 
 #include "check.hpp"
 #include "cspace/math/sparse/clique_tree.hpp"
+#include "dense_matrices.hpp"
 #include "random.hpp"
 
 namespace {
 
-using Dense = std::vector<std::vector<double>>;
+using check::Dense;
 
 // Random factors J = (Ja, Jb) of one row more than its columns, and their sum as a dense matrix.
 class Growing {
@@ -46,7 +47,7 @@ class Growing {
     }
     void spoil() { tree_.spoil(); }
     void check() {
-        const Dense inverse = invert(A_);
+        const Dense inverse = check::invert_dense(A_);
         const std::size_t n = gradient_.size();
         for (std::size_t v = 0; v < sizes_.size(); ++v) {
             for (int i = 0; i < sizes_[v]; ++i) {
@@ -134,22 +135,6 @@ class Growing {
     void touch(int f) {
         touched_.push_back(factors_[std::size_t(f)].a);
         if (factors_[std::size_t(f)].b >= 0) touched_.push_back(factors_[std::size_t(f)].b);
-    }
-    // Gauss–Jordan elimination.
-    static Dense invert(Dense A) {
-        const std::size_t n = A.size();
-        Dense B(n, std::vector<double>(n, 0.0));
-        for (std::size_t i = 0; i < n; ++i) B[i][i] = 1;
-        for (std::size_t k = 0; k < n; ++k) {
-            const double pivot = A[k][k];
-            for (std::size_t j = 0; j < n; ++j) A[k][j] /= pivot, B[k][j] /= pivot;
-            for (std::size_t i = 0; i < n; ++i) {
-                if (i == k) continue;
-                const double f = A[i][k];
-                for (std::size_t j = 0; j < n; ++j) A[i][j] -= f * A[k][j], B[i][j] -= f * B[k][j];
-            }
-        }
-        return B;
     }
 
     check::Random random_;

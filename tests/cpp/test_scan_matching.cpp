@@ -74,7 +74,7 @@ TEST(pooled_scores_are_bounds) {
 std::vector<Point> see_room(const PlanarSpace::Pose& pose, int beams) {
     std::vector<Point> points;
     for (int k = 0; k < beams; ++k) {
-        const double angle = 2 * half_turn * k / beams, c = std::cos(angle), s = std::sin(angle);
+        const double angle = 2 * cspace::pi * k / beams, c = std::cos(angle), s = std::sin(angle);
         const double x = pose.c * c - pose.s * s,
                      y = pose.s * c + pose.c * s;  // of the beam, in a room 6 × 4
         const double across = x > 0 ? (3 - pose.x) / x : (-3 - pose.x) / x;
@@ -121,7 +121,7 @@ TEST(views_contain_what_lies_between_their_edges) {
         // How far inside of the nearer edge, of the directions of the place a turn apart.
         double inside = -1e9;
         for (int turn = -2; turn <= 2; ++turn) {
-            const double at = share * view.span + 2 * half_turn * turn;
+            const double at = share * view.span + 2 * cspace::pi * turn;
             inside = std::max(inside, std::min(at, view.span - at));
         }
         if (std::fabs(inside * range - FieldOfView::margin) < 1e-6) continue;

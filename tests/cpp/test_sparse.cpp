@@ -5,13 +5,14 @@
 
 #include "check.hpp"
 #include "cspace/math/sparse/cholesky.hpp"
+#include "dense_matrices.hpp"
 #include "random.hpp"
 
 namespace {
 
+using check::Dense;
 using cspace::BlockGraph;
 using cspace::BlockPair;
-using Dense = std::vector<std::vector<double>>;
 
 struct Problem {
     std::vector<int> sizes;
@@ -76,23 +77,6 @@ std::vector<double> values_of(const Problem& problem, const Solver& solver) {
     return values;
 }
 
-// The inverse by Gauss–Jordan elimination.
-Dense dense_inverse(Dense A) {
-    const std::size_t n = A.size();
-    Dense B(n, std::vector<double>(n, 0.0));
-    for (std::size_t i = 0; i < n; ++i) B[i][i] = 1;
-    for (std::size_t k = 0; k < n; ++k) {
-        const double pivot = A[k][k];
-        for (std::size_t j = 0; j < n; ++j) A[k][j] /= pivot, B[k][j] /= pivot;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (i == k) continue;
-            const double f = A[i][k];
-            for (std::size_t j = 0; j < n; ++j) A[i][j] -= f * A[k][j], B[i][j] -= f * B[k][j];
-        }
-    }
-    return B;
-}
-
 void check_problem(const Problem& problem, check::Random& random, const cspace::PanelSharing& sharing) {
     const BlockGraph graph = cspace::make_block_graph(problem.sizes, problem.pairs);
     cspace::SparseCholesky<> solver(graph, cspace::order_blocks(graph), {}, sharing);
@@ -102,7 +86,7 @@ void check_problem(const Problem& problem, check::Random& random, const cspace::
 
     const std::vector<double> values = values_of(problem, solver);
     CHECK(solver.factor_matrix(values.data()));
-    const Dense inverse = dense_inverse(problem.A);
+    const Dense inverse = check::invert_dense(problem.A);
     const auto n = std::size_t(problem.starts.back());
     std::vector<double> b(n), x(n), y(n);
     std::vector<std::size_t> row(n);

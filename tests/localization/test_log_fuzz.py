@@ -12,6 +12,7 @@ import pytest
 from cspace.errors import LogError
 from cspace.localization import Log, read_log
 from cspace.localization.logs.mrclam import ROBOTS
+from localization.mutations import mutate
 
 WORDS = ["nan", "inf", "-inf", "1e400", "1e308", "-1e308", "-1", "0", "99999999999999999999", "1e-320", ""]
 WORDS += ["x", "3.5", "#", "\x00", "ODOM", "FLASER", "٣", "1_0", "0x10", "1e9", "-"]
@@ -55,32 +56,6 @@ FILES = {
 }
 
 
-def mutate(text: str, rng: np.random.Generator) -> str:
-    """A text with one to three faults: words replaced, removed or doubled, lines moved, the end cut off."""
-    for _ in range(int(rng.integers(1, 4))):
-        lines = text.split("\n")
-        row = int(rng.integers(len(lines)))
-        words = lines[row].split(" ")
-        at = int(rng.integers(len(words)))
-        match int(rng.integers(8)):
-            case 0 | 1 | 2:
-                words[at] = WORDS[int(rng.integers(len(WORDS)))]
-            case 3:
-                words = words[:at] + words[at + 1 :]
-            case 4:
-                words.insert(at, words[at])
-            case 5:
-                lines.insert(int(rng.integers(len(lines))), lines[row])
-            case 6:
-                other = int(rng.integers(len(lines)))
-                lines[other], words = lines[row], lines[other].split(" ")
-            case _:
-                return text[: int(rng.integers(len(text) + 1))]
-        lines[row] = " ".join(words)
-        text = "\n".join(lines)
-    return text
-
-
 def read_quietly(path) -> Log | str:
     """The log, or the message with which it was refused; warnings are errors."""
     with warnings.catch_warnings():
@@ -115,7 +90,7 @@ def test_mutated_files_are_read_whole_or_refused(tmp_path, name, seed):
     path.write_text(FILES[name], encoding="utf-8")
     assert read_or_refuse(path) is not None
     for _ in range(100):
-        path.write_text(mutate(FILES[name], rng), encoding="utf-8")
+        path.write_text(mutate(FILES[name], WORDS, rng), encoding="utf-8")
         read_or_refuse(path)
 
 
@@ -227,5 +202,5 @@ def test_mutated_folders_are_read_whole_or_refused(tmp_path, name, seed):
     path = tmp_path / "Robot1_Odometry.dat"
     assert len(read_log(path).readings) == 4
     for _ in range(100):
-        (tmp_path / name).write_text(mutate(MRCLAM[name], rng), encoding="utf-8")
+        (tmp_path / name).write_text(mutate(MRCLAM[name], WORDS, rng), encoding="utf-8")
         read_or_refuse(path, str(tmp_path))

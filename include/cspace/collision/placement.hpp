@@ -13,7 +13,7 @@ inline constexpr unsigned all_lanes = (1u << float_lanes) - 1;
 struct Place {
     Floats x, y, z;
 };
-// V: Floats, or float of one configuration alone.
+// V: Floats, or float of one configuration. Not those of kinematics: floats have twice the lanes of doubles.
 template <class V>
 struct FrameOf {
     V R[9], p[3];

@@ -50,8 +50,7 @@ CSPACE_INLINE void put_vector(V* values, const Vec3<V>& a) {
 // Whether a rotation vector is below half a turn: NaN is not.
 template <class V>
 CSPACE_INLINE mask_of<V> below_half_turn(const Vec3<V>& u) {
-    constexpr double half_turn = 3.14159265358979323846;
-    return dot(u, u) < half_turn * half_turn;
+    return dot(u, u) < pi * pi;
 }
 
 // The state after a displacement and a change of the velocities (dof,), into `after`; u of a base is a

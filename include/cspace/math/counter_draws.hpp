@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 
 #include "cspace/math/float_trig.hpp"
 
@@ -62,7 +63,7 @@ CSPACE_INLINE float log_float(float x) {
 
 // Four standard normal numbers for each of eight counters first … first + 7 of a step (Box & Muller 1958).
 CSPACE_INLINE void draw_normals(std::uint64_t first, std::uint32_t step, DrawKey key, Floats (&normal)[4]) {
-    constexpr float two_pi = 6.28318531f;
+    constexpr float two_pi = float(2 * std::numbers::pi);
     float radius[2][float_lanes], angle[2][float_lanes];
     for (int i = 0; i < float_lanes; ++i) {
         const std::uint64_t n = first + std::uint64_t(i);

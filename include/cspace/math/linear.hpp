@@ -4,6 +4,9 @@
 // function returns; their numbers are finite where the input is, and mean nothing.
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 
@@ -88,17 +91,15 @@ CSPACE_INLINE void reflect(const Matrix& A, int m, int k, V factor, V* b) {
     for (int i = k; i < m; ++i) b[i] = mul_add(-along, A[i][k], b[i]);
 }
 
-}  // namespace linear
-
 // A x = b by elimination with partial pivoting in each lane (Golub & Van Loan 2013, section 3.4). A is used
-// up, b becomes x; true where A is regular.
+// up, b becomes x; `pivots` tell whether A is regular.
 template <int n, class V>
-CSPACE_INLINE mask_of<V> solve_linear(V (&A)[n][n], V (&b)[n]) {
-    V diagonal[n], inverse[n];
+CSPACE_INLINE void eliminate(V (&A)[n][n], V (&b)[n], V (&pivots)[n]) {
+    V inverse[n];
     for (int k = 0; k < n; ++k) {
-        for (int i = k + 1; i < n; ++i) linear::lift_pivot(A, b, k, i);
-        diagonal[k] = A[k][k];
-        inverse[k] = linear::safe_inverse(A[k][k]);
+        for (int i = k + 1; i < n; ++i) lift_pivot(A, b, k, i);
+        pivots[k] = A[k][k];
+        inverse[k] = safe_inverse(A[k][k]);
         for (int i = k + 1; i < n; ++i) {
             const V multiple = -A[i][k] * inverse[k];
             for (int j = k + 1; j < n; ++j) A[i][j] = mul_add(multiple, A[k][j], A[i][j]);
@@ -109,7 +110,16 @@ CSPACE_INLINE mask_of<V> solve_linear(V (&A)[n][n], V (&b)[n]) {
         for (int j = k + 1; j < n; ++j) b[k] = mul_add(-A[k][j], b[j], b[k]);
         b[k] = b[k] * inverse[k];
     }
-    return linear::full_rank(diagonal);
+}
+
+}  // namespace linear
+
+// A x = b; A is used up, b becomes x. True where A is regular.
+template <int n, class V>
+CSPACE_INLINE mask_of<V> solve_linear(V (&A)[n][n], V (&b)[n]) {
+    V pivots[n];
+    linear::eliminate(A, b, pivots);
+    return linear::full_rank(pivots);
 }
 
 // A = L D Lᵀ for the leading n × n block of a symmetric A, of which the upper triangle is read (Golub & Van
@@ -148,6 +158,38 @@ CSPACE_INLINE mask_of<V> solve_positive(Matrix& A, int n, V* b, double floor = 0
     const mask_of<V> definite = factor_ldl(A, n, floor);
     solve_ldl(A, n, b);
     return definite;
+}
+
+// L with L Lᵀ = A, row by row, for a symmetric A that is nowhere negative: its lower triangle is read.
+// Columns whose pivot is not above a share of its diagonal entry are zero.
+template <std::size_t n, std::size_t size>
+std::array<double, size> factor_semidefinite(const std::array<double, size>& A, double share) {
+    static_assert(size == n * n);
+    std::array<double, size> L{};
+    for (std::size_t c = 0; c < n; ++c) {
+        double pivot = A[c * n + c];
+        for (std::size_t k = 0; k < c; ++k) pivot -= L[c * n + k] * L[c * n + k];
+        if (!(pivot > share * A[c * n + c])) continue;
+        L[c * n + c] = std::sqrt(pivot);
+        for (std::size_t r = c + 1; r < n; ++r) {
+            double sum = A[r * n + c];
+            for (std::size_t k = 0; k < c; ++k) sum -= L[r * n + k] * L[c * n + k];
+            L[r * n + c] = sum / L[c * n + c];
+        }
+    }
+    return L;
+}
+
+// The inverse of a symmetric 3 × 3 matrix times its determinant, row by row; the upper triangle is read.
+struct Cofactors {
+    std::array<double, 9> of;
+    double determinant;
+};
+inline Cofactors find_cofactors(const std::array<double, 9>& M) {
+    const double c00 = M[4] * M[8] - M[5] * M[5], c01 = M[2] * M[5] - M[1] * M[8];
+    const double c02 = M[1] * M[5] - M[2] * M[4], c12 = M[1] * M[2] - M[0] * M[5];
+    const double c11 = M[0] * M[8] - M[2] * M[2], c22 = M[0] * M[4] - M[1] * M[1];
+    return {{c00, c01, c02, c01, c11, c12, c02, c12, c22}, M[0] * c00 + M[1] * c01 + M[2] * c02};
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -5,10 +5,21 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// The multiple of 2π nearest to a difference of angles.
+// The multiple of 2π nearest to a difference of angles: how many, and the angle.
+template <class V>
+CSPACE_INLINE V count_turns(V difference) {
+    return round(difference * (1 / (2 * pi)));
+}
 template <class V>
 CSPACE_INLINE V nearest_multiple(V difference) {
-    return 2 * pi * round(difference * (1 / (2 * pi)));
+    return 2 * pi * count_turns(difference);
+}
+// Of the multiples of 2π that move angles from `least` to `most` between limits, that nearest to `wanted`;
+// `none` if there is none.
+inline double turns_within(double least, double most, double lower, double upper, double wanted,
+                           double none) {
+    const double fewest = std::ceil((lower - least) / (2 * pi)), last = std::floor((upper - most) / (2 * pi));
+    return fewest <= last ? std::fmin(std::fmax(wanted, fewest), last) : none;
 }
 // The difference of two angles the short way round, in [−π, π].
 template <class V>
@@ -20,6 +31,11 @@ template <class V>
 CSPACE_INLINE V wrap_once(V t) {
     t = select(t > pi, t - 2 * pi, t);
     return select(t <= fill<V>(-pi), t + 2 * pi, t);
+}
+// The same in floats, in [−π, π] rounded.
+inline float wrap_once(float t) {
+    constexpr float half_turn = float(pi), turn = float(2 * pi);
+    return t > half_turn ? t - turn : t < -half_turn ? t + turn : t;
 }
 // The angle in (−π, π].
 template <class V>

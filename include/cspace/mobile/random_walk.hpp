@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "cspace/spatial/left_jacobian.hpp"
+
 namespace cspace::mobile {
 
 struct RandomWalk {
@@ -24,13 +26,9 @@ struct Adjoint {
     double c, s, u, v;
 };
 inline Adjoint adjoint_back(const double* xi, double share) {
-    constexpr double small = 1e-4;  // where the series is exact to rounding
-    const double w = share * xi[2], c = std::cos(w), s = std::sin(w);
-    const bool is_small = std::fabs(w) < small;
-    const double a = is_small ? 1 - w * w / 6 : s / w, b = is_small ? w / 2 : (1 - c) / w;
-    const double x = share * xi[0], y = share * xi[1];
+    const double v[2] = {share * xi[0], share * xi[1]}, w = share * xi[2], c = std::cos(w), s = std::sin(w);
     // The position of exp(ξ), turned back: −Rᵀ t.
-    const double px = a * x - b * y, py = b * x + a * y;
+    const auto [px, py] = spatial::PlanarJacobian(w, c, s).times(v);
     const double qx = -(c * px + s * py), qy = s * px - c * py;
     return {c, s, qy, -qx};
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cspace/math/trig.hpp"
+#include "cspace/math/wrapping.hpp"
 
 namespace cspace::planning {
 
@@ -17,12 +17,7 @@ struct Box {
     bool is_wrapping(int k) const { return wraps && wraps[k]; }
 
     // From a to b in one coordinate, the short way round.
-    float difference(int k, float a, float b) const {
-        constexpr float half_turn = float(pi), turn = float(2 * pi);
-        const float d = b - a;
-        if (!is_wrapping(k)) return d;
-        return d > half_turn ? d - turn : d < -half_turn ? d + turn : d;
-    }
+    float difference(int k, float a, float b) const { return is_wrapping(k) ? wrap_once(b - a) : b - a; }
     float distance(const float* a, const float* b) const {
         float sum = 0;
         for (int k = 0; k < width; ++k) {
@@ -33,27 +28,21 @@ struct Box {
     }
     // The configuration at a share of the way from a to b.
     void interpolate(const float* a, const float* b, float share, float* q) const {
-        constexpr float half_turn = float(pi), turn = float(2 * pi);
         if (!wraps) {
             for (int k = 0; k < width; ++k) q[k] = a[k] + share * (b[k] - a[k]);
             return;
         }
         for (int k = 0; k < width; ++k) {
-            float x = a[k] + share * difference(k, a[k], b[k]);
-            if (is_wrapping(k)) x = x > half_turn ? x - turn : x < -half_turn ? x + turn : x;
-            q[k] = x;
+            const float x = a[k] + share * difference(k, a[k], b[k]);
+            q[k] = is_wrapping(k) ? wrap_once(x) : x;
         }
     }
     // The configuration of a point of the unit cube, in a cube around a row.
     void move_within(const float* at, float half_side, const float* unit, float* q) const {
-        constexpr float half_turn = float(pi), turn = float(2 * pi);
         for (int k = 0; k < width; ++k) {
-            const float half = is_wrapping(k) ? std::min(half_side, half_turn) : half_side;
+            const float half = is_wrapping(k) ? std::min(half_side, float(pi)) : half_side;
             const float x = at[k] + half * (2 * unit[k] - 1);
-            if (is_wrapping(k))
-                q[k] = x > half_turn ? x - turn : x < -half_turn ? x + turn : x;
-            else
-                q[k] = std::clamp(x, lower[k], upper[k]);
+            q[k] = is_wrapping(k) ? wrap_once(x) : std::clamp(x, lower[k], upper[k]);
         }
     }
     // The configuration of a point of the unit cube.

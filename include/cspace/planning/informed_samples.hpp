@@ -96,8 +96,7 @@ class InformedSamples {
     }
     // A joint that wraps gets the value of its period.
     bool put_inside(int k, float& x) const {
-        constexpr float half_turn = float(pi), turn = float(2 * pi);
-        if (box_.is_wrapping(k)) x = x > half_turn ? x - turn : x < -half_turn ? x + turn : x;
+        if (box_.is_wrapping(k)) x = wrap_once(x);
         return x >= box_.lower[k] && x <= box_.upper[k];
     }
 };

@@ -10,6 +10,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import CspaceError, LogError
+from localization.mutations import mutate
 
 PLANE = "100 0 0 100 0 400"
 FILES = {
@@ -76,32 +77,11 @@ def test_files_cut_anywhere_hold_a_part_or_name_the_cut_line(tmp_path, name):
     assert counts[-1][:2] == (len(whole.poses), len(whole.edges))
 
 
-def mutate(text: str, rng: np.random.Generator) -> str:
-    """A text with one to three words replaced, removed or doubled, or a line moved."""
-    for _ in range(int(rng.integers(1, 4))):
-        lines = text.split("\n")
-        row, other = rng.integers(len(lines), size=2).tolist()
-        words = lines[row].split(" ")
-        at = int(rng.integers(len(words)))
-        match int(rng.integers(6)):
-            case 0 | 1 | 2:
-                words[at] = WORDS[int(rng.integers(len(WORDS)))]
-            case 3:
-                words = words[:at] + words[at + 1 :]
-            case 4:
-                words.insert(at, words[at])
-            case _:
-                lines[other], words = lines[row], lines[other].split(" ")
-        lines[row] = " ".join(words)
-        text = "\n".join(lines)
-    return text
-
-
 @pytest.mark.parametrize("name", FILES)
 def test_mutated_files_are_read_and_optimized_or_refused(tmp_path, name):
     rng, path, read = np.random.default_rng(len(name)), tmp_path / "mutated.g2o", 0
     for _ in range(400):
-        path.write_text(mutate(FILES[name], rng), encoding="utf-8")
+        path.write_text(mutate(FILES[name], WORDS, rng), encoding="utf-8")
         found = read_strictly(path)
         if isinstance(found, LogError):
             continue

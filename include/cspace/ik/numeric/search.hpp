@@ -9,6 +9,7 @@
 
 #include "cspace/ik/numeric/descent.hpp"
 #include "cspace/ik/numeric/posture.hpp"
+#include "cspace/math/wrapping.hpp"
 
 namespace cspace::ik {
 
@@ -64,12 +65,8 @@ inline void nearest_turns(const Path& path, const Task& task, const double* want
             plain = plain && std::fabs(path.joint[i].ratio) == 1.0;
         }
         if (!plain || driven != 1) continue;
-        double turns = std::round((wanted[j] - q[j]) / (2 * pi));
-        if (task.limited) {
-            const double least = std::ceil((task.lower[j] - q[j]) / (2 * pi));
-            const double most = std::floor((task.upper[j] - q[j]) / (2 * pi));
-            turns = least <= most ? std::fmin(std::fmax(turns, least), most) : 0;
-        }
+        double turns = count_turns(wanted[j] - q[j]);
+        if (task.limited) turns = turns_within(q[j], q[j], task.lower[j], task.upper[j], turns, 0);
         if (turns != 0) q[j] += 2 * pi * turns;
     }
 }

@@ -8,6 +8,7 @@
 #include "cspace/ik/numeric/error.hpp"
 #include "cspace/ik/tracking/motion.hpp"
 #include "cspace/math/continuation.hpp"
+#include "cspace/math/wrapping.hpp"
 
 namespace cspace::ik {
 
@@ -207,10 +208,10 @@ inline Verdict judge_step(const Track& t, Walker& w, const Motion<double>& at) {
 inline bool fit_turns(const Track& t, Walker& w, int j) {
     if (!t.whole_turns || t.path->slides[j]) return false;
     constexpr double turn = track::whole_turn;
-    const double low = std::ceil((t.lower[j] - track::slack - w.least[j]) / turn);
-    const double high = std::floor((t.upper[j] + track::slack - w.most[j]) / turn);
-    if (!(low <= high)) return false;
-    w.turns[j] = min(max(0.0, low), high);
+    const double turns = turns_within(w.least[j], w.most[j], t.lower[j] - track::slack,
+                                      t.upper[j] + track::slack, 0, std::nan(""));
+    if (std::isnan(turns)) return false;
+    w.turns[j] = turns;
     w.lower[j] = t.lower[j] - turn * w.turns[j];
     w.upper[j] = t.upper[j] - turn * w.turns[j];
     return true;

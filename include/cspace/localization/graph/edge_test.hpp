@@ -10,15 +10,17 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "cspace/localization/graph/residuals.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::localization {
 
 struct ErrorScales {
     double own = 1, graph = 1;  // of the covariance of an edge, and of that of its poses
 };
+
+inline constexpr double least_pivot = 1e-14;  // of the diagonal of an information
 
 // The error of an edge in units of its information, and the covariance of its poses in these.
 template <std::size_t n>
@@ -27,56 +29,12 @@ struct WhiteError {
     std::array<double, n * n> C;
 };
 
-// Gauss elimination with row pivots; false for singular matrices.
-template <std::size_t size>
-bool solve_general(std::array<double, size * size>& M, std::array<double, size>& y) {
-    constexpr double singular = 1e-12;
-    for (std::size_t c = 0; c < size; ++c) {
-        std::size_t pivot = c;
-        for (std::size_t r = c + 1; r < size; ++r) {
-            if (std::fabs(M[r * size + c]) > std::fabs(M[pivot * size + c])) pivot = r;
-        }
-        if (!(std::fabs(M[pivot * size + c]) > singular)) return false;
-        for (std::size_t k = 0; k < size; ++k) std::swap(M[c * size + k], M[pivot * size + k]);
-        std::swap(y[c], y[pivot]);
-        for (std::size_t r = c + 1; r < size; ++r) {
-            const double factor = M[r * size + c] / M[c * size + c];
-            for (std::size_t k = c; k < size; ++k) M[r * size + k] -= factor * M[c * size + k];
-            y[r] -= factor * y[c];
-        }
-    }
-    for (std::size_t c = size; c-- > 0;) {
-        for (std::size_t k = c + 1; k < size; ++k) y[c] -= M[c * size + k] * y[k];
-        y[c] /= M[c * size + c];
-    }
-    return true;
-}
-
-// L with L Lᵀ = A, symmetric and nowhere negative; columns without a pivot are zero.
-template <std::size_t n>
-std::array<double, n * n> factor_semidefinite(const std::array<double, n * n>& A) {
-    constexpr double least = 1e-14;  // of the diagonal
-    std::array<double, n * n> L{};
-    for (std::size_t c = 0; c < n; ++c) {
-        double pivot = A[c * n + c];
-        for (std::size_t k = 0; k < c; ++k) pivot -= L[c * n + k] * L[c * n + k];
-        if (!(pivot > least * A[c * n + c])) continue;
-        L[c * n + c] = std::sqrt(pivot);
-        for (std::size_t r = c + 1; r < n; ++r) {
-            double sum = A[r * n + c];
-            for (std::size_t k = 0; k < c; ++k) sum -= L[r * n + k] * L[c * n + k];
-            L[r * n + c] = sum / L[c * n + c];
-        }
-    }
-    return L;
-}
-
 // H, g: the information of an error and the gradient; C: Jᵀ Σ J of the derivatives J of that gradient for the
 // poses.
 template <std::size_t n>
 WhiteError<n> whiten_error(const std::array<double, n * n>& H, const std::array<double, n>& g,
                            const std::array<double, n * n>& C) {
-    const std::array<double, n * n> L = factor_semidefinite<n>(H);
+    const std::array<double, n * n> L = factor_semidefinite<n>(H, least_pivot);
     const auto divide = [&](auto value) {  // L⁻¹, by forward substitution
         std::array<double, n> x{};
         for (std::size_t r = 0; r < n; ++r) {
@@ -121,11 +79,15 @@ WhiteError<n> whiten_edge(const QuadraticModel<n, n>& model, const std::array<do
 
 // eᵀ M⁻¹ e, or 0 where M is singular: nothing else measures what the edge says.
 template <std::size_t n>
-double divide_square(std::array<double, n * n> M, const std::array<double, n>& e) {
-    std::array<double, n> y = e;
-    if (!solve_general(M, y)) return 0;
-    double sum = 0;
-    for (std::size_t k = 0; k < n; ++k) sum += e[k] * y[k];
+double divide_square(const std::array<double, n * n>& M, const std::array<double, n>& e) {
+    constexpr double singular = 1e-12;
+    double rows[n][n], y[n], pivots[n], sum = 0;
+    for (std::size_t r = 0; r < n; ++r) std::copy_n(M.data() + r * n, n, rows[r]), y[r] = e[r];
+    linear::eliminate<int(n)>(rows, y, pivots);
+    for (std::size_t k = 0; k < n; ++k) {
+        if (!(std::fabs(pivots[k]) > singular)) return 0;
+        sum += e[k] * y[k];
+    }
     return sum;
 }
 

@@ -123,7 +123,7 @@ class LoopEvidence {
     void raise_cost(std::size_t k, const std::array<double, size * size>& W, double length,
                     const IsAngle& is_angle) {
         constexpr double circle = 2 * std::numbers::pi;
-        const std::array<double, size * size> L = factor_semidefinite<size>(W);
+        const std::array<double, size * size> L = factor_semidefinite<size>(W, least_pivot);
         double cost = 0;
         for (std::size_t axis = 0; axis < size; ++axis) {
             const double root = L[axis * (size + 1)];

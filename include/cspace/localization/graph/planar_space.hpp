@@ -8,24 +8,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "cspace/math/wrapping.hpp"
+#include "cspace/spatial/left_jacobian.hpp"
+
 namespace cspace::localization {
-
-inline constexpr double half_turn = 3.14159265358979323846;
-
-// An angle in (−π, π].
-inline double wrap_angle(double angle) {
-    const double wrapped = angle - 2 * half_turn * std::round(angle / (2 * half_turn));
-    return wrapped <= -half_turn ? half_turn : wrapped;
-}
-
-// (1 − (w/2) cot(w/2)) / w², of which the inverse Jacobians of logarithms are made; even, and smooth up to a
-// turn.
-inline double half_cotangent_rest(double w) {
-    constexpr double small = 1e-2;  // below it the series has lost less than the difference would
-    const double square = w * w;
-    if (std::fabs(w) < small) return 1.0 / 12 + square * (1.0 / 720 + square * (1.0 / 30240));
-    return (1 - (w / 2) / std::tan(w / 2)) / square;
-}
 
 struct PlanarSpace {
     static constexpr int dimension = 2, freedom = 3, pose_numbers = 3;
@@ -43,7 +29,7 @@ struct PlanarSpace {
         return {from[0], from[1], std::cos(from[2]), std::sin(from[2])};
     }
     static void write_pose(const Pose& pose, double* to) {
-        to[0] = pose.x, to[1] = pose.y, to[2] = wrap_angle(std::atan2(pose.s, pose.c));
+        to[0] = pose.x, to[1] = pose.y, to[2] = wrap_once(std::atan2(pose.s, pose.c));
     }
     static Pose compose(const Pose& a, const Pose& b) {
         return {a.x + a.c * b.x - a.s * b.y, a.y + a.s * b.x + a.c * b.y, a.c * b.c - a.s * b.s,
@@ -58,16 +44,13 @@ struct PlanarSpace {
         return {a.c * x + a.s * y, a.c * y - a.s * x, a.c * b.c + a.s * b.s, a.c * b.s - a.s * b.c};
     }
     static Pose exponential(const double* twist) {
-        constexpr double small = 1e-4;  // where the series is exact to rounding
         const double w = twist[2], c = std::cos(w), s = std::sin(w);
-        const bool is_small = std::fabs(w) < small;
-        const double a = is_small ? 1 - w * w / 6 : s / w;
-        const double b = is_small ? w / 2 - w * w * w / 24 : (1 - c) / w;
-        return {a * twist[0] - b * twist[1], b * twist[0] + a * twist[1], c, s};
+        const auto [x, y] = spatial::PlanarJacobian(w, c, s).times(twist);
+        return {x, y, c, s};
     }
     static Twist logarithm(const Pose& pose) {
         const double w = std::atan2(pose.s, pose.c), half = w / 2;
-        const double k = 1 - w * w * half_cotangent_rest(w);  // (w/2) cot(w/2)
+        const double k = 1 - w * w * spatial::half_cotangent_rest(w * w);  // (w/2) cot(w/2)
         return {k * pose.x + half * pose.y, k * pose.y - half * pose.x, w};
     }
     // X exp ξ, with a rotation of unit length.
@@ -79,7 +62,7 @@ struct PlanarSpace {
     }
     // d log(X exp ξ) / dξ at 0, for e = log X: I + ad/2 + c ad².
     static Square log_jacobian(const Twist& e) {
-        const double x = e[0], y = e[1], w = e[2], c = half_cotangent_rest(w);
+        const double x = e[0], y = e[1], w = e[2], c = spatial::half_cotangent_rest(w * w);
         const double turn = 1 - c * w * w;
         return {turn, -w / 2, y / 2 + c * w * x, w / 2, turn, -x / 2 + c * w * y, 0, 0, 1};
     }

@@ -11,6 +11,7 @@
 
 #include "cspace/localization/graph/planar_space.hpp"
 #include "cspace/math/symmetric_eigen.hpp"
+#include "cspace/spatial/left_jacobian.hpp"
 #include "cspace/spatial/rotation.hpp"
 
 namespace cspace::localization {
@@ -47,20 +48,12 @@ struct SpatialSpace {
     }
     static Mat3d skew(const Vec3d& w) { return {{{0, -w.z, w.y}, {w.z, 0, -w.x}, {-w.y, w.x, 0}}}; }
     static Pose exponential(const double* twist) {
-        constexpr double small = 1e-2;  // below it the series has lost less than the differences would
         const Vec3d v{twist[0], twist[1], twist[2]}, w{twist[3], twist[4], twist[5]};
-        const double square = dot(w, w), angle = std::sqrt(square);
-        const bool is_small = angle < small;
-        const double b =
-            is_small ? 0.5 - square / 24 + square * square / 720 : (1 - std::cos(angle)) / square;
-        const double c = is_small ? 1.0 / 6 - square / 120 + square * square / 5040
-                                  : (1 - std::sin(angle) / angle) / square;
-        const Vec3d wv = cross(w, v);
-        return {spatial::rotation_of_rotvec(w), v + b * wv + c * cross(w, wv)};
+        return {spatial::rotation_of_rotvec(w), spatial::left_jacobian_times(w, v)};
     }
     static Twist logarithm(const Pose& pose) {
-        const Vec3d w = spatial::rotvec_of_rotation(pose.R), wt = cross(w, pose.t);
-        const Vec3d v = pose.t - 0.5 * wt + half_cotangent_rest(norm(w)) * cross(w, wt);
+        const Vec3d w = spatial::rotvec_of_rotation(pose.R);
+        const Vec3d v = spatial::left_jacobian_inverse_times(w, pose.t);
         return {v.x, v.y, v.z, w.x, w.y, w.z};
     }
     // A step of a rotation that has lost digits: R (3 I − RᵀR) / 2 halves their number (Higham 1986).
@@ -75,38 +68,23 @@ struct SpatialSpace {
         const Pose moved = pose * exponential(twist);
         return {straighten(moved.R), moved.t};
     }
-    // The coefficients of d log(X exp ξ) / dξ in the products of [w] and [v]; see Barfoot 2017,
-    // equation 7.86.
-    struct CouplingSeries {
-        double first, second, third;
-    };
-    static CouplingSeries couple(double angle) {
-        constexpr double small = 0.1;  // below it the series has lost less than the differences would
-        const double square = angle * angle;
-        if (angle < small) {
-            const double fourth = square * square;
-            return {1.0 / 6 - square / 120 + fourth / 5040, 1.0 / 24 - square / 720 + fourth / 40320,
-                    1.0 / 120 - square / 2520 + fourth / 120960};
-        }
-        const double s = std::sin(angle), c = std::cos(angle), fourth = square * square;
-        return {(angle - s) / (square * angle), (square / 2 + c - 1) / fourth,
-                (angle - 1.5 * s + 0.5 * angle * c) / (fourth * angle)};
-    }
+    // d log(X exp ξ) / dξ by the products of [w] and [v]; see Barfoot 2017, equation 7.86.
     static Square log_jacobian(const Twist& e) {
         // The right Jacobian at e is the left one at −e.
         const Vec3d v{-e[0], -e[1], -e[2]}, w{-e[3], -e[4], -e[5]};
-        const double angle = norm(w);
+        const double square = dot(w, w), rest = spatial::half_cotangent_rest(square);
+        const auto factors = spatial::left_jacobian_factors(square);
+        const auto slopes = spatial::left_jacobian_slopes(square, factors);
+        const double first = factors.g, second = slopes.f + 0.5 * factors.g, third = -slopes.g;
         const Mat3d V = skew(v), W = skew(w), WW = W * W, WV = W * V, VW = V * W, WVW = WV * W;
         const Mat3d WWV = W * WV, VWW = VW * W, WVWW = WVW * W, WWVW = W * WVW;
-        const CouplingSeries k = couple(angle);
-        const double rest = half_cotangent_rest(angle);
         Mat3d inverse, Q;
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j) {
                 inverse.m[i][j] = (i == j) - 0.5 * W.m[i][j] + rest * WW.m[i][j];
-                Q.m[i][j] = 0.5 * V.m[i][j] + k.first * (WV.m[i][j] + VW.m[i][j] + WVW.m[i][j]) +
-                            k.second * (WWV.m[i][j] + VWW.m[i][j] - 3 * WVW.m[i][j]) +
-                            k.third * (WVWW.m[i][j] + WWVW.m[i][j]);
+                Q.m[i][j] = 0.5 * V.m[i][j] + first * (WV.m[i][j] + VW.m[i][j] + WVW.m[i][j]) +
+                            second * (WWV.m[i][j] + VWW.m[i][j] - 3 * WVW.m[i][j]) +
+                            third * (WVWW.m[i][j] + WWVW.m[i][j]);
             }
         }
         const Mat3d coupled = inverse * Q * inverse;

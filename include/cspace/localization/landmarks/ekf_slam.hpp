@@ -130,11 +130,8 @@ class EkfSlam {
     double measure_nis(const ReadingModel& model, int j) const {
         Matrix2 S = innovation_block(P_, model, j, model, j);
         S[0] += model.noise[0], S[3] += model.noise[1];
-        const Vector2& v = model.innovation;
-        if (model.count == 1) return S[0] > 0 ? v[0] * v[0] / S[0] : std::numeric_limits<double>::infinity();
-        const double determinant = S[0] * S[3] - S[1] * S[2];
-        if (!(determinant > 0)) return std::numeric_limits<double>::infinity();
-        return (v[0] * v[0] * S[3] - v[0] * v[1] * (S[1] + S[2]) + v[1] * v[1] * S[0]) / determinant;
+        const WeighedInnovation found = weigh_innovation(model.innovation, S, model.count);
+        return found.is_regular ? found.nis : std::numeric_limits<double>::infinity();
     }
     void note_innovation(std::size_t reading, const ReadingModel& model, double nis) {
         ReadingOutcome& outcome = outcomes_[reading];
@@ -327,31 +324,20 @@ class EkfSlam {
             for (std::size_t c = 0; c < by.size(); ++c) by[c] += y[k] * v[c];
             for (std::size_t c = 0; c < 3; ++c) by_pose[c] += y[k] * change.pose_x[k][c];
         }
-        const double turn = by_pose[2];
+        const double c = std::cos(by_pose[2]), s = std::sin(by_pose[2]);
         const bool is_invariant = rule_.linearization == Linearization::invariant;
-        if (is_invariant) {
-            const Vector2 V = offset_matrix(turn);
-            turn_offset(V, by_pose.data());
-            for (std::size_t i = 0; i < by.size(); i += 2) turn_offset(V, by.data() + i);
+        if (is_invariant) {  // the exponential of the group: p ← p + V δ
+            const spatial::PlanarJacobian V(by_pose[2], c, s);
+            const auto bend = [&](double* v) { std::copy_n(V.times(v).begin(), 2, v); };
+            bend(by_pose.data());
+            for (std::size_t i = 0; i < by.size(); i += 2) bend(by.data() + i);
         }
-        const double c = std::cos(turn), s = std::sin(turn);
         pose_ = {pose_.x + by_pose[0], pose_.y + by_pose[1], c * pose_.c - s * pose_.s,
                  s * pose_.c + c * pose_.s};
         for (std::size_t j = 0; j < landmarks_.size(); ++j)
             landmarks_[j].point[0] += by[2 * j], landmarks_[j].point[1] += by[2 * j + 1];
         if (rule_.linearization != Linearization::first_estimate) first_ = {pose_.x, pose_.y};
         if (is_invariant) carry_covariance(by_pose, by, y.size(), change);
-    }
-    // The first column of V(turn), of which the exponential of the group is made: p ← p + V δ.
-    static Vector2 offset_matrix(double turn) {
-        constexpr double small = 1e-4;  // where the series is exact to rounding
-        const bool is_small = std::fabs(turn) < small;
-        return {is_small ? 1 - turn * turn / 6 : std::sin(turn) / turn,
-                is_small ? turn / 2 : (1 - std::cos(turn)) / turn};
-    }
-    static void turn_offset(const Vector2& V, double* offset) {
-        const double x = offset[0], y = offset[1];
-        offset[0] = V[0] * x - V[1] * y, offset[1] = V[1] * x + V[0] * y;
     }
     // P ← B P Bᵀ with B = I + b e_θᵀ and b = J (new − old), as P + b cᵀ + c bᵀ with c = P e_θ + ½ P_θθ b.
     void carry_covariance(const Vector3& by_pose, const std::vector<double>& by, std::size_t rows,

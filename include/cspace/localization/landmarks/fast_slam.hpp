@@ -23,39 +23,11 @@
 #include "cspace/localization/landmarks/landmark_chunks.hpp"
 #include "cspace/localization/landmarks/rejection_sum.hpp"
 #include "cspace/math/counter_draws.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::localization {
 
 using Covariance3 = std::array<double, 9>;
-
-// Density and gain of one reading: the inverse of S, νᵀ S⁻¹ ν, det S.
-struct ScalarInnovation {
-    Matrix2 inverse{};
-    double nis = 0, determinant = 0;
-    int count = 0;
-    bool is_regular = false;
-
-    // log N(ν; 0, S).
-    double log_density() const {
-        constexpr double log_turn = 1.8378770664093453;  // log 2π
-        return -0.5 * (nis + std::log(determinant) + count * log_turn);
-    }
-};
-inline ScalarInnovation weigh_innovation(const Vector2& v, const Matrix2& S, int count) {
-    ScalarInnovation found;
-    found.count = count;
-    double& determinant = found.determinant = S[0];
-    if (count == 2) {
-        determinant = S[0] * S[3] - S[1] * S[2];
-        found.inverse = {S[3] / determinant, -S[1] / determinant, -S[2] / determinant, S[0] / determinant};
-    } else {
-        found.inverse = {1 / S[0], 0, 0, 0};
-    }
-    found.is_regular = determinant > 0;
-    found.nis = v[0] * v[0] * found.inverse[0] + v[0] * v[1] * (found.inverse[1] + found.inverse[2]) +
-                v[1] * v[1] * found.inverse[3];
-    return found;
-}
 
 class FastSlam {
   public:
@@ -185,17 +157,7 @@ class FastSlam {
     }
     // A draw from a normal distribution that may be singular, the same for a seed, an update and a particle.
     Vector3 draw(const Covariance3& P, std::size_t particle) const {
-        Covariance3 L{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j <= i; ++j) {
-                double sum = P[3 * i + j];
-                for (std::size_t k = 0; k < j; ++k) sum -= L[3 * i + k] * L[3 * j + k];
-                if (i == j)
-                    L[3 * i + i] = sum > 0 ? std::sqrt(sum) : 0;
-                else
-                    L[3 * i + j] = L[3 * j + j] > 0 ? sum / L[3 * j + j] : 0;
-            }
-        }
+        const Covariance3 L = factor_semidefinite<3>(P, 0);
         const Vector3 normal = draw_normals(particle);
         Vector3 drawn{};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -222,7 +184,7 @@ class FastSlam {
         for (std::uint32_t k = 0; k < 2; ++k) {
             const FourWords drawn = draw_four(particle, k);
             const double radius = std::sqrt(-2 * std::log(uniform(drawn.word[0], drawn.word[1])));
-            const double angle = 2 * half_turn * uniform(drawn.word[2], drawn.word[3]);
+            const double angle = 2 * pi * uniform(drawn.word[2], drawn.word[3]);
             normal[2 * k] = radius * std::cos(angle);
             if (k == 0) normal[1] = radius * std::sin(angle);
         }
@@ -253,10 +215,9 @@ class FastSlam {
     std::vector<Expected> expected_;  // (readings, particles), where readings have names
     Expected expect(const MeasuredNumbers& numbers, const Pose& pose,
                     const ParticleLandmark& landmark) const {
-        Expected found;
         const SensorPose at = place_mounted(pose, mount_);
-        found.model = model_reading(numbers, rule_.sensor, at, landmark.point,
-                                    {landmark.point[0] - pose.x, landmark.point[1] - pose.y});
+        Expected found{model_reading(numbers, rule_.sensor, at, landmark.point,
+                                     {landmark.point[0] - pose.x, landmark.point[1] - pose.y})};
         const Symmetric2& C = landmark.covariance;
         for (std::size_t r = 0; r < std::size_t(found.model.count); ++r) {
             const double* A = found.model.A.data() + 2 * r;
@@ -350,7 +311,7 @@ class FastSlam {
             reject();
         }
     }
-    void note_innovation(std::size_t i, const Vector2& v, const ScalarInnovation& found, int count) {
+    void note_innovation(std::size_t i, const Vector2& v, const WeighedInnovation& found, int count) {
         outcomes_[i].nis = found.nis, outcomes_[i].dof = count;
         for (std::size_t r = 0; r < std::size_t(count); ++r) outcomes_[i].innovation[r] = v[r];
     }
@@ -373,7 +334,7 @@ class FastSlam {
             const Expected found = !is_refined && has_expected(i)
                                        ? expected_[poses_.size() * i + k]
                                        : expect(numbers_[i], mean, chunks_.read(k, own_slots_[i]));
-            const ScalarInnovation weighed =
+            const WeighedInnovation weighed =
                 weigh_innovation(found.model.innovation, innovation_covariance(found, P), found.model.count);
             if (!weighed.is_regular) continue;
             if (rule_.version == 1) {
@@ -404,12 +365,12 @@ class FastSlam {
         return is_named_ && std::find(slots_.begin(), end, slots_[i]) == end;
     }
     // The Kalman update of the pose alone, with the landmark unknown by its covariance.
-    static void refine_pose(const Expected& found, const ScalarInnovation& weighed, Pose& mean,
+    static void refine_pose(const Expected& found, const WeighedInnovation& weighed, Pose& mean,
                             Covariance3& P) {
         with_count(found.model.count, [&](auto count) { refine_by<count()>(found, weighed, mean, P); });
     }
     template <std::size_t count>
-    static void refine_by(const Expected& found, const ScalarInnovation& weighed, Pose& mean,
+    static void refine_by(const Expected& found, const WeighedInnovation& weighed, Pose& mean,
                           Covariance3& P) {
         double PH[6] = {}, K[6] = {};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -432,7 +393,7 @@ class FastSlam {
     }
     // The Kalman update of one landmark at a known pose.
     static void update_landmark(const Expected& found, ParticleLandmark& landmark) {
-        const ScalarInnovation weighed =
+        const WeighedInnovation weighed =
             weigh_innovation(found.model.innovation, found.own, found.model.count);
         ++landmark.seen, landmark.missed = 0;
         if (!weighed.is_regular) return;
@@ -440,7 +401,7 @@ class FastSlam {
                    [&](auto count) { correct_landmark<count()>(found, weighed, landmark); });
     }
     template <std::size_t count>
-    static void correct_landmark(const Expected& found, const ScalarInnovation& weighed,
+    static void correct_landmark(const Expected& found, const WeighedInnovation& weighed,
                                  ParticleLandmark& landmark) {
         Symmetric2& C = landmark.covariance;
         double CA[4] = {}, K[4] = {};
@@ -482,10 +443,10 @@ class FastSlam {
             double best_density = -std::numeric_limits<double>::infinity();
             bool is_new = can_create(numbers_[i]);
             Expected chosen;
-            ScalarInnovation chosen_weight;
+            WeighedInnovation chosen_weight;
             for (std::size_t slot = 0; slot < count && numbers_[i].count; ++slot) {
                 const Expected found = expect(numbers_[i], poses_[k], chunks_.read(k, slot));
-                const ScalarInnovation weighed = weigh_innovation(
+                const WeighedInnovation weighed = weigh_innovation(
                     found.model.innovation, innovation_covariance(found, P), found.model.count);
                 if (!weighed.is_regular) continue;
                 is_new = is_new && weighed.nis > new_limit;
@@ -514,7 +475,6 @@ class FastSlam {
     }
     // The density of a reading that no landmark explains: that of the sensor at the limit of a new landmark.
     double log_unpaired(const MeasuredNumbers& numbers, double limit) const {
-        constexpr double log_turn = 1.8378770664093453;  // log 2π
         double log_determinant = 0;
         for (int r = 0; r < numbers.count; ++r)
             log_determinant += std::log(variance_of(rule_.sensor, is_bearing(numbers, r)));

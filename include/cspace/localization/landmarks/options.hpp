@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 namespace cspace::localization {
 
@@ -12,7 +13,7 @@ struct RangeBearingSensor {
     double range_sigma = 0.15, bearing_sigma = 0.015;  // [m], [rad]
     double range_bias = 0, bearing_bias = 0;
     std::array<double, 3> mount{};  // on base
-    double most_range = 1e300, half_view = 3.14159265358979323846;
+    double most_range = 1e300, half_view = std::numbers::pi;
 };
 
 // One reading; NaN where not measured. A name below zero is unknown.

@@ -36,6 +36,34 @@ inline SensorPose place_sensor(const PlanarSpace::Pose& base, const std::array<d
     return place_mounted(base, PlanarSpace::read_pose(mount.data()));
 }
 
+inline constexpr double log_turn = 1.8378770664093453;  // log 2π
+
+// Density and gain of one reading: the inverse of S, νᵀ S⁻¹ ν, det S.
+struct WeighedInnovation {
+    Matrix2 inverse{};
+    double nis = 0, determinant = 0;
+    int count = 0;
+    bool is_regular = false;
+
+    // log N(ν; 0, S).
+    double log_density() const { return -0.5 * (nis + std::log(determinant) + count * log_turn); }
+};
+inline WeighedInnovation weigh_innovation(const Vector2& v, const Matrix2& S, int count) {
+    WeighedInnovation found;
+    found.count = count;
+    double& determinant = found.determinant = S[0];
+    if (count == 2) {
+        determinant = S[0] * S[3] - S[1] * S[2];
+        found.inverse = {S[3] / determinant, -S[1] / determinant, -S[2] / determinant, S[0] / determinant};
+    } else {
+        found.inverse = {1 / S[0], 0, 0, 0};
+    }
+    found.is_regular = determinant > 0;
+    found.nis = v[0] * v[0] * found.inverse[0] + v[0] * v[1] * (found.inverse[1] + found.inverse[2]) +
+                v[1] * v[1] * found.inverse[3];
+    return found;
+}
+
 inline constexpr double closest_landmark = 1e-3;  // [m]: nearer ones have the derivative that they have there
 
 // Range and bearing of a point in the frame of the sensor, and their derivatives by it.

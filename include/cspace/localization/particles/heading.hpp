@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "cspace/math/float_trig.hpp"
 
@@ -10,7 +11,7 @@ namespace cspace::localization {
 
 using Heading = std::uint32_t;
 
-inline constexpr double heading_unit = 3.14159265358979323846 / 2147483648.0;  // [rad]
+inline constexpr double heading_unit = std::numbers::pi / 2147483648.0;  // [rad]
 
 // Angles beyond ±10⁹ rad wrap to another heading, as their last digits are lost.
 inline Heading heading_of(double angle) {

@@ -14,12 +14,12 @@ namespace cspace::localization {
 
 struct FieldOfView {
     // From `first` on, counter-clockwise, in the frame of the laser [rad].
-    double first = -half_turn, span = 2 * half_turn;
+    double first = -pi, span = 2 * pi;
     PlanarSpace::Pose T_base_laser;
 
     static constexpr double margin = 0.25;  // [m] from the edges: the reach of a bell, and of odometry
 
-    bool is_whole() const { return span >= 2 * half_turn; }
+    bool is_whole() const { return span >= 2 * pi; }
     // Whether a laser on a base at a pose measures in the direction of a place, and not at the edge.
     bool contains(const PlanarSpace::Pose& pose, Point place) const {
         const PlanarSpace::Pose laser = PlanarSpace::compose(pose, T_base_laser);

@@ -11,6 +11,7 @@
 
 #include "cspace/localization/scans/scan_field.hpp"
 #include "cspace/math/interrupts.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::localization {
 
@@ -96,7 +97,6 @@ inline IcpResult match_lines(std::span<const Point> reference, std::span<const P
     result.pose = guess;
     const NearestPoints nearest(reference, reach);
     std::vector<Pair> pairs;
-    double H[6], g[3];
     for (int iteration = 0; iteration < icp::most_iterations; ++iteration) {
         poll_interrupts();
         pairs.clear();
@@ -118,30 +118,25 @@ inline IcpResult match_lines(std::span<const Point> reference, std::span<const P
         std::nth_element(pairs.begin(), pairs.begin() + std::ptrdiff_t(kept), pairs.end(),
                          [](const Pair& a, const Pair& b) { return a.square < b.square; });
         pairs.resize(kept);
-        std::fill_n(H, 6, 0.0), std::fill_n(g, 3, 0.0);
+        PlanarSpace::Square H{};
+        PlanarSpace::Twist g{};
         double squares = 0;
         for (const Pair& q : pairs) {
             squares += q.square;
             g[0] += q.rest * q.x, g[1] += q.rest * q.y, g[2] += q.rest * q.t;
             H[0] += q.x * q.x, H[1] += q.x * q.y, H[2] += q.x * q.t;
-            H[3] += q.y * q.y, H[4] += q.y * q.t, H[5] += q.t * q.t;
+            H[4] += q.y * q.y, H[5] += q.y * q.t, H[8] += q.t * q.t;
         }
         result.error = std::sqrt(squares / double(kept)), result.pairs = int(kept);
-        // The inverse of three rows by cofactors.
-        const double c00 = H[3] * H[5] - H[4] * H[4], c01 = H[2] * H[4] - H[1] * H[5],
-                     c02 = H[1] * H[4] - H[2] * H[3];
-        const double determinant = H[0] * c00 + H[1] * c01 + H[2] * c02;
-        if (!(determinant > icp::least_condition * H[0] * H[3] * H[5])) return result;
-        const double c11 = H[0] * H[5] - H[2] * H[2], c12 = H[1] * H[2] - H[0] * H[4],
-                     c22 = H[0] * H[3] - H[1] * H[1];
-        const double inverse[9] = {c00, c01, c02, c01, c11, c12, c02, c12, c22};
-        double twist[3];
+        const auto [inverse, determinant] = find_cofactors(H);
+        if (!(determinant > icp::least_condition * H[0] * H[4] * H[8])) return result;
+        PlanarSpace::Twist twist;
         for (std::size_t i = 0; i < 3; ++i)
             twist[i] =
                 (inverse[3 * i] * g[0] + inverse[3 * i + 1] * g[1] + inverse[3 * i + 2] * g[2]) / determinant;
         const double variance = squares / double(std::max(1, int(kept) - 3));
         for (std::size_t i = 0; i < 9; ++i) result.covariance[i] = variance * inverse[i] / determinant;
-        result.pose = PlanarSpace::move(result.pose, twist);
+        result.pose = PlanarSpace::move(result.pose, twist.data());
         if (std::hypot(twist[0], twist[1]) + std::fabs(twist[2]) < icp::small_step) {
             result.is_found = true;
             return result;

@@ -16,6 +16,7 @@
 
 #include "cspace/localization/graph/planar_space.hpp"
 #include "cspace/math/interrupts.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::localization {
 
@@ -34,24 +35,16 @@ inline PlanarSquare transport_covariance(const PlanarSpace::Pose& pose, const Pl
     return result;
 }
 // eᵀ M⁻¹ e of a symmetric matrix; infinite where it is not positive definite.
-inline double mahalanobis_square(const PlanarSquare& M, const PlanarSpace::Twist& e) {
-    const double a = M[1] / M[0], b = M[2] / M[0];
-    const double d = M[4] - a * M[1], f = M[5] - a * M[2];
-    const double c = f / d, g = M[8] - b * M[2] - c * f;
-    if (!(M[0] > 0 && d > 0 && g > 0)) return INFINITY;
-    const double u = e[1] - a * e[0], v = e[2] - b * e[0] - c * u;
-    return e[0] * e[0] / M[0] + u * u / d + v * v / g;
+inline double mahalanobis_square(PlanarSquare M, const PlanarSpace::Twist& e) {
+    MatrixRows<double> rows{M.data(), 3};
+    PlanarSpace::Twist y = e;
+    if (!solve_positive(rows, 3, y.data())) return INFINITY;
+    return e[0] * y[0] + e[1] * y[1] + e[2] * y[2];
 }
 inline PlanarSquare inverse_covariance(const PlanarSquare& M) {
-    PlanarSquare result{};
-    const double c00 = M[4] * M[8] - M[5] * M[5], c01 = M[2] * M[5] - M[1] * M[8];
-    const double c02 = M[1] * M[5] - M[2] * M[4];
-    const double scale = 1 / (M[0] * c00 + M[1] * c01 + M[2] * c02);
-    const double c11 = M[0] * M[8] - M[2] * M[2], c12 = M[1] * M[2] - M[0] * M[5];
-    const double c22 = M[0] * M[4] - M[1] * M[1];
-    const double cofactors[9] = {c00, c01, c02, c01, c11, c12, c02, c12, c22};
-    for (std::size_t k = 0; k < 9; ++k) result[k] = scale * cofactors[k];
-    return result;
+    Cofactors inverse = find_cofactors(M);
+    for (double& x : inverse.of) x *= 1 / inverse.determinant;
+    return inverse.of;
 }
 
 // A relative pose between two poses of the chain that are far apart along it.

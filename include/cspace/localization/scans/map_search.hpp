@@ -12,8 +12,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
-#include <queue>
 #include <span>
 #include <vector>
 
@@ -22,6 +20,7 @@
 #include "cspace/math/interrupts.hpp"
 #include "cspace/math/plane.hpp"
 #include "cspace/math/wrapping.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::localization {
 
@@ -194,13 +193,13 @@ struct Block {
     std::int32_t score;  // no pose in it has a greater one
     std::int32_t level, heading, row, column;
 
-    // Which is looked at later: that of the smaller score, then of the smaller blocks, then of the later
+    // Which is looked at first: that of the greater score, then of the larger blocks, then of the earlier
     // heading, row and column.
     friend bool operator<(const Block& a, const Block& b) {
-        if (a.score != b.score) return a.score < b.score;
-        if (a.level != b.level) return a.level < b.level;
-        if (a.heading != b.heading) return a.heading > b.heading;
-        return a.row != b.row ? a.row > b.row : a.column > b.column;
+        if (a.score != b.score) return a.score > b.score;
+        if (a.level != b.level) return a.level > b.level;
+        if (a.heading != b.heading) return a.heading < b.heading;
+        return a.row != b.row ? a.row < b.row : a.column < b.column;
     }
 };
 
@@ -249,8 +248,7 @@ class MapSearch {
             while (queue_.empty() || queue_.top().score < limit)
                 if (!add_blocks(limit)) break;
             if (queue_.empty()) break;
-            const Block block = queue_.top();
-            queue_.pop();
+            const Block block = queue_.pop();
             poll_.step();
             if (block.level > map_search::finest && !is_near_mode(block))
                 split(block);
@@ -281,7 +279,7 @@ class MapSearch {
     std::vector<std::int64_t> counts_;          // of blocks by reduced bound
     int rows_ = 0, columns_ = 0, width_ = 0;    // of blocks
     int least_ = 0;
-    std::priority_queue<Block> queue_;
+    cspace::search::Heap<Block> queue_;
     std::int64_t batch_ = 4096;  // blocks that are put into the queue at once
     InterruptPoll poll_{32};
     std::int64_t scored_ = 0;
@@ -296,10 +294,7 @@ class MapSearch {
         while (blocks(level) > rule_.most_blocks) ++level;
         return level;
     }
-    double heading(int k) const {
-        const double turn = 2 * std::numbers::pi * k / rule_.headings;
-        return turn > std::numbers::pi ? turn - 2 * std::numbers::pi : turn;
-    }
+    double heading(int k) const { return wrap_once(2 * pi * k / rule_.headings); }
     std::span<const Offset> offsets(int k) const {
         return std::span(offsets_).subspan(std::size_t(k) * points_.size(), points_.size());
     }

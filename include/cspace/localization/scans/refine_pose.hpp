@@ -13,6 +13,7 @@
 
 #include "cspace/localization/graph/planar_space.hpp"
 #include "cspace/localization/scans/scan_field.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::localization {
 
@@ -80,7 +81,7 @@ inline constexpr double most_shift = 0.15,
 
 // The derivatives of the sum of the scores by a twist of base, and a curvature that steps divide them by.
 struct ScoreModel {
-    double score = 0, g[3] = {}, H[6] = {};  // H: xx, xy, xt, yy, yt, tt
+    double score = 0, g[3] = {}, H[3][3] = {};  // H: its upper triangle
 };
 inline ScoreModel model_score(const maps::ByteField& field, std::span<const Point> points,
                               const PlanarSpace::Pose& pose) {
@@ -95,29 +96,24 @@ inline ScoreModel model_score(const maps::ByteField& field, std::span<const Poin
         if (!(slope > refine::least_slope)) continue;
         model.g[0] += x, model.g[1] += y, model.g[2] += t;
         const double w = at.value / slope;  // times the slope of the distance from the wall, of length 1
-        model.H[0] += w * x * x, model.H[1] += w * x * y, model.H[2] += w * x * t;
-        model.H[3] += w * y * y, model.H[4] += w * y * t, model.H[5] += w * t * t;
+        model.H[0][0] += w * x * x, model.H[0][1] += w * x * y, model.H[0][2] += w * x * t;
+        model.H[1][1] += w * y * y, model.H[1][2] += w * y * t, model.H[2][2] += w * t * t;
         if (at.value < refine::steep_low || at.value > refine::steep_high) continue;
         slopes += slope, squares += -2 * std::log(at.value) * at.value * at.value;
     }
     // |∇f|² = f² d²/σ⁴ with d²/σ² = −2 log f: 1/σ² from the points on the slopes of bells.
     const double cell = 1 / (field.frame.resolution * field.frame.resolution);
     const double curvature = squares > 0 ? slopes / squares : cell;
-    for (double& x : model.H) x *= curvature;
-    const double added = refine::damping * double(points.size());
-    model.H[0] += added, model.H[3] += added, model.H[5] += added;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = i; j < 3; ++j) model.H[i][j] *= curvature;
+        model.H[i][i] += refine::damping * double(points.size());
+    }
     return model;
 }
 // H⁻¹ g.
-inline PlanarSpace::Twist solve_model(const ScoreModel& model) {
-    const double *H = model.H, *g = model.g;
-    const double a = H[1] / H[0], b = H[2] / H[0];
-    const double d = H[3] - a * H[1], e = (H[4] - a * H[2]) / d;
-    const double f = H[5] - b * H[2] - e * e * d;
-    const double u = g[1] - a * g[0], v = g[2] - b * g[0] - e * u;
-    PlanarSpace::Twist twist;
-    twist[2] = v / f, twist[1] = u / d - e * twist[2];
-    twist[0] = g[0] / H[0] - a * twist[1] - b * twist[2];
+inline PlanarSpace::Twist solve_model(ScoreModel model) {
+    PlanarSpace::Twist twist = {model.g[0], model.g[1], model.g[2]};
+    solve_positive(model.H, 3, twist.data());
     const double length = std::hypot(twist[0], twist[1]);
     const double scale =
         std::max({1.0, length / refine::longest_step, std::fabs(twist[2]) / refine::most_turn});

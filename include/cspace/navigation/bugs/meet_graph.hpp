@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <queue>
 
 #include "cspace/navigation/bugs/boundary_tour.hpp"
 #include "cspace/navigation/bugs/clearance_sensor.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 
@@ -169,7 +169,7 @@ class MeetGraph {
         search(here, [&](int) { return 0.0; }, there);
         std::vector<int> back;
         for (int m = there; m != here;) {
-            const int w = came_[std::size_t(m)];
+            const int w = int(known_.before(std::uint32_t(m)));
             back.push_back(w);
             const MeetWay& way = ways[std::size_t(w)];
             m = way.from == m ? way.to : way.from;
@@ -201,8 +201,7 @@ class MeetGraph {
 
   private:
     std::vector<std::vector<int>> around_;  // the ways at each meet point
-    std::vector<double> cost_;
-    std::vector<int> came_;
+    search::Ways known_{0};                 // before each meet point: the way to it
     int found_ = -1;
 
     static double angle_of(const std::vector<Foot>& feet, std::size_t k) {
@@ -222,17 +221,20 @@ class MeetGraph {
     // Dijkstra's search from a meet point, until no other branch can be nearer, or a meet point is reached.
     template <class Left>
     void search(int here, Left left, int there = -1) {
-        cost_.assign(meets.size(), std::numeric_limits<double>::infinity());
-        came_.assign(meets.size(), -1);
-        std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> open;
-        cost_[std::size_t(here)] = 0;
-        open.push({0, here});
+        known_ = search::Ways(meets.size());
+        search::PriorityQueue open;
+        const auto offer = [&](int meet, double cost, std::uint32_t way) {
+            const auto node = std::uint32_t(meet);
+            if (known_.improve(node, cost, way)) open.push({cost, float(meet), node});
+        };
+        offer(here, 0, search::no_node);
         double best = std::numeric_limits<double>::infinity();
         found_ = -1;
         while (!open.empty()) {
-            const auto [cost, m] = open.top();
-            open.pop();
-            if (cost > cost_[std::size_t(m)]) continue;
+            const std::uint32_t node = open.pop().node;
+            if (!known_.settle(node)) continue;
+            const int m = int(node);
+            const double cost = known_.cost(node);
             if (cost >= best || m == there) break;
             const auto& gaps = meets[std::size_t(m)].gaps;
             const bool is_open =
@@ -240,11 +242,7 @@ class MeetGraph {
             if (there < 0 && is_open && cost + left(m) < best) best = cost + left(m), found_ = m;
             for (const int w : around_[std::size_t(m)]) {
                 const MeetWay& way = ways[std::size_t(w)];
-                const int other = way.from == m ? way.to : way.from;
-                if (!(cost + way.length < cost_[std::size_t(other)])) continue;
-                cost_[std::size_t(other)] = cost + way.length;
-                came_[std::size_t(other)] = w;
-                open.push({cost + way.length, other});
+                offer(way.from == m ? way.to : way.from, cost + way.length, std::uint32_t(w));
             }
         }
     }

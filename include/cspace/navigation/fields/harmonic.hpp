@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -19,6 +18,7 @@
 #include "cspace/navigation/fields/factor_level.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/navigation/grid/moves.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 
@@ -88,13 +88,11 @@ class HittingSolver {
     void number_cells(const maps::Clearance& clearance, maps::Cell goal) {
         auto far = filled_vector(grid_.numbers(), std::numeric_limits<double>::infinity());
         InterruptPoll poll(512);
-        using Entry = std::pair<double, std::uint32_t>;
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+        search::Heap<std::pair<double, std::uint32_t>> queue;
         queue.push({far[grid_.number(goal)] = 0, grid_.number(goal)});
         while (!queue.empty()) {
             poll.step();
-            const auto [d, n] = queue.top();
-            queue.pop();
+            const auto [d, n] = queue.pop();
             if (d > far[n]) continue;
             cells_.push_back(n);
             m_.push_back(std::exp2(-std::fmod(d, 1.0)));

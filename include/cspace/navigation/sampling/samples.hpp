@@ -1,6 +1,8 @@
 // Points drawn evenly from a component of free space, or from an ellipse in it.
 #pragma once
 
+#include <numbers>
+
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/sampling/sight.hpp"
 #include "cspace/search/draws.hpp"
@@ -64,7 +66,7 @@ class Samples {
         return drawn;
     }
     static double ellipse_area(double apart, double sum) {
-        return 0.7853981633974483 * sum * std::sqrt(std::max(sum * sum - apart * apart, 0.0));
+        return std::numbers::pi / 4 * sum * std::sqrt(std::max(sum * sum - apart * apart, 0.0));
     }
 
   private:
@@ -89,7 +91,7 @@ class Samples {
 // algorithms for optimal motion planning", theorem 34).
 inline double joining_radius(double area, std::size_t n) {
     const double log = search::portable_log(n);
-    return 1.01 * std::sqrt(6 * area / 3.141592653589793 * std::max(log, 0.5) / double(n));
+    return 1.01 * std::sqrt(6 * area / std::numbers::pi * std::max(log, 0.5) / double(n));
 }
 
 }  // namespace cspace::navigation::sampling

@@ -1,6 +1,7 @@
 // Where a disc of one size first touches a wall: on a straight way, and rolling around a corner.
 #pragma once
 
+#include "cspace/math/wrapping.hpp"
 #include "cspace/navigation/voronoi/contacts.hpp"
 
 namespace cspace::navigation::voronoi {
@@ -51,7 +52,7 @@ struct RoundWay {
 
   private:
     // Of angles that are the same direction, that next to half a turn or less.
-    static double nearest_turn(double t) { return t > 1.5 * std::numbers::pi ? t - 2 * std::numbers::pi : t; }
+    static double nearest_turn(double t) { return wrap_above(t, -pi / 2); }
 };
 
 struct FirstMeeting {

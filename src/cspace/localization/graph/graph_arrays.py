@@ -32,23 +32,7 @@ Graph = TypeVar("Graph", bound="GraphArrays")
 
 @dataclass(frozen=True, eq=False, repr=False)
 class GraphArrays:
-    """The data of a pose graph in the plane or in space; its arrays cannot be changed.
-
-    poses: the start, rows x, y, θ (n, 3) [m, rad], or matrices (n, 4, 4). edges (k, 2): rows i, j of the
-    poses between which the relative pose Xᵢ⁻¹Xⱼ was measured. motions (k, 3) or (k, 4, 4): that relative
-    pose. information (k, 3, 3) or (k, 6, 6): the inverse covariance of its error, a twist [v; ω] in the
-    frame of pose j; one matrix serves all.
-
-    landmarks (m, 2) or (m, 3): the start of the landmarks. sightings (s, 2): rows of the pose and of the
-    landmark that it saw. points (s, 2) or (s, 3): the landmark in the frame of the pose [m], or in the
-    plane range [m] and bearing [rad] where `ranged` (s,) is true, NaN for one that was not measured.
-    point_information (s, 2, 2) or (s, 3, 3): the inverse covariance.
-
-    fixed, fixed_landmarks: rows that stay where they are; the first pose by default. ids (n,), landmark_ids
-    (m,): the names of a file. start_given: whether the poses are more than placeholders. notes: what a
-    reader left out. Raises InputError for arrays that do not fit together, edges from a pose to itself, and
-    information that is not positive definite.
-    """
+    """The data of a PoseGraph, which says what they are; its arrays cannot be changed."""
 
     poses: Array
     edges: Rows
