@@ -8,8 +8,6 @@ import pytest
 import cspace as cs
 
 
-
-
 @pytest.mark.parametrize("name", ["iiwa14", "panda", "xarm7", "gen3", "pr2_right"])
 @pytest.mark.parametrize("bent", range(1, 6))
 @pytest.mark.parametrize("locked", [0, 2, 6])

@@ -227,9 +227,8 @@ inline void trace_loops_at(Tracer& tracer, const LockedArm& locked, int joint, i
         }
     }
 }
-// Number of intervals that contain a value modulo 2π; −1 where the value is too close to an end to decide.
-inline int count_intervals(const Tracer& tracer, double value) {
-    constexpr double near_end = 1e-4;
+// Number of intervals that contain a value modulo 2π; −1 where the value is within `near_end` of an end.
+inline int count_intervals(const Tracer& tracer, double value, double near_end) {
     int count = 0;
     for (int k = 0; k < tracer.out->count; ++k) {
         const Interval& interval = tracer.out->interval[k];
@@ -241,8 +240,10 @@ inline int count_intervals(const Tracer& tracer, double value) {
     }
     return count;
 }
-// Whether the number of intervals at a value equals the number of solutions there that satisfy their limits.
-inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, double value) {
+// Whether the number of intervals at a value equals the number of solutions there that satisfy their limits,
+// or an end is too close to tell.
+inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, double value,
+                                  double near_end = 1e-4) {
     int within = 0;
     for (int j = 0; j < rows.count; ++j) {
         if (is_far(tracer, rows.q[j])) return true;  // where no arc is followed
@@ -251,8 +252,22 @@ inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, d
         else if (is_within(*tracer.arm, rows.q[j], same_point))
             return true;
     }
-    const int count = count_intervals(tracer, value);
+    const int count = count_intervals(tracer, value, near_end);
     return count < 0 || count == within;
+}
+
+// Checks the intervals that are too short for the sampled values in their middles.
+inline void check_short_intervals(const Tracer& tracer, const Sweep& sweep, double spacing) {
+    for (int k = 0; k < tracer.out->count && tracer.out->complete; ++k) {
+        const Interval& interval = tracer.out->interval[k];
+        const double length = interval.upper - interval.lower;
+        if (length > spacing) continue;
+        const double near_end = min(1e-4, 0.1 * length);
+        const double middle = 0.5 * (interval.lower + interval.upper);
+        sweep_values(sweep, &middle, 1, [&](int, const SweptRows& rows) {
+            tracer.out->complete = agrees_with_solutions(tracer, rows, middle, near_end);
+        });
+    }
 }
 
 // Configurations evenly distributed over all joints: multiples of the powers of 1/g with g^(n+1) = g + 1, the
@@ -300,6 +315,7 @@ inline void trace_loops(Tracer& tracer, const Sweep& sweep, const LimitArms& arm
     trace_loops_by_descent(tracer);
     for (int k = 0; k < looks && tracer.out->complete; ++k)
         tracer.out->complete = agrees_with_solutions(tracer, swept[k], values[k]);
+    check_short_intervals(tracer, sweep, (domain.upper - domain.lower) / looks);
 }
 
 // How far prismatic joints without limits are followed; 0 if there are none.
