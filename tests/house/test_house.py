@@ -72,6 +72,19 @@ def test_no_file_holds_a_path_of_one_machine():
         assert not found, f"{name}: {found.group(0) if found else ''}"
 
 
+FOREIGN_STATE = {"model/xacro_child.py": "xacro.substitution_args has no other way in"}
+
+
+def test_private_attributes_are_set_by_the_file_of_their_class():
+    """A file sets the private attributes of its own classes; other rooms give a method or an argument."""
+    for path in tree.python_files():
+        name, text = str(path.relative_to(tree.PACKAGE)), path.read_text(encoding="utf-8")
+        own = set(re.findall(r"\b(?:self|cls)\.(_\w+)|^    (_\w+):", text, re.M))
+        for found in re.finditer(r"^\s*(?!self\b)[\w.]+\.(_(?!_)\w+)(?:: [^=\n]+)? = ", text, re.M):
+            known = any(found.group(1) in pair for pair in own) or name in FOREIGN_STATE
+            assert known, f"{name}: {found.group().strip()}"
+
+
 def test_no_random_state_is_global():
     """Randomness is an argument: nobody draws from numpy's global generator."""
     for path in tree.python_files():
