@@ -91,3 +91,16 @@ def test_no_random_state_is_global():
         text = path.read_text(encoding="utf-8")
         found = re.search(r"\bnp\.random\.(?!Generator|default_rng|SeedSequence|PCG64|BitGenerator)\w+", text)
         assert not found, f"{path.relative_to(tree.ROOT)}: {found.group(0) if found else ''}"
+
+
+UNTYPED = {"cartesian/scene_check.py", "trajectory/time_parametrize.py"}
+"""Files whose robots have no type yet."""
+
+
+def test_arguments_that_are_robots_have_a_type():
+    untyped = {
+        str(path.relative_to(tree.PACKAGE))
+        for path in tree.python_files()
+        if re.search(r"\b(robot|arm): Any\b", path.read_text(encoding="utf-8"))
+    }
+    assert untyped == UNTYPED, "write KinematicModel, Robot, HasSolver or HasGeometry"

@@ -10,6 +10,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.joint_axes import place_axes
 from cspace.ik.wrapping import turning_joints
+from cspace.kinematics import KinematicModel
 from cspace.tolerances import DRAWN_LENGTH, DRAWN_PLANE
 
 CENTER: Final = np.zeros(3)
@@ -58,7 +59,7 @@ class Skeleton:
         return float((TURNING if self.types[i] == "R" else SLIDING) * self.radii[i + 1])
 
 
-def make_skeleton(robot: Any, q: Array) -> Skeleton:
+def make_skeleton(robot: KinematicModel, q: Array) -> Skeleton:
     """The skeleton of a robot at the configuration `q` (dof,)."""
     chain = robot.chain
     types = str(chain.joint_types)
