@@ -38,6 +38,15 @@ def test_headers_open_the_namespace_of_their_room(path):
     )
 
 
+def test_every_namespace_is_on_the_page_and_in_the_umbrella_header():
+    spaces = {namespace_of(path.relative_to(FOLDER).parts[0]) for path in HEADERS}
+    spaces -= {"cspace", "cspace::version.hpp"}
+    page = (tree.ROOT / "docs/cpp.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"^\| `(cspace::\w+)` \|", page, re.M)) == spaces
+    comment = UMBRELLA.read_text(encoding="utf-8").partition("#pragma once")[0]
+    assert set(re.findall(r"cspace::\w+", comment)) == spaces
+
+
 def includes(path):
     """The headers of the project that a header includes itself."""
     return [

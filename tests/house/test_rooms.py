@@ -3,6 +3,7 @@ the docs share it."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -91,3 +92,21 @@ def test_folders_of_tests_are_rooms():
 def test_compiled_files_are_named_by_their_room(path):
     known = {room for room in tree.RANK if not room.startswith("_")} | rooms(HEADERS)
     assert path.stem in NO_ROOM or path.stem.split("_")[0] in known, "begin the name with that of a room"
+
+
+def test_the_guide_for_contributors_shows_the_tiers():
+    guide = (tree.ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    block = guide.partition("bottom, today:\n\n```\n")[2].partition("\n```")[0]
+    shown = [set(re.sub(r"\(.*?\)", "", line).split()) for line in block.splitlines()]
+    present = {tree.room_of(path) for path in tree.python_files()} - {"cspace", "__main__"} | {"_core"}
+    tiers = [tier & present for tier in reversed(tree.TIERS)]
+    assert shown == [tier for tier in tiers if tier]
+
+
+def test_the_limit_of_the_checks_fits_their_promised_duration():
+    guide = (tree.ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    workflow = (tree.ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8")
+    promised = int(re.search(r"`bash \.ci/run`.*about (\d+) minutes", guide).group(1))
+    job = next(part for part in re.split(r"^  (?=\w+:$)", workflow, flags=re.M) if ".ci/run" in part)
+    limit = int(re.search(r"timeout-minutes: (\d+)", job).group(1))
+    assert promised <= limit <= 2 * promised
