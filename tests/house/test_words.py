@@ -18,7 +18,7 @@ else:
 TABLE = tomllib.loads((tree.ROOT / "tests/house/words.toml").read_text(encoding="utf-8"))
 OLD_NAMES = "src/cspace/errors.py"
 """The file of the errors that name what has another name today."""
-READ = ("src/", "include/", "docs/", "README.md")
+READ = ("src/", "include/", "docs/", "README.md", "CHANGELOG.md")
 TEXTS = {
     "py": re.compile(r'[rR]?"""[\s\S]*?"""|#[^\n]*|"(?:\\.|[^"\\\n])*"'),
     "c": re.compile(r'R"doc\([\s\S]*?\)doc"|//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\\n])*"'),

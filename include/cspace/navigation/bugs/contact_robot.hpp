@@ -23,14 +23,14 @@ struct Place {
     friend auto operator<=>(const Place&, const Place&) = default;
 };
 
-class Flight {
+class RayCast {
   public:
     Place met;
     Point at;
 
     // behind: the piece of wall inside which the robot stands and that it leaves, or −1. The robot's position
     // is then a rounded one, and which walls lie ahead is decided by that wall.
-    Flight(const Walls& walls, const Line& line, Point position, int behind)
+    RayCast(const Walls& walls, const Line& line, Point position, int behind)
         : at(line.to),
           walls_(walls),
           line_(line),
@@ -264,10 +264,10 @@ class ContactRobot {
     }
 
     Position flown(const Line& line, Point at, const Place& place, std::vector<Point>& touched) const {
-        const Flight flight(*walls_, line, at, place.is_corner() ? -1 : place.in);
-        flight.write_grazed(touched);
-        const bool on_wall = !flight.met.is_open() && !flight.met.is_corner();
-        return {on_wall ? settled(flight.wall(), flight.at) : flight.at, flight.met};
+        const RayCast ray(*walls_, line, at, place.is_corner() ? -1 : place.in);
+        ray.write_grazed(touched);
+        const bool on_wall = !ray.met.is_open() && !ray.met.is_corner();
+        return {on_wall ? settled(ray.wall(), ray.at) : ray.at, ray.met};
     }
 };
 
