@@ -88,7 +88,7 @@ inline void turn_back(const ClosedLoops& loops, const AllowedMotions& motions, d
 }
 
 // y := M x (dof,).
-inline void multiply(const double* M, const double* x, int dof, double* y) {
+inline void multiply_matrix(const double* M, const double* x, int dof, double* y) {
     for (int i = 0; i < dof; ++i) {
         y[i] = 0.0;
         for (int j = 0; j < dof; ++j) y[i] += M[i * dof + j] * x[j];
@@ -110,13 +110,13 @@ inline bool solve_least_energy(const ClosedLoops& loops, const double* M, const 
     }
     turn_back(loops, motions, x);
     if (free == 0) return true;
-    multiply(M, x, dof, memory.pull);
+    multiply_matrix(M, x, dof, memory.pull);
     for (int j = 0; j < dof; ++j) memory.pull[j] = (p ? p[j] : 0.0) - memory.pull[j];
     for (int f = 0; f < free; ++f) {  // by columns
         double* const column = memory.G + f * dof;
         for (int j = 0; j < dof; ++j) column[j] = j == rank + f ? 1.0 : 0.0;
         turn_back(loops, motions, column);
-        multiply(M, column, dof, memory.MG + f * dof);
+        multiply_matrix(M, column, dof, memory.MG + f * dof);
     }
     MatrixRows<double> H = {memory.H, free};
     double* const y = memory.y;

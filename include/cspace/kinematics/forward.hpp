@@ -63,7 +63,7 @@ CSPACE_INLINE void turn_about_z(FrameAxes<V>& frame, const S& s, const S& c) {
 }
 // Rotates the frame about its x axis by the α of a joint.
 template <class V>
-CSPACE_INLINE void tilt(FrameAxes<V>& frame, const model::ChainJoint& joint) {
+CSPACE_INLINE void tilt_frame(FrameAxes<V>& frame, const model::ChainJoint& joint) {
     const Vec3<V> y = frame.y;
     switch (joint.tilt) {
         case model::Tilt::none:
@@ -96,7 +96,7 @@ CSPACE_INLINE Pose<V> follow_chain(const model::Chain& chain, const Pose<V>& fir
         if (joint.x != 0.0) frame.origin = frame.origin + joint.x * frame.x;
         if (joint.y != 0.0) frame.origin = frame.origin + joint.y * frame.y;
         frame.origin = frame.origin + z * frame.z;
-        tilt(frame, joint);
+        tilt_frame(frame, joint);
     }
     if (chain.n > 0) turn_about_z(frame, chain.sin_last, chain.cos_last);
     return to_pose(frame);

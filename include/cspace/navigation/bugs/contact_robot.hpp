@@ -122,7 +122,7 @@ class RayCast {
 
 // A point on a wall as far as rounding lets it be: the corner next to it, or moved so that it does not lie
 // behind.
-inline Point settled(const Wall& wall, Point p) {
+inline Point settle_point(const Wall& wall, Point p) {
     if (orientation(wall.begin, wall.end, p) == 0) return p;
     if (is_next_to(p, wall.begin)) return wall.begin;
     if (is_next_to(p, wall.end)) return wall.end;
@@ -185,7 +185,7 @@ class ContactRobot {
     void stop(Hand hand, Point at) {
         const Wall piece = walls_->wall(hand == Hand::right ? place_.out : place_.in);
         place_ = {piece.name, piece.name};
-        at_ = settled(piece, at);
+        at_ = settle_point(piece, at);
     }
 
   protected:
@@ -267,7 +267,7 @@ class ContactRobot {
         const RayCast ray(*walls_, line, at, place.is_corner() ? -1 : place.in);
         ray.write_grazed(touched);
         const bool on_wall = !ray.met.is_open() && !ray.met.is_corner();
-        return {on_wall ? settled(ray.wall(), ray.at) : ray.at, ray.met};
+        return {on_wall ? settle_point(ray.wall(), ray.at) : ray.at, ray.met};
     }
 };
 
