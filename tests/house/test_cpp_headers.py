@@ -84,7 +84,7 @@ ONE_WORD = {
         quarter range reversed scaled size times touching turned twice value values vertex weight
     """,
     "localization": "widen",
-    "maps": "gap rasterize",
+    "maps": "after before gap rasterize",
     "math": """
         append carry column crossing decompose deliver direction doubled evaluate fill fill3 fill33
         lane load meets middle negated orientation polished power project reduce reflect repeat

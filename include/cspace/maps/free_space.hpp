@@ -259,9 +259,9 @@ inline Boundary boundary_of(const FreeSpace& space) {
     boundary.next.assign(boundary.points.size(), none);
     boundary.ring.assign(boundary.points.size(), none);
     const auto next_wall = [&](Index t, int e) {
-        for (e = corner_after(e); !space.is_wall(t, e);) {
+        for (e = after(e); !space.is_wall(t, e);) {
             const Index u = mesh[t].across[std::size_t(e)];
-            e = corner_after(mesh[u].edge_to(t));
+            e = after(mesh[u].edge_to(t));
             t = u;
         }
         return 3 * t + e;

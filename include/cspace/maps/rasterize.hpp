@@ -60,7 +60,7 @@ inline void rasterize(const FreeSpace& space, Point origin, double side, int row
             continue;
         }
         for (int e = 0; e < 3; ++e) {
-            const Point wall[2] = {corner[corner_after(e)], corner[corner_before(e)]};
+            const Point wall[2] = {corner[after(e)], corner[before(e)]};
             if (space.is_wall(t, e) && space.is_free(tri.across[std::size_t(e)])) mark(wall, 2);
         }
     }

@@ -12,11 +12,10 @@ namespace cspace::maps {
 
 inline constexpr Index none = -1;
 
-constexpr int corner_after(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int corner_before(int i) { return i == 0 ? 2 : i - 1; }
+constexpr int after(int i) { return i == 2 ? 0 : i + 1; }
+constexpr int before(int i) { return i == 0 ? 2 : i - 1; }
 
-// Counterclockwise. Edge i lies opposite corner i and leads from corner corner_after(i) to corner
-// corner_before(i).
+// Counterclockwise. Edge i lies opposite corner i and leads from corner after(i) to corner before(i).
 struct Triangle {
     std::array<Index, 3> corner;
     std::array<Index, 3> across;  // the triangle on the other side of each edge, or none
@@ -24,8 +23,8 @@ struct Triangle {
 
     int place_of(Index vertex) const { return corner[0] == vertex ? 0 : corner[1] == vertex ? 1 : 2; }
     int edge_to(Index triangle) const { return across[0] == triangle ? 0 : across[1] == triangle ? 1 : 2; }
-    Index begin(int edge) const { return corner[std::size_t(corner_after(edge))]; }
-    Index end(int edge) const { return corner[std::size_t(corner_before(edge))]; }
+    Index begin(int edge) const { return corner[std::size_t(after(edge))]; }
+    Index end(int edge) const { return corner[std::size_t(before(edge))]; }
 };
 
 // Where a point lies: in a triangle, on its edge, or at its corner.
@@ -62,7 +61,7 @@ struct Triangulation {
             random = random * 1664525u + 1013904223u;
             const Triangle& tri = (*this)[t];
             int step = -1;
-            for (int k = 0, i = int(random >> 24) % 3; k < 3; ++k, i = corner_after(i)) {
+            for (int k = 0, i = int(random >> 24) % 3; k < 3; ++k, i = after(i)) {
                 if (tri.across[std::size_t(i)] == previous && previous != none) continue;
                 const int side = orientation(point(tri.begin(i)), point(tri.end(i)), p);
                 if (side < 0) {
@@ -98,7 +97,7 @@ struct Triangulation {
         do {
             const int i = (*this)[t].place_of(vertex);
             if (!visit(t, i)) return;
-            t = (*this)[t].across[std::size_t(corner_after(i))];
+            t = (*this)[t].across[std::size_t(after(i))];
         } while (t != first && t != none);
         if (t == first) return;
         for (t = clockwise(first, vertex); t != none; t = clockwise(t, vertex))
@@ -107,7 +106,7 @@ struct Triangulation {
 
   private:
     Index clockwise(Index t, Index vertex) const {
-        return (*this)[t].across[std::size_t(corner_before((*this)[t].place_of(vertex)))];
+        return (*this)[t].across[std::size_t(before((*this)[t].place_of(vertex)))];
     }
 };
 
