@@ -1,7 +1,10 @@
 """Memory is handed out again only when nobody holds it."""
 
+import sys
+
 import numpy as np
 
+from cspace import buffer_pool
 from cspace.buffer_pool import LARGEST, SMALLEST, _blocks, pooled_array
 
 SHAPE = (1000, 8, 6)
@@ -49,3 +52,13 @@ def test_what_is_kept_is_bounded():
     assert sum(block.nbytes for block in _blocks) <= LARGEST
     assert pooled_array((2 * LARGEST // 8,)).nbytes == 2 * LARGEST
     assert sum(block.nbytes for block in _blocks) <= LARGEST
+
+
+def test_a_free_threaded_interpreter_shares_no_memory(monkeypatch):
+    """It does not count references exactly, so no array that is in use may be taken for unused."""
+    monkeypatch.setattr(sys, "_is_gil_enabled", lambda: False, raising=False)
+    monkeypatch.setattr(buffer_pool, "_holders", lambda blocks, i: buffer_pool._UNUSED)
+    kept = len(buffer_pool._blocks)
+    first, second = pooled_array((1 << 14,)), pooled_array((1 << 14,))
+    assert not np.shares_memory(first, second)
+    assert len(buffer_pool._blocks) == kept

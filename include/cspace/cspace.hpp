@@ -2,10 +2,11 @@
 // that no other one includes; every other header comes with them.
 //
 // Each room is a namespace: cspace::model, cspace::spatial, cspace::shapes, cspace::kinematics,
-// cspace::collision, cspace::ik, cspace::search, cspace::maps, cspace::mobile, cspace::navigation and
-// cspace::planning. The mathematics that every room uses, its vectors, packs of lanes, polynomials and linear
-// algebra, stands in cspace itself; the thresholds stand in cspace::tolerance. Inside each namespace an
-// inline one is named after the instruction set (cspace/math/isa.hpp).
+// cspace::dynamics, cspace::collision, cspace::ik, cspace::search, cspace::maps, cspace::mobile,
+// cspace::navigation, cspace::planning, cspace::trajectory and cspace::localization. The mathematics that
+// every room uses, its vectors, packs of lanes, polynomials and linear algebra, stands in cspace itself; the
+// thresholds stand in cspace::tolerance. Inside each namespace an inline one is named after the instruction
+// set (cspace/math/isa.hpp).
 #pragma once
 
 #include "cspace/collision/cells.hpp"

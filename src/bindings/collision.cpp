@@ -6,7 +6,7 @@
 #include <nanobind/stl/tuple.h>
 
 #include "bindings.hpp"
-#include "cspace/kinematics/forward.hpp"
+#include "cspace/kinematics/pose_matrix.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -8,7 +8,7 @@
 
 #include "bindings.hpp"
 #include "collision.hpp"
-#include "cspace/kinematics/forward.hpp"
+#include "cspace/kinematics/pose_matrix.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

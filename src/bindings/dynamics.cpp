@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cspace/dynamics/make_links.hpp"
-#include "cspace/kinematics/forward.hpp"
+#include "cspace/kinematics/pose_matrix.hpp"
 #include "cspace/tolerances.hpp"
 #include "kernels/dynamics.hpp"
 #include "kinematics_rows.hpp"

@@ -2,7 +2,7 @@
 #include <new>
 
 #include "bindings.hpp"
-#include "cspace/kinematics/forward.hpp"
+#include "cspace/kinematics/pose_matrix.hpp"
 #include "ik.hpp"
 
 namespace nb = nanobind;

@@ -4,7 +4,7 @@
 
 #include "arrays_in_place.hpp"
 #include "bindings.hpp"
-#include "cspace/kinematics/forward.hpp"
+#include "cspace/kinematics/pose_matrix.hpp"
 #include "kinematics.hpp"
 
 namespace nb = nanobind;

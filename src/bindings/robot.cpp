@@ -8,6 +8,8 @@
 #include "dynamics.hpp"
 #include "ik.hpp"
 
+using namespace nanobind::literals;
+
 namespace {
 
 struct RobotObject {
@@ -16,6 +18,7 @@ struct RobotObject {
     // The scene that was checked last and its CollisionChecker, without a margin; null before.
     PyObject *scene, *checker;
 };
+PyTypeObject* robot_type = nullptr;
 RobotObject* robot_of(PyObject* self) { return reinterpret_cast<RobotObject*>(self); }
 
 using Slots =
@@ -69,23 +72,6 @@ PyObject* robot_collides(PyObject* self, PyObject* const* args, Py_ssize_t nargs
         return PyObject_Vectorcall(check.ptr(), all.data(), std::size_t(nargs) + 1, kwnames);
     });
 }
-// (scene, CollisionChecker)
-int set_checked(PyObject* self, PyObject* value, void*) {
-    PyObject *scene = nullptr, *checker = nullptr;
-    if (!value || !PyTuple_Check(value) || !PyArg_ParseTuple(value, "OO", &scene, &checker) ||
-        !nanobind::isinstance<cspace::collision::Checker>(checker)) {
-        PyErr_Clear();
-        PyErr_SetString(PyExc_TypeError, "what was checked is a scene and a CollisionChecker");
-        return -1;
-    }
-    Py_XSETREF(robot_of(self)->scene, Py_NewRef(scene));
-    Py_XSETREF(robot_of(self)->checker, Py_NewRef(checker));
-    return 0;
-}
-PyObject* get_checked(PyObject* self, void*) {
-    RobotObject* robot = robot_of(self);
-    return robot->checker ? PyTuple_Pack(2, robot->scene, robot->checker) : Py_NewRef(Py_None);
-}
 const char collides_doc[] =
     "collides(q, scene=None, *, margin=0.0, threads=None)\n--\n\n"
     "Whether the robot touches an obstacle or itself at q (..., dof) [rad or m].\n\n"
@@ -123,7 +109,6 @@ PyMethodDef robot_methods[] = {
     {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef robot_attributes[] = {
     {"_solver", &get_solver, &set_solver, "The solver, None before it is built; set once.", nullptr},
-    {"_checked", &get_checked, &set_checked, "The scene checked last with its checker, or None.", nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
 PyType_Slot robot_slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_kinematics)},
                              {Py_tp_dealloc, reinterpret_cast<void*>(&Slots::destroy)},
@@ -136,6 +121,18 @@ PyType_Slot robot_slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_kinemat
 PyType_Spec robot_spec = {"cspace._core.RobotBase", sizeof(RobotObject), 0,
                           Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_HAVE_GC, robot_slots};
 
+// The scene that was checked last, and its checker without a margin: `collides` asks it again.
+void remember_checker(nanobind::handle robot, nanobind::object scene, nanobind::object checker) {
+    if (!PyObject_TypeCheck(robot.ptr(), robot_type) ||
+        !nanobind::isinstance<cspace::collision::Checker>(checker))
+        throw nanobind::type_error("_remember_checker takes a robot, a scene and a CollisionChecker");
+    Py_XSETREF(robot_of(robot.ptr())->scene, scene.release().ptr());
+    Py_XSETREF(robot_of(robot.ptr())->checker, checker.release().ptr());
+}
+
 }  // namespace
 
-void bind_robot(nanobind::module_& m) { add_type(m, robot_spec, kinematics_type); }
+void bind_robot(nanobind::module_& m) {
+    robot_type = add_type(m, robot_spec, kinematics_type);
+    m.def("_remember_checker", remember_checker, "robot"_a, "scene"_a.none(), "checker"_a);
+}

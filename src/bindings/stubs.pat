@@ -27,7 +27,9 @@ cspace._core.KinematicsBase.fk_jacobian:
         \doc
 
 cspace._core.RobotBase.ik$:
-    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Any = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    \from collections.abc import Mapping, Sequence
+    \from cspace.model import Limits
+    def ik(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         \doc
 
 cspace._core.RobotBase.collides$:
@@ -82,12 +84,6 @@ cspace._core.RobotBase.regressor$:
     def regressor(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, gravity: ArrayLike = (0.0, 0.0, -9.81), friction: bool = True, T_world_base: Any = None, out: NDArray[numpy.float64] | None = None, threads: int | None = None) -> NDArray[numpy.float64]:
         \doc
 
-cspace._core.RobotBase._checked:
-    @property
-    def _checked(self) -> Any: ...
-    @_checked.setter
-    def _checked(self, value: Any) -> None: ...
-
 cspace._core.RobotBase._solver:
     @property
     def _solver(self) -> Any: ...
@@ -95,7 +91,9 @@ cspace._core.RobotBase._solver:
     def _solver(self, value: Any) -> None: ...
 
 cspace._core.SolverBase.solve$:
-    def solve(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Any = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    \from collections.abc import Mapping, Sequence
+    \from cspace.model import Limits
+    def solve(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         \doc
 
 cspace._core.AXIS_RELATION:
@@ -202,6 +200,7 @@ cspace._core.__suffix__:
     def _tree_rows(*arguments: Any) -> bool: ...
     def _dynamics_rows(*arguments: Any) -> bool: ...
     def _float_dynamics_rows(*arguments: Any) -> bool: ...
+    def _remember_checker(robot: Any, scene: Any, checker: Any) -> None: ...
     def _ik_build(*arguments: Any) -> None: ...
     def _ik_room(solver: Any) -> int: ...
     def _ik_answer(*arguments: Any) -> Any: ...

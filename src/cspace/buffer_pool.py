@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
+from collections.abc import Callable
 
 import numpy as np
 
@@ -29,6 +30,12 @@ _UNUSED = _holders([np.empty(1)], 0)
 """The value of `_holders` for a block that only its list references."""
 
 
+def _has_exact_counts() -> bool:
+    """Whether references are counted exactly: free-threaded interpreters do not."""
+    is_locked: Callable[[], bool] = getattr(sys, "_is_gil_enabled", lambda: True)
+    return is_locked()
+
+
 def _aligned(block: Array, shape: tuple[int, ...], size: int) -> Array:
     """The part of a block that begins with a cache line."""
     start = -(block.ctypes.data // 8) % (LINE // 8)
@@ -36,9 +43,12 @@ def _aligned(block: Array, shape: tuple[int, ...], size: int) -> Array:
 
 
 def pooled_array(shape: tuple[int, ...]) -> Array:
-    """An uninitialised float64 array of shape (...), in the memory of one that has gone, if any."""
+    """An uninitialised float64 array of shape (...), in the memory of one that has gone, if any.
+
+    Where references are not counted exactly it is always a new one.
+    """
     size = int(np.prod(shape))
-    if not SMALLEST <= 8 * size <= LARGEST:
+    if not SMALLEST <= 8 * size <= LARGEST or not _has_exact_counts():
         return np.empty(shape)
     needed = size + LINE // 8
     with _lock:

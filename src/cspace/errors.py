@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from functools import wraps
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Final, ParamSpec, TypeVar
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "check_kind",
     "check_known",
     "keyword_error",
+    "module_error",
     "name_new_keywords",
     "shorten",
     "shown",
@@ -48,7 +49,10 @@ RENAMED: Final = MappingProxyType(
     {
         "IK": "ik",
         "IK_batched": "ik",
+        "Price": "Stats",
         "Q": "q",
+        "StillDirection": "InvariantDirection",
+        "StillPoint": "InvariantPoint",
         "accel": "forward_dynamics",
         "asked": "goal_parts",
         "computeCartesianPath": "track",
@@ -65,6 +69,8 @@ RENAMED: Final = MappingProxyType(
         "getKinematicFamily": "ik_plan",
         "gravload": "gravity_torques",
         "hasKnownDecomposition": "ik_plan",
+        "held": "locked",
+        "hold": "locked",
         "ik_LM": "ik",
         "ikine": "ik",
         "ikine_LM": "ik",
@@ -255,6 +261,14 @@ def attribute_error(owner: object, name: str) -> AttributeError:
     elif hint := getattr(type(owner), "_elsewhere", {}).get(name):
         text += f"; {hint}"
     return AttributeError(text, name=name, obj=owner)
+
+
+def module_error(module: ModuleType, name: str) -> AttributeError:
+    """The error for an unknown name of a module, with the new name of an old one."""
+    text = f"module {module.__name__!r} has no attribute {name!r}"
+    if (ours := RENAMED.get(name)) in module.__dict__:
+        text += f": use {ours}"
+    return AttributeError(text, name=name, obj=module)
 
 
 class Renamed:

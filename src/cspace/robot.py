@@ -329,9 +329,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
             with postpone_interrupts():
                 from cspace.ik import solver_of_robot
 
-            made = solver_of_robot(self)
-            made._robot = self
-            self._solver = made
+            self._solver = solver_of_robot(self)
         return cast("ik.Solver", self._solver)
 
     def with_tool(self, T_tip_tool: PoseLike) -> Robot:

@@ -62,8 +62,8 @@ CSPACE_INLINE bool give_way_to_torques(const BasicRows<scalar_of<V>>& rows, cons
     Motion<V> base = base_motion(rows, given, static_cast<const V*>(nullptr));
     mask_of<V> regular;
     const V* tau = given.force + given.first;
-    const Articulated<V> felt = articulate(rows.bodies, base.w, given.q, joint_rates(given, scratch), tau,
-                                           rows.rubs, links, regular, given.wrenches);
+    const Articulated<V> felt = articulate_bodies(rows.bodies, base.w, given.q, joint_rates(given, scratch),
+                                                  tau, rows.rubs, links, regular, given.wrenches);
     if (given.first) {
         const Mat3<V> A = to_matrix(felt.A), C = to_matrix(felt.C);
         V inertia[6][6], x[6];
@@ -84,7 +84,7 @@ CSPACE_INLINE bool give_way_to_torques(const BasicRows<scalar_of<V>>& rows, cons
         set_vector(qdd, given.R * base.a + fill3<V>(rows.gravity));
         set_vector(qdd + 3, given.R * base.wd);
     }
-    accelerate(rows.bodies, base.a, base.wd, links, qdd + given.first);
+    find_accelerations(rows.bodies, base.a, base.wd, links, qdd + given.first);
     return all(regular);
 }
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "cspace/dynamics/allowed_motions.hpp"
+#include "cspace/dynamics/loop_memory.hpp"
 #include "cspace/dynamics/roll_out_task.hpp"
 #include "dispatch.hpp"
 

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "collision_checker.hpp"
+#include "collision_near.hpp"
 #include "collision_placed.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -20,8 +21,8 @@ class Search {
 
     Clearance run() {
         for (const Part& part : placed_.parts())
-            data_.visit_near(
-                part.center, [&] { return limit() + part.size; },
+            visit_near(
+                data_, part.center, [&] { return limit() + part.size; },
                 [&](int i) {
                     if (scene_.allowed && scene_.allowed[part.link * scene_.n + i]) return;
                     if (part.solid < 0)

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "collision_near.hpp"
 #include "collision_robot.hpp"
-#include "collision_scene.hpp"
 #include "cspace/collision/workspace.hpp"
 #include "cspace/kinematics/jacobian.hpp"
 #include "cspace/math/interrupts.hpp"
@@ -151,8 +151,8 @@ class NearPairs {
     template <class Visit>
     void visit_primitives(const Part& part, const Visit& visit) {
         const double limit = range_ + margin_;
-        data_.visit_near(
-            part.center, [&] { return limit + part.size; },
+        visit_near(
+            data_, part.center, [&] { return limit + part.size; },
             [&](int i) {
                 if (scene_.allowed && scene_.allowed[part.link * scene_.n + i]) return;
                 const shapes::ConvexDistance d = measure(part, i, limit);

@@ -7,7 +7,7 @@
 
 #include "collision_cloud.hpp"
 #include "collision_mesh.hpp"
-#include "cspace/collision/boxes.hpp"
+#include "cspace/collision/scene.hpp"
 #include "cspace/shapes/plain.hpp"
 
 namespace cspace::collision {
@@ -36,21 +36,6 @@ class SceneData {
     // The distance of a convex solid, in double, up to `limit`; none where it touches a mesh.
     std::optional<shapes::ConvexDistance> distance(int primitive, const shapes::Convex& solid,
                                                    double limit) const;
-
-    // Calls visit(primitive) for those whose boxes are within limit() of a point; it may shrink meanwhile.
-    template <class Limit, class Visit>
-    void visit_near(const Vec3d& point, const Limit& limit, const Visit& visit) const {
-        const auto is_near = [&](const float* low, const float* high) {
-            const double at[] = {point.x, point.y, point.z}, reach = limit();
-            double square = 0;
-            for (int k = 0; k < 3; ++k) {
-                const double beyond = std::max({double(low[k]) - at[k], at[k] - double(high[k]), 0.0});
-                square += beyond * beyond;
-            }
-            return square == 0 || (reach > 0 && square <= reach * reach);
-        };
-        visit_boxes(view_, is_near, [&](int primitive, bool) { visit(primitive); });
-    }
 
   private:
     std::vector<double> box_rows_, capsule_rows_, cylinder_rows_, half_space_rows_;

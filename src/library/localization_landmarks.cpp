@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "cspace/localization/landmarks/fast_slam.hpp"
+#include "cspace/mobile/random_walk.hpp"
 #include "kernels/localization_landmarks.hpp"
 
 namespace cspace::localization {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cspace/localization/landmarks/options.hpp"
-#include "cspace/mobile/random_walk.hpp"
+#include "cspace/mobile/walk_rates.hpp"
 
 namespace cspace::localization {
 

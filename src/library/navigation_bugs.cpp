@@ -13,20 +13,20 @@ namespace cspace::navigation {
 
 namespace {
 
-// Calls move(walls, start, goal) with the ends taken off walls, for a trip with a route and a witness; false
+// Calls move(walls, start, goal) with the ends taken off walls, for a log with a route and a witness; false
 // where an end lies in an obstacle.
-template <class Trip, class Move>
-bool send_robot(const Query<PolygonCore>& query, Trip& trip, Route& route, Shut& shut, const Move& move) {
+template <class Log, class Move>
+bool send_robot(const Query<PolygonCore>& query, Log& log, Route& route, Shut& shut, const Move& move) {
     PolygonCore::State& state = query.world.state();
     maps::Settled from, to;
     if (!state.settle(query.start, query.goal, from, to)) return false;
     const Walls& walls = state.walls.get<Walls>(state.world.walls);
-    trip = move(walls, from.at, to.at);
-    route = std::move(trip.route);
+    log = move(walls, from.at, to.at);
+    route = std::move(log.route);
     route.path.front() = query.start;
     if (route.status == Status::found) route.path.back() = query.goal;
     if (route.status == Status::unreachable)
-        shut.emplace(walls.ring(trip.witness.in.name), std::pair(trip.witness.at.x, trip.witness.at.y));
+        shut.emplace(walls.ring(log.witness.in.name), std::pair(log.witness.at.x, log.witness.at.y));
     return true;
 }
 
@@ -61,7 +61,7 @@ bool plan_bug(const Query<PolygonCore>& query, WallAnswer& answer, std::int64_t 
               double range) {
     enum Kind { bug_1, bug_2, tangent_bug };
     enum Side { left, right, either };
-    Trip trip;
+    WalkLog log;
     Shut shut;
     const auto walk = [&](const Walls& walls, Point from, Point to) {
         const Hand hand = side == left ? Hand::left : Hand::right;
@@ -72,13 +72,13 @@ bool plan_bug(const Query<PolygonCore>& query, WallAnswer& answer, std::int64_t 
         ContactRobot touching(walls, from);
         return kind == bug_1 ? navigation::bug_1(touching, to, hand) : navigation::bug_2(touching, to, hand);
     };
-    if (!send_robot(query, trip, answer.route, shut, walk)) return false;
+    if (!send_robot(query, log, answer.route, shut, walk)) return false;
     const std::vector<Point>& path = answer.route.path;
-    if (query.trace) list_events(trip.follows, path, query.goal, *query.trace);
+    if (query.trace) list_events(log.follows, path, query.goal, *query.trace);
     PolygonCore::State& state = query.world.state();
     const Walls& walls = state.walls.get<Walls>(state.world.walls);
     auto& [hits, leaves, walked, rings, known] = answer.evidence.emplace();
-    for (const Follow& f : trip.follows) {
+    for (const Follow& f : log.follows) {
         hits.values.push_back(path[f.first]);
         leaves.values.push_back(path[f.last]);
         walked.values.push_back(f.walked);
@@ -92,7 +92,7 @@ bool plan_voronoi_bug(const Query<PolygonCore>& query, VoronoiBugAnswer& answer,
                       double deviation, std::uint64_t seed) {
     PolygonCore::State& state = query.world.state();
     Shut shut;
-    Exploration trip;
+    Exploration exploration;
     const auto explore = [&](const Walls& walls, Point from, Point to) {
         Exploration made =
             deviation > 0
@@ -103,13 +103,17 @@ bool plan_voronoi_bug(const Query<PolygonCore>& query, VoronoiBugAnswer& answer,
             made.route.status = Status::undetermined;
         return made;
     };
-    if (!send_robot(query, trip, answer.route, shut, explore)) return false;
+    if (!send_robot(query, exploration, answer.route, shut, explore)) return false;
     const std::vector<Point>& path = answer.route.path;
-    for (const Leg& leg : trip.legs)
+    for (const Leg& leg : exploration.legs)
         for (std::size_t i = leg.first; query.trace && i < leg.last; ++i)
             query.trace->push_back({std::int8_t(leg.move), path[i], path[i + 1], leg.clearance});
-    answer.evidence = {
-        Table<Point>{std::move(trip.meets)}, trip.branches, trip.dead_ends, trip.clearance, trip.scans, shut};
+    answer.evidence = {Table<Point>{std::move(exploration.meets)},
+                       exploration.branches,
+                       exploration.dead_ends,
+                       exploration.clearance,
+                       exploration.scans,
+                       shut};
     return true;
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cspace/mobile/vehicle.hpp"
+#include "cspace/mobile/car_pose.hpp"
 #include "maps_grid.hpp"
 #include "table.hpp"
 

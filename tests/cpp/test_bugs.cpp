@@ -68,21 +68,21 @@ bool is_clear(const Case& c, const std::vector<Point>& path) {
     return true;
 }
 
-const char* fault_of(const Case& c, const Trip& trip, bool is_bug_1) {
+const char* fault_of(const Case& c, const WalkLog& log, bool is_bug_1) {
     const bool expected = c.world.connected(c.start, c.goal);
-    if (trip.route.status == Status::undetermined) return "undetermined";
-    if ((trip.route.status == Status::found) != expected) return expected ? "missed" : "wrongly found";
-    if (trip.route.path.front() != c.start) return "start";
-    if (expected && trip.route.path.back() != c.goal) return "goal";
-    if (!is_clear(c, trip.route.path)) return "path through a wall";
+    if (log.route.status == Status::undetermined) return "undetermined";
+    if ((log.route.status == Status::found) != expected) return expected ? "missed" : "wrongly found";
+    if (log.route.path.front() != c.start) return "start";
+    if (expected && log.route.path.back() != c.goal) return "goal";
+    if (!is_clear(c, log.route.path)) return "path through a wall";
     double bound = distance(c.start, c.goal);
     std::vector<int> met(c.perimeter.size(), 0);
-    for (const Follow& f : trip.follows) {
+    for (const Follow& f : log.follows) {
         const std::size_t ring = std::size_t(c.walls.ring(f.hit.in.name));
         ++met[ring];
         bound += (is_bug_1 ? 1.5 : 1.0) * c.perimeter[ring];
     }
-    if (length_of(trip.route.path) > bound * (1 + 1e-12)) return "longer than the bound";
+    if (length_of(log.route.path) > bound * (1 + 1e-12)) return "longer than the bound";
     const std::vector<int> n = entries(c);
     for (std::size_t ring = 0; ring < met.size(); ++ring) {
         if (is_bug_1 && met[ring] > 1) return "a ring met twice";
@@ -106,11 +106,11 @@ void judge(const Case& c, const char* name, int number) {
         for (Hand hand : {Hand::right, Hand::left}) {
             const auto begin = std::chrono::steady_clock::now();
             ContactRobot robot(c.walls, c.start);
-            const Trip trip = bug == 0 ? bug_1(robot, c.goal, hand) : bug_2(robot, c.goal, hand);
+            const WalkLog log = bug == 0 ? bug_1(robot, c.goal, hand) : bug_2(robot, c.goal, hand);
             const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
             times[bug].push_back(time.count());
-            length[bug] = trip.route.length;
-            const char* fault = fault_of(c, trip, bug == 0);
+            length[bug] = log.route.length;
+            const char* fault = fault_of(c, log, bug == 0);
             if (!fault) continue;
             std::printf("bug %d, %s hand, %s %d: %s\n", bug + 1, hand == Hand::left ? "left" : "right", name,
                         number, fault);
@@ -135,19 +135,19 @@ void judge_tangent_bug(const Case& c, const char* name, int number) {
     for (int k = 0; k < 3; ++k) {
         const auto begin = std::chrono::steady_clock::now();
         RangeRobot robot(c.walls, c.start, reach[k]);
-        const Trip trip = tangent_bug(robot, c.goal);
+        const WalkLog log = tangent_bug(robot, c.goal);
         const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
         times[2 + k].push_back(time.count());
         const char* fault = nullptr;
-        if (trip.route.status == Status::undetermined)
+        if (log.route.status == Status::undetermined)
             fault = "undetermined";
-        else if ((trip.route.status == Status::found) != expected)
+        else if ((log.route.status == Status::found) != expected)
             fault = expected ? "missed" : "wrongly found";
-        else if (trip.route.path.front() != c.start || (expected && trip.route.path.back() != c.goal))
+        else if (log.route.path.front() != c.start || (expected && log.route.path.back() != c.goal))
             fault = "ends";
-        else if (!is_clear(c, trip.route.path))
+        else if (!is_clear(c, log.route.path))
             fault = "path through a wall";
-        if (expected && shortest > 0) lengths[2 + k] += trip.route.length / shortest;
+        if (expected && shortest > 0) lengths[2 + k] += log.route.length / shortest;
         if (!fault) continue;
         std::printf("tangent bug, range %g, %s %d: %s\n", reach[k], name, number, fault);
         ++check::failures;
@@ -242,9 +242,9 @@ Walls spiral(int turns) {
 
 double length_of(const Walls& walls, int bug, Point start, Point goal, Hand hand) {
     ContactRobot robot(walls, start);
-    const Trip trip = bug == 1 ? bug_1(robot, goal, hand) : bug_2(robot, goal, hand);
-    CHECK(trip.route.status == Status::found);
-    return trip.route.length;
+    const WalkLog log = bug == 1 ? bug_1(robot, goal, hand) : bug_2(robot, goal, hand);
+    CHECK(log.route.status == Status::found);
+    return log.route.length;
 }
 
 }  // namespace
@@ -307,7 +307,7 @@ static_assert(ContactSensor<ContactRobot> && RangeSensor<RangeRobot>);
 TEST(planners_work_on_the_sensor_alone) {
     for (Hand hand : {Hand::left, Hand::right}) {
         ScriptedRobot one, two;
-        const Trip first = bug_1(one, {5, 0}, hand), second = bug_2(two, {5, 0}, hand);
+        const WalkLog first = bug_1(one, {5, 0}, hand), second = bug_2(two, {5, 0}, hand);
         CHECK(first.route.status == Status::found && second.route.status == Status::found);
         CHECK_NEAR(first.route.length, 5 - 2 + 8 + 4, 1e-12);  // around, then half way around
         CHECK_NEAR(second.route.length, 5 - 2 + 4, 1e-12);

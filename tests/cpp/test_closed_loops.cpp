@@ -144,7 +144,7 @@ void check_motions(Random& random, bool floating) {
     for (std::size_t r = 0; r < b.size(); ++r) CHECK(std::fabs(reached[r] - b[r]) < 1e-9);
     // G is still in the memory, by columns: Gᵀ (M x − p) = 0.
     Numbers left(dof);
-    multiply(memory.M, x.data(), loops.dof, left.data());
+    multiply_matrix(memory.M, x.data(), loops.dof, left.data());
     for (std::size_t j = 0; j < dof; ++j) left[j] -= p[j];
     for (int f = 0; f < loops.dof - memory.motions.rank; ++f) {
         double work = 0.0;

@@ -282,8 +282,8 @@ TEST(sight_lines_are_exact) {
         if (map.is_blocked(a) || map.is_blocked(b)) continue;
         for (Corners rule : {Corners::never, Corners::one, Corners::always}) {
             const bool truth = sees_slowly(map, rule, a, b);
-            CHECK(sees(grid, rule, a, b) == truth);
-            CHECK(sees(grid, rule, b, a) == truth);
+            CHECK(can_see(grid, rule, a, b) == truth);
+            CHECK(can_see(grid, rule, b, a) == truth);
             seen += truth;
         }
     }

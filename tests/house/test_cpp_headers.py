@@ -38,6 +38,15 @@ def test_headers_open_the_namespace_of_their_room(path):
     )
 
 
+def test_every_namespace_is_on_the_page_and_in_the_umbrella_header():
+    spaces = {namespace_of(path.relative_to(FOLDER).parts[0]) for path in HEADERS}
+    spaces -= {"cspace", "cspace::version.hpp"}
+    page = (tree.ROOT / "docs/cpp.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"^\| `(cspace::\w+)` \|", page, re.M)) == spaces
+    comment = UMBRELLA.read_text(encoding="utf-8").partition("#pragma once")[0]
+    assert set(re.findall(r"cspace::\w+", comment)) == spaces
+
+
 def includes(path):
     """The headers of the project that a header includes itself."""
     return [
@@ -56,3 +65,43 @@ def test_the_umbrella_header_includes_every_header():
     assert reached == set(HEADERS)
     included = {target for path in HEADERS for target in includes(path)}
     assert listed == [path for path in HEADERS if path not in included], "list what no other header includes"
+
+
+FREE_FUNCTION = re.compile(
+    r"^(?:template ?<.*>\n)?(?:(?:inline|constexpr|static|CSPACE_INLINE|CSPACE_ONCE|CSPACE_NOINLINE"
+    r"|\[\[nodiscard\]\]) )+(?:const )?[\w:<>,&* ]+?[&* ]+([a-z]\w*)\(",
+    re.M,
+)
+MATHEMATICS = """
+    abs acos all any asin atan2 binomial conjugate copysign cross determinant difference distance dot expm1
+    inverse max min norm polynomial product quadratic round sign sincos sqrt square tanh transpose
+"""
+"""Functions that one word of mathematics names."""
+ONE_WORD = {
+    "ik": """
+        across add align at balanced choose chord complete continues dot12 equation equations excess
+        exchanged finish formulation forward height holds level lever link nearest noise once passes
+        quarter range reversed scaled size times touching turned twice value values vertex weight
+    """,
+    "localization": "widen",
+    "maps": "after before gap rasterize",
+    "math": """
+        append carry column crossing decompose deliver direction doubled evaluate fill fill3 fill33
+        lane load meets middle negated orientation polished power project reduce reflect repeat
+        rotate row select shortening slope store times variations where window
+    """,
+    "navigation": "ahead allowed bisector blocked centroid crossing leaves order other side",
+    "trajectory": "root",
+}
+"""Of each room those that still have one word. Give new ones a verb and an object; take renamed ones out."""
+
+
+def test_free_functions_of_headers_are_a_verb_and_an_object():
+    found: dict[str, set[str]] = {}
+    for path in HEADERS:
+        names = FREE_FUNCTION.findall(path.read_text(encoding="utf-8"))
+        words = {name for name in names if "_" not in name} - set(MATHEMATICS.split())
+        found.setdefault(path.relative_to(FOLDER).parts[0], set()).update(words)
+    assert {room: words for room, words in found.items() if words} == {
+        room: set(words.split()) for room, words in ONE_WORD.items()
+    }

@@ -40,6 +40,32 @@ def test_methods_in_python_name_the_new_keyword_too(method, old, new):
             getattr(robot, method)(fixd=0)
 
 
+@pytest.mark.parametrize("old", ["held", "hold"])
+def test_locked_joints_had_other_keywords(old):
+    robot = cs.load_robot("panda")
+    for call in (lambda **given: robot.ik(np.eye(4), **given), robot.redundancy, robot.ik_plan):
+        with pytest.raises(errors.InputTypeError, match=f"^unknown keyword '{old}': use locked=$"):
+            call(**{old: {"panda_joint7": 0.3}})
+
+
+@pytest.mark.parametrize(
+    ("room", "old", "new"),
+    [
+        (cs.ik, "StillPoint", "InvariantPoint"),
+        (cs.ik, "StillDirection", "InvariantDirection"),
+        (cs.navigation, "Price", "Stats"),
+    ],
+)
+def test_an_old_name_of_a_room_names_the_new_one(room, old, new):
+    getattr(room, new)
+    with pytest.raises(
+        AttributeError, match=f"^module '{room.__name__}' has no attribute '{old}': use {new}$"
+    ):
+        getattr(room, old)
+    with pytest.raises(AttributeError, match=r" has no attribute 'colour'$"):
+        _ = room.colour
+
+
 def answers():
     robot = cs.load_robot("ur5e")
     q = np.full(6, 0.3)

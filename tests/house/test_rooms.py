@@ -3,6 +3,7 @@ the docs share it."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -10,15 +11,30 @@ import pytest
 from house import tree
 
 HEADERS = tree.ROOT / "include/cspace"
-COMPILED = sorted([*(tree.ROOT / "src/bindings").glob("*.?pp"), *(tree.ROOT / "src/kernels").glob("*.?pp")])
+LAYERS = [tree.ROOT / "src" / layer for layer in ("bindings", "kernels", "library")]
+COMPILED = sorted(path for layer in LAYERS for path in layer.glob("*.?pp"))
 
-CPP_ALONE = {"ik/general", "ik/position", "math/sparse"}
-"""Folders of headers that no Python file stands for: the plan of an arm chooses among them."""
-PYTHON_ALONE = {"ik/explain", "ik/goals", "model/mjcf", "planning/joint_space"}
-"""Packages of words: files, names and sentences, with no loop of their own; the checks of the last one are
-those of collision."""
-NO_ROOM = {"module", "bindings", "arrays", "numpy_api", "dispatch", "once"}
-"""What all bindings or all kernels share."""
+CPP_ALONE = {
+    "ik/general": "the plan of an arm chooses it",
+    "ik/position": "the plan of an arm chooses it",
+    "localization/landmarks": "the filters of Python's landmark_slam",
+    "math/sparse": "the optimizer of pose graphs calls it",
+}
+"""Folders of headers that no Python file stands for, and why."""
+PYTHON_ALONE = {
+    "ik/explain": "sentences",
+    "ik/goals": "names and checks of goals; each goal is solved by its own room",
+    "localization/evaluation": "errors of recorded poses, in a few numpy calls",
+    "localization/filters": "Kalman filters whose measurements may be Python functions",
+    "localization/landmark_slam": "the front of C++'s landmarks",
+    "localization/laser_slam": "the front of scans/laser_slam.hpp",
+    "localization/logs": "files",
+    "model/mjcf": "files",
+    "planning/joint_space": "names and sentences; its checks are those of collision",
+}
+"""Packages without headers of their own name, and why."""
+NO_ROOM = {"module", "bindings", "arrays", "numpy_api", "dispatch", "once", "scratch", "table"}
+"""What all bindings, all kernels or the whole library share."""
 PAGES = {"model": "robots", "plan_motion": "planning", "mechanisms": "closed-loops"}
 """Pages that speak of two rooms."""
 NO_PAGE = {"math", "search"}
@@ -32,7 +48,8 @@ def folders(root: Path) -> set[str]:
 
 
 def rooms(root: Path) -> set[str]:
-    return {path for path in folders(root) if "/" not in path}
+    """The first folders, whether files stand in them or in folders below."""
+    return {path.split("/")[0] for path in folders(root)}
 
 
 def is_python(path: str) -> bool:
@@ -48,8 +65,12 @@ def test_rooms_in_both_languages_have_the_same_rooms_inside():
     both = rooms(HEADERS) & rooms(tree.PACKAGE)
     cpp = {path for path in folders(HEADERS) if path.split("/")[0] in both and "/" in path}
     python = {path for path in folders(tree.PACKAGE) if path.split("/")[0] in both and "/" in path}
-    assert {path for path in cpp if not is_python(path)} == CPP_ALONE
-    assert python - cpp == PYTHON_ALONE
+    assert {path for path in cpp if not is_python(path)} == set(CPP_ALONE)
+    assert python - cpp == set(PYTHON_ALONE)
+
+
+def test_a_room_whose_files_stand_in_folders_is_seen():
+    assert "localization" in rooms(HEADERS)
 
 
 @pytest.mark.parametrize("room", sorted(rooms(tree.PACKAGE)))
@@ -71,3 +92,21 @@ def test_folders_of_tests_are_rooms():
 def test_compiled_files_are_named_by_their_room(path):
     known = {room for room in tree.RANK if not room.startswith("_")} | rooms(HEADERS)
     assert path.stem in NO_ROOM or path.stem.split("_")[0] in known, "begin the name with that of a room"
+
+
+def test_the_guide_for_contributors_shows_the_tiers():
+    guide = (tree.ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    block = guide.partition("bottom, today:\n\n```\n")[2].partition("\n```")[0]
+    shown = [set(re.sub(r"\(.*?\)", "", line).split()) for line in block.splitlines()]
+    present = {tree.room_of(path) for path in tree.python_files()} - {"cspace", "__main__"} | {"_core"}
+    tiers = [tier & present for tier in reversed(tree.TIERS)]
+    assert shown == [tier for tier in tiers if tier]
+
+
+def test_the_limit_of_the_checks_fits_their_promised_duration():
+    guide = (tree.ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    workflow = (tree.ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8")
+    promised = int(re.search(r"`bash \.ci/run`.*about (\d+) minutes", guide).group(1))
+    job = next(part for part in re.split(r"^  (?=\w+:$)", workflow, flags=re.M) if ".ci/run" in part)
+    limit = int(re.search(r"timeout-minutes: (\d+)", job).group(1))
+    assert promised <= limit <= 2 * promised

@@ -16,7 +16,9 @@ else:
     import tomli as tomllib
 
 TABLE = tomllib.loads((tree.ROOT / "tests/house/words.toml").read_text(encoding="utf-8"))
-READ = ("src/", "include/", "docs/", "README.md")
+OLD_NAMES = "src/cspace/errors.py"
+"""The file of the errors that name what has another name today."""
+READ = ("src/", "include/", "docs/", "README.md", "CHANGELOG.md")
 TEXTS = {
     "py": re.compile(r'[rR]?"""[\s\S]*?"""|#[^\n]*|"(?:\\.|[^"\\\n])*"'),
     "c": re.compile(r'R"doc\([\s\S]*?\)doc"|//[^\n]*|/\*[\s\S]*?\*/|"(?:\\.|[^"\\\n])*"'),
@@ -51,7 +53,7 @@ def phrase(text: str) -> re.Pattern[str]:
 def test_no_identifier_is_banned(row):
     pattern = re.compile(row["pattern"])
     for name, _, code in FILES:
-        if any(fnmatch.fnmatch(name, where) for where in row["where"]):
+        if name != OLD_NAMES and any(fnmatch.fnmatch(name, where) for where in row["where"]):
             found = pattern.search(code)
             assert not found, f"{name}: {found.group() if found else ''}; write {row['write']}"
 

@@ -9,40 +9,10 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "cspace/dynamics/loop_memory.hpp"
 #include "cspace/kinematics/loop_equations.hpp"
 #include "cspace/math/linear.hpp"
 #include "cspace/tolerances.hpp"
-
-namespace cspace::dynamics {
-
-using kinematics::ClosedLoops;
-using kinematics::LoopPlaces;
-
-// The factors of Kᵀ (dof, n_rows), the order of its columns, and how many are independent.
-struct AllowedMotions {
-    MatrixRows<double> reflections;
-    double *diagonal, *factor;
-    int* order;
-    int rank;
-};
-
-// Memory for one configuration. phi, b (n_rows,); K (n_rows, dof); G, MG, H, M
-// (dof, dof); the others (dof,).
-struct LoopMemory {
-    LoopPlaces places;
-    AllowedMotions motions;
-    double *phi, *b, *K, *G, *MG, *H, *M;
-    double *x, *pull, *y, *own, *q, *qd, *tried, *force;
-};
-
-inline std::size_t loop_memory_bytes(const ClosedLoops& loops) {
-    const std::size_t n = std::size_t(loops.n_joints), r = std::size_t(loops.n_rows);
-    const std::size_t dof = std::size_t(loops.dof);
-    return sizeof(Posed) * (n + 2 * std::size_t(loops.n_loops)) + sizeof(kinematics::LoopMotion) * n +
-           sizeof(double) * (2 * r * dof + 5 * r + 4 * dof * dof + 8 * dof) + sizeof(double) * r;
-}
-
-}  // namespace cspace::dynamics
 
 namespace cspace::dynamics::inline CSPACE_ISA {
 
@@ -118,7 +88,7 @@ inline void turn_back(const ClosedLoops& loops, const AllowedMotions& motions, d
 }
 
 // y := M x (dof,).
-inline void multiply(const double* M, const double* x, int dof, double* y) {
+inline void multiply_matrix(const double* M, const double* x, int dof, double* y) {
     for (int i = 0; i < dof; ++i) {
         y[i] = 0.0;
         for (int j = 0; j < dof; ++j) y[i] += M[i * dof + j] * x[j];
@@ -140,13 +110,13 @@ inline bool solve_least_energy(const ClosedLoops& loops, const double* M, const 
     }
     turn_back(loops, motions, x);
     if (free == 0) return true;
-    multiply(M, x, dof, memory.pull);
+    multiply_matrix(M, x, dof, memory.pull);
     for (int j = 0; j < dof; ++j) memory.pull[j] = (p ? p[j] : 0.0) - memory.pull[j];
     for (int f = 0; f < free; ++f) {  // by columns
         double* const column = memory.G + f * dof;
         for (int j = 0; j < dof; ++j) column[j] = j == rank + f ? 1.0 : 0.0;
         turn_back(loops, motions, column);
-        multiply(M, column, dof, memory.MG + f * dof);
+        multiply_matrix(M, column, dof, memory.MG + f * dof);
     }
     MatrixRows<double> H = {memory.H, free};
     double* const y = memory.y;

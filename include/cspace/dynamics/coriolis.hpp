@@ -27,13 +27,13 @@ CSPACE_INLINE void coriolis_matrix(const Multibody& bodies, const Twist<V>& base
                              velocity_product(state.all, state.axis);
         const Wrench<V> F2 = momentum_of(link.carried_mass, state.all, state.axis);
         const Vec3<V> F3 = transposed_velocity_product(state.all, state.axis);
-        add(column, column, (link.ratio * link.ratio) * power(state.axis, F1));
+        add(column, column, (link.ratio * link.ratio) * find_power(state.axis, F1));
         for (int i = link.parent; i >= 0; i = bodies.links[i].parent) {
             const Link& before = bodies.links[i];
             const double ratio = before.ratio * link.ratio;
-            add(first + before.coordinate, column, ratio * power(links[i].axis, F1));
+            add(first + before.coordinate, column, ratio * find_power(links[i].axis, F1));
             add(column, first + before.coordinate,
-                ratio * (power(links[i].axis_rate, F2) + dot(links[i].axis.w, F3)));
+                ratio * (find_power(links[i].axis_rate, F2) + dot(links[i].axis.w, F3)));
         }
         if (!floating) continue;
         const Vec3<V> turning = cross(F2.f, base.v) + F3;

@@ -52,34 +52,35 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
             return momentum_of(link.carried_mass, state.all, motion);
         };
         // The wrench on all that the joint moves, where the joint and its velocity grow.
-        const Wrench<V> by_position = scale(2.0, velocity_product(state.all, own.rate)) + inertial(own.bend) +
-                                      cross_wrench(own.axis, state.all.wrench);
-        const Wrench<V> by_velocity = scale(2.0, velocity_product(state.all, own.axis) + inertial(own.rate));
+        const Wrench<V> by_position = scale_vector(2.0, velocity_product(state.all, own.rate)) +
+                                      inertial(own.bend) + cross_wrench(own.axis, state.all.wrench);
+        const Wrench<V> by_velocity =
+            scale_vector(2.0, velocity_product(state.all, own.axis) + inertial(own.rate));
         // The force of the joint, where those before it and their velocities grow.
         const Wrench<V> unit = inertial(own.axis);
         const Vec3<V> turning = 2.0 * transposed_velocity_product(state.all, own.axis);
         const double square = link.ratio * link.ratio;
-        add(dq, column, column, square * power(own.axis, by_position));
-        add(dqd, column, column, square * power(own.axis, by_velocity));
+        add(dq, column, column, square * find_power(own.axis, by_position));
+        add(dqd, column, column, square * find_power(own.axis, by_velocity));
         if (rubs) add(dqd, column, column, fill<V>(square * link.damping));
-        add(M, column, column, square * (power(own.axis, unit) + link.armature));
+        add(M, column, column, square * (find_power(own.axis, unit) + link.armature));
         for (int i = link.parent; i >= 0; i = bodies.links[i].parent) {
             const Link& before = bodies.links[i];
             const Growth<V> other = growth_of(i);
             const double ratio = before.ratio * link.ratio;
             const int row = first + before.coordinate;
-            add(dq, row, column, ratio * power(other.axis, by_position));
-            add(dqd, row, column, ratio * power(other.axis, by_velocity));
-            add(dq, column, row, ratio * (dot(turning, other.rate.w) + power(other.bend, unit)));
-            add(dqd, column, row, ratio * (dot(turning, other.axis.w) + 2.0 * power(other.rate, unit)));
-            const V inertia = ratio * power(other.axis, unit);
+            add(dq, row, column, ratio * find_power(other.axis, by_position));
+            add(dqd, row, column, ratio * find_power(other.axis, by_velocity));
+            add(dq, column, row, ratio * (dot(turning, other.rate.w) + find_power(other.bend, unit)));
+            add(dqd, column, row, ratio * (dot(turning, other.axis.w) + 2.0 * find_power(other.rate, unit)));
+            const V inertia = ratio * find_power(other.axis, unit);
             add(M, row, column, inertia);
             add(M, column, row, inertia);
         }
         if (!floating) continue;
-        add_rows(dq, column, scale(link.ratio, by_position));
-        add_rows(dqd, column, scale(link.ratio, by_velocity));
-        add_rows(M, column, scale(link.ratio, unit));
+        add_rows(dq, column, scale_vector(link.ratio, by_position));
+        add_rows(dqd, column, scale_vector(link.ratio, by_velocity));
+        add_rows(M, column, scale_vector(link.ratio, unit));
     }
     if (!floating) return;
     // Turning the base by e and all motion and gravity with it changes no joint force and turns the wrench on
@@ -97,7 +98,8 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
         const Growth<V> faster = by_turning_faster(e), undone = by_turning_faster(cross(e, base.w));
         const Twist<V> lost = {cross(e, point_change), cross(e, change.w)};
         const auto wrench_of = [&](const Growth<V>& growth) {
-            return scale(2.0, velocity_product(whole, growth.axis)) + momentum_of(mass, whole, growth.bend);
+            return scale_vector(2.0, velocity_product(whole, growth.axis)) +
+                   momentum_of(mass, whole, growth.bend);
         };
         const Wrench<V> velocity = wrench_of(faster),
                         undoing = wrench_of(undone) + momentum_of(mass, whole, lost);
@@ -112,10 +114,11 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
             const Wrench<V> push = momentum_of(link.carried_mass, state.all, state.axis);
             const Vec3<V> turning = 2.0 * transposed_velocity_product(state.all, state.axis);
             const auto force_of = [&](const Growth<V>& growth) {
-                return dot(turning, growth.axis.w) + power(growth.bend, push);
+                return dot(turning, growth.axis.w) + find_power(growth.bend, push);
             };
             add(dqd, first + link.coordinate, 3 + j, link.ratio * force_of(faster));
-            add(dq, first + link.coordinate, 3 + j, -link.ratio * (force_of(undone) + power(lost, push)));
+            add(dq, first + link.coordinate, 3 + j,
+                -link.ratio * (force_of(undone) + find_power(lost, push)));
         }
     }
     for (int i = 0; i < 6; ++i)

@@ -126,9 +126,10 @@ CSPACE_INLINE Articulated<V> give_way(const LinkOf<V>& link, LinkResponse<V>& st
 // applied: see applied_wrenches.hpp.
 // Every coordinate must move one joint. regular: false in the lanes where a joint moves no inertia.
 template <class V>
-CSPACE_INLINE Articulated<V> articulate(const MultibodyOf<V>& bodies, const Vec3<V>& base_w, const V* q,
-                                        const V* qd, const V* tau, bool rubs, LinkResponse<V>* links,
-                                        mask_of<V>& regular, const AppliedWrenches<V>& applied = {}) {
+CSPACE_INLINE Articulated<V> articulate_bodies(const MultibodyOf<V>& bodies, const Vec3<V>& base_w,
+                                               const V* q, const V* qd, const V* tau, bool rubs,
+                                               LinkResponse<V>* links, mask_of<V>& regular,
+                                               const AppliedWrenches<V>& applied = {}) {
     const V zero = fill<V>(0.0);
     regular = zero == 0.0;
     turn_links(bodies, q, links);
@@ -169,8 +170,8 @@ CSPACE_INLINE Articulated<V> articulate(const MultibodyOf<V>& bodies, const Vec3
 
 // The second half: qdd (n_coordinates,) from the acceleration of the base, less gravity, in its axes.
 template <class V>
-CSPACE_INLINE void accelerate(const MultibodyOf<V>& bodies, const Vec3<V>& base_a, const Vec3<V>& base_wd,
-                              LinkResponse<V>* links, V* qdd) {
+CSPACE_INLINE void find_accelerations(const MultibodyOf<V>& bodies, const Vec3<V>& base_a,
+                                      const Vec3<V>& base_wd, LinkResponse<V>* links, V* qdd) {
     for (int k = 0; k < bodies.n_links; ++k) {
         const LinkOf<V>& link = bodies.links[k];
         LinkResponse<V>& state = links[k];

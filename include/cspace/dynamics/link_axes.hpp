@@ -26,12 +26,12 @@ CSPACE_INLINE void turn_pair(V& x, V& y, const Turn<S>& by) {
     y = by.s * old + by.c * y;
 }
 template <class S>
-CSPACE_INLINE Turn<S> twice(const Turn<S>& turn) {
+CSPACE_INLINE Turn<S> double_turn(const Turn<S>& turn) {
     const S half = turn.s * turn.c;
     return {half + half, turn.c * turn.c - turn.s * turn.s};
 }
 template <class S>
-CSPACE_INLINE Turn<S> back(const Turn<S>& turn) {
+CSPACE_INLINE Turn<S> reverse_turn(const Turn<S>& turn) {
     return {-turn.s, turn.c};
 }
 // The block (a b; b d) of a symmetric matrix, and the block (a b; c d) of any, turned: R A Rᵀ.
@@ -39,7 +39,7 @@ template <class V, class S>
 CSPACE_INLINE void turn_block(V& a, V& b, V& d, const Turn<S>& by) {
     const V mean = 0.5 * (a + d);
     V half = 0.5 * (a - d);
-    turn_pair(half, b, twice(by));
+    turn_pair(half, b, double_turn(by));
     a = mean + half;
     d = mean - half;
 }
@@ -134,7 +134,7 @@ CSPACE_INLINE void to_link(const LinkOf<V>& link, const Turn<V>& turn, Vectors&.
         case model::Tilt::any:
             (turn_x(a, Turn<scalar_of<V>>{-link.sin_alpha, link.cos_alpha}), ...);
     }
-    (turn_z(a, back(turn)), ...);
+    (turn_z(a, reverse_turn(turn)), ...);
 }
 // Vectors and matrices from the axes of the link into those of the parent.
 template <class V, class... Tensors>

@@ -253,8 +253,8 @@ mask_of<V> accelerations(const Mechanics& mechanics, const State<V>& state, cons
     auto* const links = static_cast<LinkResponse<V>*>(work.links);
     Motion<V> base = resting_base(mechanics, state);
     mask_of<V> regular;
-    const Articulated<V> felt =
-        articulate(mechanics.bodies, base.w, state.q, state.qd + first, force + first, false, links, regular);
+    const Articulated<V> felt = articulate_bodies(mechanics.bodies, base.w, state.q, state.qd + first,
+                                                  force + first, false, links, regular);
     if (first) {
         const Mat3<V>& R = state.T.R;
         regular = accelerate_base(felt, transpose_times(R, vector_from(force)),
@@ -263,7 +263,7 @@ mask_of<V> accelerations(const Mechanics& mechanics, const State<V>& state, cons
         put_vector(qdd, R * base.a + fill3<V>(mechanics.gravity));
         put_vector(qdd + 3, R * base.wd);
     }
-    accelerate(mechanics.bodies, base.a, base.wd, links, qdd + first);
+    find_accelerations(mechanics.bodies, base.a, base.wd, links, qdd + first);
     return regular;
 }
 

@@ -28,7 +28,7 @@ CSPACE_INLINE void momentum_matrix(const Multibody& bodies, bool floating, const
     for (int k = 0; k < bodies.n_links; ++k) {
         const Link& link = bodies.links[k];
         const SpatialLink<V>& state = links[k];
-        const Twist<V> motion = scale(link.ratio, state.axis);
+        const Twist<V> motion = scale_vector(link.ratio, state.axis);
         add(first + link.coordinate, momentum_about(momentum_of(link.carried_mass, state.all, motion), c));
     }
     if (!floating) return;
@@ -47,11 +47,11 @@ template <class V>
 CSPACE_INLINE V kinetic_energy(const Multibody& bodies, const Twist<V>& base, const V* qd,
                                const SpatialLink<V>* links, const SpatialBody<V>& whole) {
     // The momentum of the whole is felt by the base; that of each subtree by its joint.
-    V twice = power(base, whole.momentum);
+    V twice = find_power(base, whole.momentum);
     for (int k = 0; k < bodies.n_links; ++k) {
         const Link& link = bodies.links[k];
         const V rate = link.ratio * qd[link.coordinate];
-        twice = twice + rate * (power(links[k].axis, links[k].all.momentum) + link.armature * rate);
+        twice = twice + rate * (find_power(links[k].axis, links[k].all.momentum) + link.armature * rate);
     }
     return 0.5 * twice;
 }

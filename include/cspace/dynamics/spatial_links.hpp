@@ -39,7 +39,7 @@ CSPACE_INLINE Twist<V> cross_motion(const Twist<V>& a, const Twist<V>& b) {
     return {cross(a.w, b.v) + cross(a.v, b.w), cross(a.w, b.w)};
 }
 template <class V>
-CSPACE_INLINE V power(const Twist<V>& motion, const Wrench<V>& wrench) {
+CSPACE_INLINE V find_power(const Twist<V>& motion, const Wrench<V>& wrench) {
     return dot(motion.v, wrench.f) + dot(motion.w, wrench.n);
 }
 template <class V>
@@ -51,7 +51,7 @@ CSPACE_INLINE Wrench<V> operator+(const Wrench<V>& a, const Wrench<V>& b) {
     return {a.f + b.f, a.n + b.n};
 }
 template <class V, class S>
-CSPACE_INLINE Twist<V> scale(const S& s, const Twist<V>& a) {
+CSPACE_INLINE Twist<V> scale_vector(const S& s, const Twist<V>& a) {
     return {s * a.v, s * a.w};
 }
 template <class V>
@@ -59,7 +59,7 @@ CSPACE_INLINE Wrench<V> cross_wrench(const Twist<V>& a, const Wrench<V>& b) {
     return {cross(a.w, b.f), cross(a.v, b.f) + cross(a.w, b.n)};
 }
 template <class V, class S>
-CSPACE_INLINE Wrench<V> scale(const S& s, const Wrench<V>& a) {
+CSPACE_INLINE Wrench<V> scale_vector(const S& s, const Wrench<V>& a) {
     return {s * a.f, s * a.n};
 }
 
@@ -177,12 +177,12 @@ CSPACE_INLINE SpatialBody<V> place_links(const Multibody& bodies, const Mat3<V>&
         const V rate = qd ? link.ratio * qd[link.coordinate] : zero;
         state.axis = link.prismatic ? Twist<V>{z, none} : Twist<V>{cross(state.frame.origin, z), z};
         state.axis_rate = cross_motion(carried, state.axis);
-        state.motion = carried + scale(rate, state.axis);
+        state.motion = carried + scale_vector(rate, state.axis);
         if (change) {
             const V growth = qdd ? link.ratio * qdd[link.coordinate] : zero;
             const Twist<V>& changed = parent ? parent->change : *change;
             state.axis_bend = cross_motion(changed, state.axis) + cross_motion(carried, state.axis_rate);
-            state.change = changed + scale(growth, state.axis) + scale(rate, state.axis_rate);
+            state.change = changed + scale_vector(growth, state.axis) + scale_vector(rate, state.axis_rate);
         }
         state.all = place_body(link.body, state.frame, state.motion, change ? &state.change : nullptr);
     }

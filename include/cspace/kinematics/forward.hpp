@@ -3,6 +3,7 @@
 // Murray, Li and Sastry, A Mathematical Introduction to Robotic Manipulation (1994), section 3.2.
 #pragma once
 
+#include "cspace/kinematics/pose_matrix.hpp"
 #include "cspace/math/trig.hpp"
 #include "cspace/math/vec.hpp"
 #include "cspace/model/chain.hpp"
@@ -62,7 +63,7 @@ CSPACE_INLINE void turn_about_z(FrameAxes<V>& frame, const S& s, const S& c) {
 }
 // Rotates the frame about its x axis by the α of a joint.
 template <class V>
-CSPACE_INLINE void tilt(FrameAxes<V>& frame, const model::ChainJoint& joint) {
+CSPACE_INLINE void tilt_frame(FrameAxes<V>& frame, const model::ChainJoint& joint) {
     const Vec3<V> y = frame.y;
     switch (joint.tilt) {
         case model::Tilt::none:
@@ -95,7 +96,7 @@ CSPACE_INLINE Pose<V> follow_chain(const model::Chain& chain, const Pose<V>& fir
         if (joint.x != 0.0) frame.origin = frame.origin + joint.x * frame.x;
         if (joint.y != 0.0) frame.origin = frame.origin + joint.y * frame.y;
         frame.origin = frame.origin + z * frame.z;
-        tilt(frame, joint);
+        tilt_frame(frame, joint);
     }
     if (chain.n > 0) turn_about_z(frame, chain.sin_last, chain.cos_last);
     return to_pose(frame);
@@ -129,21 +130,6 @@ CSPACE_INLINE Pose<V> frame_pose(const model::Frame& frame, const Pose<V>& T_wor
                                  const Pose<V>* T_world_joint) {
     const Pose<V>& T = frame.joint < 0 ? T_world_base : T_world_joint[frame.joint];
     return T * fill_pose<V>(frame.T_joint_frame);
-}
-
-// A pose as the sixteen numbers of its matrix, row by row, and back.
-template <class V>
-CSPACE_INLINE void write_matrix(const Pose<V>& T, V* matrix) {
-    for (int r = 0; r < 3; ++r) {
-        for (int j = 0; j < 3; ++j) matrix[4 * r + j] = T.R.m[r][j];
-        matrix[4 * r + 3] = r == 0 ? T.t.x : r == 1 ? T.t.y : T.t.z;
-        matrix[12 + r] = fill<V>(0.0);
-    }
-    matrix[15] = fill<V>(1.0);
-}
-template <class V>
-CSPACE_INLINE Pose<V> read_matrix(const V* m) {
-    return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
 }
 
 }  // namespace cspace::kinematics::inline CSPACE_ISA

@@ -32,7 +32,7 @@ CSPACE_INLINE Pose<V> place_axes(const model::Chain& chain, const Pose<V>& first
 
 // One of two vectors, number by number, which stay in registers.
 template <class V>
-CSPACE_INLINE Vec3<V> choose(bool first, const Vec3<V>& a, const Vec3<V>& b) {
+CSPACE_INLINE Vec3<V> choose_vector(bool first, const Vec3<V>& a, const Vec3<V>& b) {
     V x = b.x, y = b.y, z = b.z;
     if (first) x = a.x, y = a.y, z = a.z;
     return {x, y, z};
@@ -42,7 +42,7 @@ CSPACE_INLINE Vec3<V> choose(bool first, const Vec3<V>& a, const Vec3<V>& b) {
 template <class V>
 CSPACE_INLINE Twist<V> joint_twist(bool prismatic, const Vec3<V>& d, const Vec3<V>& o, const Vec3<V>& p) {
     const V zero = fill<V>(0.0);
-    return {choose(prismatic, d, cross(d, p - o)), choose(prismatic, {zero, zero, zero}, d)};
+    return {choose_vector(prismatic, d, cross(d, p - o)), choose_vector(prismatic, {zero, zero, zero}, d)};
 }
 
 // One column of a matrix of `columns` columns, rows first to first + 2.

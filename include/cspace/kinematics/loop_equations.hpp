@@ -4,25 +4,8 @@
 
 #include <cmath>
 
-#include "cspace/kinematics/closed_loops.hpp"
+#include "cspace/kinematics/loop_places.hpp"
 #include "cspace/math/trig.hpp"
-
-namespace cspace::kinematics {
-
-// How a body moves against the base where no joint accelerates: w and v of the point of the body at the
-// origin of the base, and their spatial accelerations.
-struct LoopMotion {
-    Vec3d w, v, alpha, a;
-};
-
-// Room for one configuration: joints (n_joints,) and motions (n_joints,), ends (2 n_loops,): A and B of each
-// loop.
-struct LoopPlaces {
-    Posed *joints, *ends;
-    LoopMotion* motions;
-};
-
-}  // namespace cspace::kinematics
 
 namespace cspace::kinematics::inline CSPACE_ISA {
 

@@ -8,14 +8,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "cspace/mobile/walk_rates.hpp"
 #include "cspace/spatial/left_jacobian.hpp"
 
 namespace cspace::mobile {
-
-struct RandomWalk {
-    // Per metre [m²/m, m²/m, rad²/m], per radian [rad²/rad], per second [m²/s, rad²/s].
-    double distance = 0, side = 0, drift = 0, turn = 0, rest = 0, rest_turn = 0;
-};
 
 using Covariance3 = std::array<double, 9>;
 

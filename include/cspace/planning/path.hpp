@@ -83,7 +83,7 @@ class ArcLengths {
 };
 
 // The configuration at a place; never outside the box of the two rows, and exactly they at its ends.
-inline void interpolate(const Path& path, const Place& place, double* q) {
+inline void interpolate_path(const Path& path, const Place& place, double* q) {
     const double *a = path.row(place.edge), *b = path.row(place.edge + 1);
     if (place.share == 1) return void(std::copy_n(b, path.width(), q));
     for (std::size_t k = 0; k < path.width(); ++k)

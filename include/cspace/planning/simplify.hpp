@@ -91,8 +91,8 @@ class Simplifier {
         const Place a = arcs_.find_place(from), b = arcs_.find_place(to);
         if (a.edge == b.edge) return false;
         Row p, q;
-        interpolate(path_, a, p.data());
-        interpolate(path_, b, q.data());
+        interpolate_path(path_, a, p.data());
+        interpolate_path(path_, b, q.data());
         const double gain = to - from - row_distance(p.data(), q.data(), path_.width());
         const double share = std::clamp(gain_per_corner / double(path_.size() - 2), finest_gain, least_gain);
         if (gain < share * arcs_.total() || !space_.is_free(p.data(), q.data())) return false;

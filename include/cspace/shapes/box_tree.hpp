@@ -21,13 +21,13 @@ struct Box {
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 inline constexpr Box nothing = {{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}};
 
-inline Box join(const Box& a, const Box& b) {
+inline Box join_boxes(const Box& a, const Box& b) {
     return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
             {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
 inline Box box_of(std::span<const Vec3d> points) {
     Box box = nothing;
-    for (const Vec3d& p : points) box = join(box, {p, p});
+    for (const Vec3d& p : points) box = join_boxes(box, {p, p});
     return box;
 }
 // One of the eight parts of a box around its middle.
@@ -134,8 +134,8 @@ class BoxTree {
         const std::size_t at = nodes_.size();
         Box box = nothing, centers = nothing;
         for (std::uint32_t k = begin; k < end; ++k, watch.step()) {
-            box = join(box, boxes[order_[k]]);
-            centers = join(centers, {middles[order_[k]], middles[order_[k]]});
+            box = join_boxes(box, boxes[order_[k]]);
+            centers = join_boxes(centers, {middles[order_[k]], middles[order_[k]]});
         }
         nodes_.push_back({box, begin, end, 0});
         if (end - begin <= leaf_size) return;

@@ -134,7 +134,7 @@ class CoverSearch {
         if (!goal_.solid || !(length > 0)) return add_candidate(at);
         const Ball first = touching_ball(surface_, at, (-1 / length) * n, surface_.extent());
         const bool found = add_inner(first.center);
-        const Ball deepest = climb(surface_, first.center, goal_.within, climb_steps);
+        const Ball deepest = grow_ball(surface_, first.center, goal_.within, climb_steps);
         if (!(add_inner(deepest.center) || found)) add_candidate(at);
     }
     bool add_inner(const Vec3d& center) {
@@ -253,7 +253,7 @@ class CoverSearch {
                 [](const Box& a, const Box& b) { return size_of(a) > size_of(b); });
             for (const Box& cell : seeds) {
                 watch_.look();
-                add_candidate(climb(surface_, shapes::middle_of(cell), goal_.within, climb_steps).center);
+                add_candidate(grow_ball(surface_, shapes::middle_of(cell), goal_.within, climb_steps).center);
             }
             thin_out_candidates();
             const CoverItems<Box> cells(open, watch_);

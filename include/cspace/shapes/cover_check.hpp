@@ -186,7 +186,7 @@ class CoverCheck {
             return;
         }
         const List near = spheres_.narrow(box_of(t), bound, list);
-        for (const Triangle& part : halve(longest)) check_triangle(part, near);
+        for (const Triangle& part : halve_triangle(longest)) check_triangle(part, near);
         spheres_.drop(near);
     }
 
@@ -245,7 +245,7 @@ class CoverCheck {
         } else if (norm(box.high - box.low) < part_side_ || parts_ >= settings_.most) {
             open_area_ += area_of(t);
         } else {
-            for (const Triangle& part : halve(find_long_side(t))) sum_triangle(part, near);
+            for (const Triangle& part : halve_triangle(find_long_side(t))) sum_triangle(part, near);
         }
         spheres_.drop(near);
     }

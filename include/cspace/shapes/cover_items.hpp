@@ -92,7 +92,7 @@ inline LongSide find_long_side(const Triangle& t) {
     return {t[longest], t[(longest + 1) % 3], t[(longest + 2) % 3], square[longest]};
 }
 
-inline std::array<Triangle, 2> halve(const LongSide& t) {
+inline std::array<Triangle, 2> halve_triangle(const LongSide& t) {
     const Vec3d half = 0.5 * (t.a + t.b);
     return {Triangle{t.a, half, t.c}, Triangle{half, t.b, t.c}};
 }
@@ -140,7 +140,7 @@ void visit_parts(std::span<const Triangle> triangles, double side, Watch& watch,
                 cut_strips(longest, std::max(diagonal * side, twice_area / std::sqrt(longest.square)),
                            waiting);
             } else {
-                for (const Triangle& half : halve(longest)) waiting.push_back(half);
+                for (const Triangle& half : halve_triangle(longest)) waiting.push_back(half);
             }
         }
     }

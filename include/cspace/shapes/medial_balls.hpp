@@ -28,7 +28,7 @@ inline Ball touching_ball(const TriangleSurface& surface, const Vec3d& p, const 
 }
 
 // Walks away from the nearest place by ever shorter steps; returns the deepest place seen.
-inline Ball climb(const TriangleSurface& surface, const Vec3d& start, double step, int steps) {
+inline Ball grow_ball(const TriangleSurface& surface, const Vec3d& start, double step, int steps) {
     constexpr double shorter = 0.75;
     Ball best = {start, -1};
     Vec3d at = start;

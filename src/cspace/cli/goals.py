@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from cspace.cli.arguments import (
     read_radians,
 )
 from cspace.cli.exits import UsageError
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
 
 ORIENTATIONS: Final = ("rpy", "wxyz", "xyzw", "rotation")
 """The forms of an orientation."""
@@ -47,7 +50,7 @@ class Goal:
     parts: dict[str, Any] = field(default_factory=dict)
     tool_axis: Any = "z"
 
-    def ask(self, robot: Any, **options: Any) -> Any:
+    def ask(self, robot: Robot, **options: Any) -> Any:
         """The result of robot.ik."""
         return robot.ik(**self.keywords, **options)
 

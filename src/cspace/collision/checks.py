@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace._core import RobotBase
+from cspace._core import RobotBase, _remember_checker
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.collision.checker import checker_of
 from cspace.collision.robot_geometry import RobotGeometry
@@ -109,7 +109,7 @@ def collides(
     checker = checker_of(geometry, scene, margin)
     rows = as_configurations(geometry, q)
     if checker.margin == 0.0 and isinstance(robot, RobotBase):
-        robot._checked = (scene, checker.core)
+        _remember_checker(robot, scene, checker.core)
     if rows.ndim == 1:
         return checker.core.find_contact(rows) is not None
     count = thread_count(threads, rows.shape[:-1])

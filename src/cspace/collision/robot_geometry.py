@@ -357,9 +357,9 @@ def choose_pairs(
     links, bodies = geometry.links, geometry.link_bodies
     reasons = {pair: "adjacent" for pair in adjacent}
     number = {name: k for k, name in enumerate(links)}
-    for a, b, why in description.allowed_pairs:
+    for a, b, reason in description.allowed_pairs:
         if a in number and b in number:
-            reasons[min(number[a], number[b]), max(number[a], number[b])] = why
+            reasons[min(number[a], number[b]), max(number[a], number[b])] = reason
     every = [(a, b) for a in range(len(links)) for b in range(a + 1, len(links)) if bodies[a] != bodies[b]]
     always = f"touch at each of {SAMPLES} random configurations"
     open_pairs = [pair for pair in every if pair not in reasons]

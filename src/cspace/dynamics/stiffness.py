@@ -10,6 +10,7 @@ from cspace.arrays import Array
 from cspace.dynamics.controllers import PD, ComputedTorque
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.mechanics import Mechanics, State
+from cspace.kinematics import KinematicModel
 
 STIFF: Final = 2.0
 """Decays within one step from which on a velocity grows instead: 2.8 with RK4, less with others and with
@@ -19,7 +20,7 @@ STIFF_SPRING: Final = 4.0
 """kp dt² / m from which on a spring whose force is held over a step gains energy whatever its damping."""
 
 
-def find_mobility(robot: Any, start: State) -> Array:
+def find_mobility(robot: KinematicModel, start: State) -> Array:
     """The accelerations (dof,) of joints under a unit torque on each, the largest over all rows."""
     M = mass_matrix(robot, start.q, T_world_base=start.T_world_base)
     mobility = np.diagonal(np.linalg.inv(M), axis1=-2, axis2=-1)
@@ -27,7 +28,7 @@ def find_mobility(robot: Any, start: State) -> Array:
     return most
 
 
-def find_fastest(robot: Any, rates: Array) -> tuple[str, float]:
+def find_fastest(robot: KinematicModel, rates: Array) -> tuple[str, float]:
     """The joint with the highest of rates (dof,), and that."""
     joints = rates[robot.dof - len(robot.joint_names) :]
     fastest = int(joints.argmax())
@@ -48,7 +49,7 @@ def name_stiff_friction(mechanics: Mechanics, start: State, dt: float) -> str | 
     )
 
 
-def name_stiff_gain(robot: Any, control: Any, start: State, dt: float) -> str | None:
+def name_stiff_gain(robot: KinematicModel, control: Any, start: State, dt: float) -> str | None:
     """The sentence about gains that are too high for torques held over a step, None if none is."""
     if type(control) not in (PD, ComputedTorque) or not start.q.size:
         return None

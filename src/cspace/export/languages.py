@@ -16,6 +16,7 @@ from cspace.export.cpp import c_files, cpp_header, words_of
 from cspace.export.python_file import python_file, python_method
 from cspace.export.texts import fill_template
 from cspace.files import check_target, path_of, write_text
+from cspace.ik.solver import HasSolver
 from cspace.tables import html_table, one_line
 
 LANGUAGES = MappingProxyType(
@@ -82,7 +83,7 @@ class Export:
 
 @name_new_keywords
 def export(
-    robot: Any,
+    robot: HasSolver,
     lang: str | None = None,
     path: str | os.PathLike[str] | None = None,
     *,

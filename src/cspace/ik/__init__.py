@@ -1,5 +1,7 @@
 """Inverse kinematics: every configuration that reaches a goal, or why there is none."""
 
+from typing import TYPE_CHECKING
+
 from cspace.ik import subproblems
 from cspace.ik.conditions import Condition, NoClosedFormError
 from cspace.ik.explain import IkPlan, InvariantDirection, InvariantPoint, Relation, Step, ik_plan
@@ -58,3 +60,12 @@ __all__ = [
     "task_velocity",
     "track",
 ]
+
+if not TYPE_CHECKING:  # type checkers report such names themselves
+
+    def __getattr__(name: str) -> object:
+        import sys
+
+        from cspace.errors import module_error
+
+        raise module_error(sys.modules[__name__], name)

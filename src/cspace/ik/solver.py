@@ -204,7 +204,9 @@ def solver_of_robot(robot: KinematicModel) -> Solver:
     """The solver of a robot's chain. Raises NoClosedFormError for a floating base too."""
     if robot.floating:
         raise NoClosedFormError(explain_missing_form(robot))
-    return Solver(robot.chain, robot.limits if robot.chain.dof == robot.dof else None, name=robot.name)
+    made = Solver(robot.chain, robot.limits if robot.chain.dof == robot.dof else None, name=robot.name)
+    made._robot = cast("HasGeometry", robot)
+    return made
 
 
 def as_solver(arm: HasSolver | KinematicModel) -> Solver:

@@ -21,19 +21,19 @@ from cspace.tolerances import MOST_WINDINGS, ON_LIMIT
 Flags = npt.NDArray[np.bool_]
 
 
-def turning_joints(kinds: Sequence[str]) -> Flags:
+def revolute_joints(kinds: Sequence[str]) -> Flags:
     """Which joints turn, (dof,)."""
     return np.array([kind == "R" for kind in kinds], dtype=bool)
 
 
 def short_way(gap: Array, kinds: Sequence[str]) -> Array:
     """Differences (..., dof) of configurations, those of revolute joints the short way round."""
-    return np.where(turning_joints(kinds), wrap_angle(gap), gap)
+    return np.where(revolute_joints(kinds), wrap_angle(gap), gap)
 
 
 def wrap_joints(q: Array, kinds: Sequence[str]) -> Array:
     """Revolute joints in (−π, π]."""
-    outside = turning_joints(kinds) & ((q > np.pi) | (q <= -np.pi))
+    outside = revolute_joints(kinds) & ((q > np.pi) | (q <= -np.pi))
     return np.where(outside, wrap_angle(q), q)
 
 
@@ -55,7 +55,7 @@ def nearest_winding(q: Array, seed: Array, kinds: Sequence[str], lower: Array, u
     it inside its limits if there are any; a joint that rounding takes past a limit is set to it.
     """
     wanted = np.round((seed - q) / TURN)
-    return copies_inside(q, turning_joints(kinds), lower, upper, wanted, ON_LIMIT)
+    return copies_inside(q, revolute_joints(kinds), lower, upper, wanted, ON_LIMIT)
 
 
 def into_limits(
@@ -67,7 +67,7 @@ def into_limits(
     moved = q.copy()
     out = np.nonzero((q < lower) | (q > upper))
     joint = out[-1]
-    turns = turning_joints(kinds)[joint]
+    turns = revolute_joints(kinds)[joint]
     moved[out] = copies_inside(q[out], turns, lower[joint], upper[joint], np.zeros(len(joint)), slack)
     return moved, np.asarray(((moved >= lower) & (moved <= upper)).all(axis=-1))
 
@@ -83,7 +83,7 @@ def measure_violations(
     below, above = lower[joint] - q[out], q[out] - upper[joint]
     with np.errstate(invalid="ignore"):  # of a limit at infinity, which is not the one that is broken
         around = np.fmin(np.mod(below, TURN), np.mod(above, TURN))
-    excess[out] = np.where(turning_joints(kinds)[joint], around, np.maximum(below, above))
+    excess[out] = np.where(revolute_joints(kinds)[joint], around, np.maximum(below, above))
     return excess
 
 

@@ -1,5 +1,7 @@
 """Navigation in the plane: planners that find a path from start to goal in polygonal worlds and grids."""
 
+from typing import TYPE_CHECKING
+
 from cspace.navigation.any_angle.any_angle import AnyAngle
 from cspace.navigation.bugs.voronoi_bug import VoronoiBug
 from cspace.navigation.bugs.wall_followers import Bug1, Bug2, BugEvidence, TangentBug
@@ -68,3 +70,12 @@ __all__ += ["JumpPointSearch", "ThetaStar", "Wavefront", "WeightedAStar"]
 __all__ += ["PRM", "RRT", "RRTStar"]
 __all__ += ["VisibilityGraph", "VisibilityGraphSearch", "Voronoi", "VoronoiDiagram"]
 __all__ += ["visibility_graph", "voronoi_diagram"]
+
+if not TYPE_CHECKING:  # type checkers report such names themselves
+
+    def __getattr__(name: str) -> object:
+        import sys
+
+        from cspace.errors import module_error
+
+        raise module_error(sys.modules[__name__], name)

@@ -247,13 +247,13 @@ class PotentialField(EdgePlanner):
             return "found", f"descended the potential along a path of length {shown(found.cost)}{saddles}"
         status = "local_minimum" if is_minimum(found.rest) else "undetermined"
         ended = f"the descent ended {shown(rest.distance)} from the goal{saddles}"
-        why = SAID.get(rest.kind, "the path to the goal as given is not proved")
+        cause = SAID.get(rest.kind, "the path to the goal as given is not proved")
         pushes = [
             f"{each.other} pushes {each.link} from {1000 * each.distance:.3g} mm away"
             for each in rest.pushes[:MOST_NAMED]
             if each.force > LEAST_NAMED * rest.pushes[0].force
         ]
-        return status, f"{ended}: {why}" + (f"; {join_words(pushes)}" if pushes else "")
+        return status, f"{ended}: {cause}" + (f"; {join_words(pushes)}" if pushes else "")
 
 
 def is_minimum(rest: FieldRest) -> bool:

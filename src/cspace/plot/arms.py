@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.kinematics import KinematicModel
 from cspace.plot import colors, planar
 from cspace.plot.arm_bodies import solids_of
 from cspace.plot.arm_stage import set_stage
@@ -23,7 +24,9 @@ FAINT: Final = 0.16
 """Opacity of ghosts, and of those out of limits."""
 
 
-def robot(arm: Any, q: Any, *, ax: Any | None = None, color: Any = None, title: str = "") -> list[Any]:
+def robot(
+    arm: KinematicModel, q: Any, *, ax: Any | None = None, color: Any = None, title: str = ""
+) -> list[Any]:
     """Draw a robot in one configuration, its base and tip frames and its shadow.
 
     arm: a Robot that is a chain. q: (dof,) [rad, m]. ax: 3-D axes, or 2-D ones for a planar arm; None makes a
@@ -51,7 +54,7 @@ def robot(arm: Any, q: Any, *, ax: Any | None = None, color: Any = None, title: 
 
 
 def solutions(
-    arm: Any,
+    arm: KinematicModel,
     answer: Any,
     goal: Any | None = None,
     *,
@@ -106,7 +109,7 @@ def solutions(
     return artists + stage.write_title(axes, title)
 
 
-def within_limits(arm: Any, q: Array) -> Any:
+def within_limits(arm: KinematicModel, q: Array) -> Any:
     """Which of the configurations q (k, dof) are within the limits of the arm, modulo 2π."""
     from cspace.ik.wrapping import into_limits
 
@@ -122,7 +125,7 @@ def branch_names(answer: Any, inside: Any) -> list[str]:
     return [name if fits else f"{name} (out of limits)" for name, fits in zip(names, inside, strict=True)]
 
 
-def nearest_row(q: Array, near: Array, arm: Any) -> int:
+def nearest_row(q: Array, near: Array, arm: KinematicModel) -> int:
     """The row of q nearest to `near`; revolute joints are compared modulo 2π."""
     from cspace.ik.wrapping import short_way
 

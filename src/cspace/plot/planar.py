@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.kinematics import KinematicModel
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes, write_title
 from cspace.plot.legends import list_entries, mark_bold
@@ -27,7 +28,7 @@ EXACT_ENDS: Final = {"shrinkA": 0, "shrinkB": 0}
 
 
 def draw_configurations(
-    arm: Any,
+    arm: KinematicModel,
     q: Array,
     basis: Array,
     *,
@@ -184,12 +185,12 @@ def draw_legend(ax: Any, names: Sequence[str], tints: Sequence[Any], solid: int)
     return [drawn]
 
 
-def tip_points(arm: Any, q: Array, basis: Array) -> Array:
+def tip_points(arm: KinematicModel, q: Array, basis: Array) -> Array:
     """Where the tip is in the plane, (..., 2) [m]."""
     return np.asarray(arm.fk(q)[..., :3, 3] @ basis.T)
 
 
-def planar_or_refuse(arm: Any) -> Array:
+def planar_or_refuse(arm: KinematicModel) -> Array:
     """The plane of the arm. Raises InputError for an arm that is not planar."""
     basis = planar_basis(arm.chain)
     if basis is None:
@@ -200,7 +201,7 @@ def planar_or_refuse(arm: Any) -> Array:
     return basis
 
 
-def workspace(arm: Any, *, ax: Any | None = None, title: str = "") -> list[Any]:
+def workspace(arm: KinematicModel, *, ax: Any | None = None, title: str = "") -> list[Any]:
     """Draw where the tip of a planar arm can be within its limits, and how well it moves there.
 
     The colour is the manipulability √det(J Jᵀ) of the position, the best of all configurations found there.
@@ -223,7 +224,7 @@ def workspace(arm: Any, *, ax: Any | None = None, title: str = "") -> list[Any]:
     return artists + draw_base(axes, size, zorder=4) + write_title(axes, title, 11)
 
 
-def grid_of(arm: Any) -> Array:
+def grid_of(arm: KinematicModel) -> Array:
     """Configurations (m, dof) over the whole range of every joint."""
     lower, upper = np.array(arm.limits.lower), np.array(arm.limits.upper)
     turning = np.array([kind == "R" for kind in arm.chain.joint_types])
@@ -280,7 +281,7 @@ def best_in_cells(ax: Any, points: Array, measure: Array, gap_cells: int) -> Any
 
 
 def manipulability(
-    arm: Any, q: Any, *, scale: float | None = None, ax: Any | None = None, title: str = ""
+    arm: KinematicModel, q: Any, *, scale: float | None = None, ax: Any | None = None, title: str = ""
 ) -> list[Any]:
     """Draw the ellipse of tip velocities that unit joint rates can make: J q̇ with ‖q̇‖ = 1, at a planar arm.
 

@@ -17,6 +17,7 @@ from cspace.plot.raytrace import stage
 from cspace.plot.raytrace.scene import Group, draw_groups
 from cspace.plot.raytrace.solids import Body, Solid
 from cspace.plot.scenes import obstacle_groups, set_arm_stage
+from cspace.robot import Robot
 
 MOST_POSES: Final = 100
 """Poses of a sweep, which would hide each other long before."""
@@ -52,9 +53,9 @@ def plan(plan: Plan, *, poses: int = 7, ax: Any | None = None, title: str = "") 
     if not len(path):
         raise InputError(f"the plan has no path to draw: {plan.reason}")
     count = whole_number(poses, "poses", 2, MOST_POSES, "start and goal are two")
-    robot: Any = plan.space.robot
+    robot = plan.space.robot
     scene = plan.space.scene
-    if not hasattr(robot, "fk"):
+    if not isinstance(robot, Robot):
         raise InputTypeError("the plan was made for a RobotGeometry; plan with a Robot to draw it")
     arms = [place_arm(robot, q, scene) for q in equal_steps(path, count)]
     tip = robot.fk(equal_steps(path, PIECES))[:, :3, 3]

@@ -9,7 +9,8 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.joint_axes import place_axes
-from cspace.ik.wrapping import turning_joints
+from cspace.ik.wrapping import revolute_joints
+from cspace.kinematics import KinematicModel
 from cspace.tolerances import DRAWN_LENGTH, DRAWN_PLANE
 
 CENTER: Final = np.zeros(3)
@@ -58,13 +59,13 @@ class Skeleton:
         return float((TURNING if self.types[i] == "R" else SLIDING) * self.radii[i + 1])
 
 
-def make_skeleton(robot: Any, q: Array) -> Skeleton:
+def make_skeleton(robot: KinematicModel, q: Array) -> Skeleton:
     """The skeleton of a robot at the configuration `q` (dof,)."""
     chain = robot.chain
     types = str(chain.joint_types)
     at = place_axes(chain, q)
     before, axes, T_tip = at.points, at.axes, np.asarray(robot.fk(q))
-    after = before + np.where(turning_joints(types), 0.0, q)[:, None] * axes  # behind their own motion
+    after = before + np.where(revolute_joints(types), 0.0, q)[:, None] * axes  # behind their own motion
     T_base = np.asarray(robot.fk(q, robot.base))
     foot, up = T_base[:3, 3], T_base[:3, 2]
     length = size_of(chain.points, chain.T_zero, foot)

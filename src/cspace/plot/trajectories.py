@@ -38,7 +38,7 @@ PANEL_HEIGHT: Final = 2.0
 class FourierMotion:
     """An exciting trajectory with the names of its joints, as far as a picture asks for it."""
 
-    def __init__(self, series: ExcitingTrajectory, robot: Any) -> None:
+    def __init__(self, series: ExcitingTrajectory, robot: Robot | None) -> None:
         self.series = series
         self.dof, self.duration = len(series.offset), series.duration
         names = tuple(getattr(robot, "joint_names", ()))
@@ -100,7 +100,7 @@ def trajectory(
     return draw_motion(drawn, bounds, rates, axes, title)
 
 
-def read_frame_limits(robot: Any, torque: Any, speed: Any, turn_rate: Any) -> None:
+def read_frame_limits(robot: Robot | None, torque: Any, speed: Any, turn_rate: Any) -> None:
     """Raises InputTypeError for limits of a robot without one."""
     if robot is not None and not isinstance(robot, Robot):
         raise InputTypeError(f"robot is a {type(robot).__name__}, expected a cs.Robot")

@@ -13,7 +13,7 @@ class Bug1 {
     Bug1(Point goal, Hand hand) : goal_(goal), hand_(hand) {}
 
     template <ContactSensor Robot>
-    Trip run(Robot& robot) const {
+    WalkLog run(Robot& robot) const {
         Walker<Robot> walker(robot);
         double nearest = std::numeric_limits<double>::infinity();
         while (!walker.advance({robot.position(), goal_})) {
@@ -24,10 +24,10 @@ class Bug1 {
             const Nearest& leave = shut ? round.blocked : round.free;
             if (!(leave.squared_distance < nearest)) return walker.finish(Status::undetermined);
             nearest = leave.squared_distance;
-            const bool onwards = leave.along <= round.length() - leave.along;
-            walker.go_to(leave.touch, onwards ? hand_ : other(hand_));
+            const bool goes_on = leave.along <= round.length() - leave.along;
+            walker.go_to(leave.touch, goes_on ? hand_ : other(hand_));
             if (!shut) continue;
-            walker.trip.witness = robot.touch();
+            walker.log.witness = robot.touch();
             return walker.finish(Status::unreachable);
         }
         return walker.finish(Status::found);
@@ -39,7 +39,7 @@ class Bug1 {
 };
 
 template <ContactSensor Robot>
-Trip bug_1(Robot& robot, Point goal, Hand hand) {
+WalkLog bug_1(Robot& robot, Point goal, Hand hand) {
     return from_every_side(robot, [&](Robot& r) { return Bug1(goal, hand).run(r); });
 }
 

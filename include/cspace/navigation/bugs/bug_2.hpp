@@ -17,11 +17,11 @@ class Bug2 {
     Bug2(Point start, Point goal, Hand hand) : m_{start, goal}, hand_(hand) {}
 
     template <ContactSensor Robot>
-    Trip run(Robot& robot) const {
+    WalkLog run(Robot& robot) const {
         Walker<Robot> walker(robot);
         while (!walker.advance(m_)) {
             const Touch hit = robot.touch();
-            for (const Follow& earlier : walker.trip.follows)
+            for (const Follow& earlier : walker.log.follows)
                 if (hit.is_place_of(earlier.hit)) return walker.finish(Status::undetermined);
             const auto leaves_piece = [&](const Wall& piece, Point, Point) {
                 return is_free_at(piece, hit) ? std::optional(crossing_point(m_, piece)) : std::nullopt;
@@ -30,7 +30,7 @@ class Bug2 {
             // At the goal the next line has no length.
             if (walker.follow(hand_, m_.to, nullptr, leaves_piece, leaves_corner) != FollowEnd::whole)
                 continue;
-            walker.trip.witness = hit;
+            walker.log.witness = hit;
             return walker.finish(Status::unreachable);
         }
         return walker.finish(Status::found);
@@ -54,7 +54,7 @@ class Bug2 {
 };
 
 template <ContactSensor Robot>
-Trip bug_2(Robot& robot, Point goal, Hand hand) {
+WalkLog bug_2(Robot& robot, Point goal, Hand hand) {
     return from_every_side(robot, [&](Robot& r) { return Bug2(r.position(), goal, hand).run(r); });
 }
 

@@ -53,7 +53,7 @@ class ClearanceRobot : public RangeRobot {
             if (near.site == voronoi::none) return Halt::lost;
             if (near.distance > keeps_) return Halt::open;
             const Index wall = near.distance <= beside * s_.extent ? wall_behind() : voronoi::none;
-            up = wall == voronoi::none ? voronoi::retract(s_, from) : away_from(wall, from);
+            up = wall == voronoi::none ? voronoi::retract_point(s_, from) : away_from(wall, from);
         }
         const bool is_far = up.b == voronoi::none || up.radius >= keeps_ * (1 - tolerance::widening);
         if (is_far && !std::isfinite(keeps_)) return Halt::lost;

@@ -23,14 +23,14 @@ struct Place {
     friend auto operator<=>(const Place&, const Place&) = default;
 };
 
-class Flight {
+class RayCast {
   public:
     Place met;
     Point at;
 
     // behind: the piece of wall inside which the robot stands and that it leaves, or −1. The robot's position
     // is then a rounded one, and which walls lie ahead is decided by that wall.
-    Flight(const Walls& walls, const Line& line, Point position, int behind)
+    RayCast(const Walls& walls, const Line& line, Point position, int behind)
         : at(line.to),
           walls_(walls),
           line_(line),
@@ -122,7 +122,7 @@ class Flight {
 
 // A point on a wall as far as rounding lets it be: the corner next to it, or moved so that it does not lie
 // behind.
-inline Point settled(const Wall& wall, Point p) {
+inline Point settle_point(const Wall& wall, Point p) {
     if (orientation(wall.begin, wall.end, p) == 0) return p;
     if (is_next_to(p, wall.begin)) return wall.begin;
     if (is_next_to(p, wall.end)) return wall.end;
@@ -185,7 +185,7 @@ class ContactRobot {
     void stop(Hand hand, Point at) {
         const Wall piece = walls_->wall(hand == Hand::right ? place_.out : place_.in);
         place_ = {piece.name, piece.name};
-        at_ = settled(piece, at);
+        at_ = settle_point(piece, at);
     }
 
   protected:
@@ -264,10 +264,10 @@ class ContactRobot {
     }
 
     Position flown(const Line& line, Point at, const Place& place, std::vector<Point>& touched) const {
-        const Flight flight(*walls_, line, at, place.is_corner() ? -1 : place.in);
-        flight.write_grazed(touched);
-        const bool on_wall = !flight.met.is_open() && !flight.met.is_corner();
-        return {on_wall ? settled(flight.wall(), flight.at) : flight.at, flight.met};
+        const RayCast ray(*walls_, line, at, place.is_corner() ? -1 : place.in);
+        ray.write_grazed(touched);
+        const bool on_wall = !ray.met.is_open() && !ray.met.is_corner();
+        return {on_wall ? settle_point(ray.wall(), ray.at) : ray.at, ray.met};
     }
 };
 

@@ -31,7 +31,7 @@ class TangentBug {
           hand_(hand),
           slack_(rounding_of(std::max(std::abs(goal.x), std::abs(goal.y)))) {}
 
-    Trip run() {
+    WalkLog run() {
         double before = std::numeric_limits<double>::infinity();
         for (bool patient = false;;) {
             const Stage way = approach();
@@ -138,7 +138,7 @@ class TangentBug {
                 break;
         }
         if (round.shuts_off_goal()) {
-            walker_.trip.witness = round.blocked.touch;
+            walker_.log.witness = round.blocked.touch;
             return Stage::shut;
         }
         walker_.go_to(round.free.touch, 2 * round.free.along <= round.length() ? hand : other(hand));
@@ -197,7 +197,7 @@ class TangentBug {
 };
 
 template <RangeSensor Robot>
-Trip tangent_bug(Robot& robot, Point goal, std::optional<Hand> hand = {}) {
+WalkLog tangent_bug(Robot& robot, Point goal, std::optional<Hand> hand = {}) {
     return from_every_side(robot, [&](Robot& r) { return TangentBug<Robot>(r, goal, hand).run(); });
 }
 

@@ -292,22 +292,22 @@ Exploration voronoi_bug(Robot& robot, Point goal) {
 // tries.
 inline Exploration voronoi_bug(const Walls& walls, const voronoi::Sites& sites, Point start, Point goal,
                                double range) {
-    Exploration trip;
+    Exploration exploration;
     for (const voronoi::Grain& grain : voronoi::grains) {
         ClearanceRobot robot(walls, sites, start, range, grain);
-        trip = voronoi_bug(robot, goal);
-        if (trip.route.status != Status::undetermined) break;
+        exploration = voronoi_bug(robot, goal);
+        if (exploration.route.status != Status::undetermined) break;
     }
-    return trip;
+    return exploration;
 }
 
 // The same by a sensor with noise: its verdict is never that the goal is unreachable, since a gap may not
 // have been seen.
 inline Exploration voronoi_bug(const Walls& walls, Point start, Point goal, double range, Noise noise) {
     ScanRobot robot(walls, start, range, noise);
-    Exploration trip = voronoi_bug(robot, goal);
-    trip.scans = robot.scans();
-    return trip;
+    Exploration exploration = voronoi_bug(robot, goal);
+    exploration.scans = robot.scans();
+    return exploration;
 }
 
 }  // namespace cspace::navigation

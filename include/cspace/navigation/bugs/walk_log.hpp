@@ -25,7 +25,7 @@ enum class FollowEnd { goal, left, whole };
 
 // The path of the route is what the robot walked, whether or not it found the goal. Of its price, nodes are
 // the pieces of wall that it followed and edges the lines.
-struct Trip {
+struct WalkLog {
     Route route;
     std::vector<Follow> follows;
     Touch witness;  // unreachable: where the line to the goal enters a wall that shuts the goal off
@@ -36,19 +36,19 @@ template <ContactSensor Robot>
 class Walker {
   public:
     Robot& robot;
-    Trip trip;
+    WalkLog log;
 
-    explicit Walker(Robot& r) : robot(r) { trip.route.path.push_back(r.position()); }
+    explicit Walker(Robot& r) : robot(r) { log.route.path.push_back(r.position()); }
 
     bool advance(const Line& line) {
-        ++trip.route.stats.edges;
-        const bool arrived = robot.advance(line, trip.route.path);
+        ++log.route.stats.edges;
+        const bool arrived = robot.advance(line, log.route.path);
         note();
         return arrived;
     }
     bool approach(Point target) {
-        ++trip.route.stats.edges;
-        const bool arrived = robot.approach(target, trip.route.path);
+        ++log.route.stats.edges;
+        const bool arrived = robot.approach(target, log.route.path);
         note();
         return arrived;
     }
@@ -59,7 +59,7 @@ class Walker {
     FollowEnd follow(Hand hand, Point goal, Round* round, LeavesPiece leaves_piece,
                      LeavesCorner leaves_corner) {
         const Touch hit = robot.touch();
-        trip.follows.push_back({hit, 0, trip.route.path.size() - 1, 0});
+        log.follows.push_back({hit, 0, log.route.path.size() - 1, 0});
         for (bool first = true;; first = false) {
             const Wall piece = ahead(robot.touch(), hand);
             const Point from = robot.position();
@@ -87,10 +87,10 @@ class Walker {
             walk(hand);
         }
     }
-    Trip finish(Status status) {
-        trip.route.status = status;
-        trip.route.length = length_of(trip.route.path);
-        return std::move(trip);
+    WalkLog finish(Status status) {
+        log.route.status = status;
+        log.route.length = length_of(log.route.path);
+        return std::move(log);
     }
 
   private:
@@ -106,34 +106,34 @@ class Walker {
     void move(Move along_wall) {
         const Point before = robot.position();
         along_wall();
-        ++trip.route.stats.nodes;
+        ++log.route.stats.nodes;
         note();
-        trip.follows.back().walked += distance(before, robot.position());
-        trip.follows.back().last = trip.route.path.size() - 1;
+        log.follows.back().walked += distance(before, robot.position());
+        log.follows.back().last = log.route.path.size() - 1;
     }
     void note() {
         poll_.step();
-        if (trip.route.path.back() != robot.position()) trip.route.path.push_back(robot.position());
+        if (log.route.path.back() != robot.position()) log.route.path.push_back(robot.position());
     }
 };
 
 // Runs plan(robot) from each side of the walls on which the start lies, until one finds the goal.
 template <ContactSensor Robot, class Plan>
 auto from_every_side(Robot& robot, Plan plan) {
-    decltype(plan(robot)) trip;
+    decltype(plan(robot)) log;
     Stats stats;
     bool sure = true;
     for (std::size_t side = 0; side < robot.sides(); ++side) {
         robot.stand(side);
-        trip = plan(robot);
-        stats.nodes += trip.route.stats.nodes;
-        stats.edges += trip.route.stats.edges;
-        sure = sure && trip.route.status == Status::unreachable;
-        if (trip.route.status == Status::found) break;
+        log = plan(robot);
+        stats.nodes += log.route.stats.nodes;
+        stats.edges += log.route.stats.edges;
+        sure = sure && log.route.status == Status::unreachable;
+        if (log.route.status == Status::found) break;
     }
-    if (!sure && trip.route.status != Status::found) trip.route.status = Status::undetermined;
-    trip.route.stats = stats;
-    return trip;
+    if (!sure && log.route.status != Status::found) log.route.status = Status::undetermined;
+    log.route.stats = stats;
+    return log;
 }
 
 }  // namespace cspace::navigation

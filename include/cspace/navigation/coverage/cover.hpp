@@ -79,15 +79,15 @@ inline Decomposition decompose_frame(const SweepFrame& frame, const std::vector<
     for (int line = 0; line < frame.lines(); ++line) {
         poll.step();
         std::vector<FreeRun> runs = free_runs(frame, reach, line);
-        std::vector<int> onward(before.size()), back(runs.size()), behind(runs.size(), -1);
+        std::vector<int> ahead(before.size()), back(runs.size()), behind(runs.size(), -1);
         std::size_t from = 0;
         for (std::size_t k = 0; k < runs.size(); ++k) {
             while (from < before.size() && before[from].last < runs[k].first) ++from;
             for (std::size_t b = from; b < before.size() && before[b].first <= runs[k].last; ++b)
-                ++onward[b], ++back[k], behind[k] = int(b);
+                ++ahead[b], ++back[k], behind[k] = int(b);
         }
         for (std::size_t k = 0; k < runs.size(); ++k) {
-            const bool goes_on = back[k] == 1 && onward[std::size_t(behind[k])] == 1;
+            const bool goes_on = back[k] == 1 && ahead[std::size_t(behind[k])] == 1;
             runs[k].region = goes_on ? before[std::size_t(behind[k])].region : int(made.regions.size());
             if (!goes_on) made.regions.emplace_back();
             made.regions[std::size_t(runs[k].region)].push_back(runs[k]);

@@ -90,8 +90,8 @@ class Run {
 
 using Track = std::vector<Run>;
 
-inline Point place(const CarPose& pose) { return {pose.x, pose.y}; }
-inline Point heading(const CarPose& pose) { return {std::cos(pose.theta), std::sin(pose.theta)}; }
+inline Point place_of(const CarPose& pose) { return {pose.x, pose.y}; }
+inline Point heading_of(const CarPose& pose) { return {std::cos(pose.theta), std::sin(pose.theta)}; }
 
 // A fast speed from which a vehicle, after one more step at it, still stops within a distance.
 inline double speed_to_stop(double distance, double acceleration, double time) {
@@ -115,10 +115,10 @@ struct PurePursuit {
 
     // A vehicle that turns on the spot comes back to an end that it has missed.
     static bool leaves_path(const Vehicle& vehicle) { return !vehicle.steers(); }
-    Point guided(const Vehicle&, const Motion& now) const { return place(now.pose); }
+    Point guided(const Vehicle&, const Motion& now) const { return place_of(now.pose); }
     double far(const Motion& now) const { return std::max(lookahead, seconds * std::fabs(now.speed)); }
     Point target(const Motion& now, const Run& run, const Run::Place& at) const {
-        const Point here = place(now.pose);
+        const Point here = place_of(now.pose);
         const double far = this->far(now);
         const bool ends = at.s + far >= run.length() && distance(here, run.end()) <= far;
         return ends || at.s >= run.length() ? run.end() : run.ahead(here, at.s, far);
@@ -126,8 +126,8 @@ struct PurePursuit {
 
     Command operator()(const Vehicle& vehicle, const Motion& now, const Run& run, const Run::Place& at,
                        double speed, double time) const {
-        const Point way = target(now, run, at) - place(now.pose);
-        const Point along = heading(now.pose);
+        const Point way = target(now, run, at) - place_of(now.pose);
+        const Point along = heading_of(now.pose);
         const double x = run.direction() * dot(along, way), y = cross(along, way);
         const double d = squared_norm(way);
         const bool behind = x < 0;
@@ -139,7 +139,8 @@ struct PurePursuit {
             // Slow enough that the wheels have turned within a quarter of the way to the point.
             const double wait = std::fabs(steering - now.turn) / vehicle.turn_change;
             const double slow = wait > time ? 0.25 * std::sqrt(d) / wait : speed;
-            const double stops = speed_to_end(vehicle, place(now.pose), run, at, 2 * far(now), speed, time);
+            const double stops =
+                speed_to_end(vehicle, place_of(now.pose), run, at, 2 * far(now), speed, time);
             return {run.direction() * std::min(stops, slow), steering};
         }
         // Backwards the same turn rate points the other way.
@@ -159,14 +160,14 @@ struct Stanley {
     double softest;  // [m/s] added to the speed
 
     Point guided(const Vehicle& vehicle, const Motion& now) const {
-        return place(now.pose) + vehicle.wheelbase * heading(now.pose);
+        return place_of(now.pose) + vehicle.wheelbase * heading_of(now.pose);
     }
 
     Command operator()(const Vehicle& vehicle, const Motion& now, const Run& run, const Run::Place& at,
                        double speed, double time) const {
-        const Point along = heading(now.pose);
+        const Point along = heading_of(now.pose);
         const double far = 4 * vehicle.wheelbase;
-        speed = speed_to_end(vehicle, place(now.pose), run, at, far, speed, time);
+        speed = speed_to_end(vehicle, place_of(now.pose), run, at, far, speed, time);
         const double error = std::atan2(cross(along, at.heading), dot(along, at.heading));
         return {speed, error - std::atan2(gain * at.offset, softest + std::fabs(now.speed))};
     }

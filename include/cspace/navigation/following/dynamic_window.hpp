@@ -33,13 +33,13 @@ class DynamicWindow {
     DynamicWindow(const maps::BitGrid* grid, const maps::GridFrame& frame, const WindowSettings& settings)
         : grid_(grid), frame_(frame), set_(settings) {}
 
-    Point guided(const Vehicle&, const Motion& now) const { return place(now.pose); }
+    Point guided(const Vehicle&, const Motion& now) const { return place_of(now.pose); }
 
     Command operator()(const Vehicle& vehicle, const Motion& now, const Run& run, const Run::Place& at,
                        double speed, double time) {
         look_around(now.pose);
         const bool near = at.s + set_.lookahead >= run.length();
-        const Point target = near ? run.end() : run.ahead(place(now.pose), at.s, set_.lookahead);
+        const Point target = near ? run.end() : run.ahead(place_of(now.pose), at.s, set_.lookahead);
         const double slow = std::max(0.0, now.speed - vehicle.acceleration * time);
         const double most_speed = near ? std::min(speed, speed_towards(vehicle, now.pose, target)) : speed;
         const double fast = std::max(slow, std::min(most_speed, now.speed + vehicle.acceleration * time));
@@ -68,7 +68,7 @@ class DynamicWindow {
         for (int k = 0; k < set_.rays; ++k) {
             const double angle = pose.theta + 2 * std::numbers::pi * k / set_.rays;
             const Point direction{std::cos(angle), std::sin(angle)};
-            const double range = maps::cast_ray(*grid_, frame_, place(pose), direction, set_.range);
+            const double range = maps::cast_ray(*grid_, frame_, place_of(pose), direction, set_.range);
             if (range < set_.range)
                 seen_.push_back(range * Point{std::cos(angle - pose.theta), std::sin(angle - pose.theta)});
         }
@@ -76,7 +76,7 @@ class DynamicWindow {
 
     // The fastest at which an arc leads to a point: faster, the robot would circle around it.
     static double speed_towards(const Vehicle& vehicle, const CarPose& from, Point target) {
-        const Point way = target - place(from), along = heading(from);
+        const Point way = target - place_of(from), along = heading_of(from);
         const double beside = std::fabs(cross(along, way));
         if (dot(along, way) < 0) return 0;
         return beside > 0 ? vehicle.max_turn * squared_norm(way) / (2 * beside) : vehicle.max_speed;
@@ -101,10 +101,10 @@ class DynamicWindow {
         if (!safe && c.speed > standing && free < stop) return -std::numeric_limits<double>::infinity();
         const CarPose then =
             advance_pose(now.pose, c.speed, c.turn, std::min(horizon, free / std::max(c.speed, standing)));
-        const Point way = target - place(then), along = heading(then);
+        const Point way = target - place_of(then), along = heading_of(then);
         const double off = std::fabs(std::atan2(cross(along, way), dot(along, way))) / std::numbers::pi;
         const double far =
-            std::min(distance(place(now.pose), target), set_.range);  // what lies beyond is no use
+            std::min(distance(place_of(now.pose), target), set_.range);  // what lies beyond is no use
         const double clear = far > 0 ? std::min(free, far) / far : 1;
         return set_.heading * (1 - off) + set_.way * clear + set_.velocity * c.speed / vehicle.max_speed;
     }

@@ -41,7 +41,7 @@ struct Follower {
 
     template <class Controller>
     void look(const Vehicle& vehicle, const Controller& controller, double from, double to) {
-        own = track[run].nearest(place(now.pose), from, to);
+        own = track[run].nearest(place_of(now.pose), from, to);
         guided = track[run].nearest(controller.guided(vehicle, now), own.s, std::max(to, own.s));
     }
     bool on_last_run() const { return run + 1 == track.size(); }
@@ -50,7 +50,7 @@ struct Follower {
     double left(bool across) const {
         const double along = std::max(track[run].length() - own.s, 0.0);
         if (!across) return along;
-        const double straight = distance(place(now.pose), track[run].end());
+        const double straight = distance(place_of(now.pose), track[run].end());
         return along > 0 ? std::max(std::hypot(along, own.offset), straight) : straight;
     }
     double progress() const { return before + own.s; }
@@ -88,7 +88,7 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
         double left = at.left(across);
         if (left <= settings.tolerance && std::fabs(at.now.speed) <= rest) {
             if (at.on_last_run()) {
-                const double missing = distance(place(truth.pose), track[at.run].end());
+                const double missing = distance(place_of(truth.pose), track[at.run].end());
                 return finish(missing <= settings.tolerance ? Outcome::arrived : Outcome::missed);
             }
             at.before += track[at.run++].length();

@@ -31,7 +31,7 @@ class GridSearch {
           goal_(grid.number(order.goal)),
           offset_(grid.stride()),
           reopen_(reopen) {
-        if (Parents::is_length && order.is_exact() && !reopen) onward_ = onward_moves[std::size_t(corners)];
+        if (Parents::is_length && order.is_exact() && !reopen) pruning_ = pruned_moves[std::size_t(corners)];
         nodes_.begin(grid.numbers());
     }
     template <class Queue>
@@ -64,7 +64,8 @@ class GridSearch {
             count = improved<8>(number, g, from, allowed_[around], 0, better);
         } else {
             const int d = arrival(number - parent);
-            const unsigned open = onward_ ? (*onward_)[std::size_t(d)][around] : allowed_[around] & ahead(d);
+            const unsigned open =
+                pruning_ ? (*pruning_)[std::size_t(d)][around] : allowed_[around] & ahead(d);
             count = improved<5>(number, g, from, open, d + 6, better);
         }
         for (int k = 0; k < count; ++k) {
@@ -131,7 +132,7 @@ class GridSearch {
     }
     const maps::BitGrid& grid_;
     const std::array<std::uint8_t, 512>& allowed_;
-    const OnwardTable* onward_ = nullptr;  // where ways of equal length need not all be looked at
+    const PruningTable* pruning_ = nullptr;  // where ways of equal length need not all be looked at
     const Order& order_;
     Parents parents_;
     Nodes& nodes_;

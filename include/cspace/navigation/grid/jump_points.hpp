@@ -88,7 +88,7 @@ class JumpPoints {
             open = allowed_moves[std::size_t(rule)][around];
         } else {
             for (unsigned come = node.pending; come; come &= come - 1)
-                open |= onward_[std::size_t(std::countr_zero(come))][around];
+                open |= pruning_[std::size_t(std::countr_zero(come))][around];
         }
         open &= ~unsigned(node.done);
         node.done = std::uint8_t(node.done | open);
@@ -103,7 +103,7 @@ class JumpPoints {
     }
 
   private:
-    static constexpr const jump::OnwardTable& onward_ = jump::onward_of<rule>;
+    static constexpr const jump::PruningTable& pruning_ = jump::pruning_of<rule>;
 
     // How far a straight scan from a cell goes, 0 where it leads nowhere; the goal is a place to stop.
     int stop(maps::Cell from, int d) const {
@@ -143,7 +143,7 @@ class JumpPoints {
             if constexpr (!jump::turns_behind(rule)) {
                 const unsigned around = grid_.around(at.row, at.column);
                 const unsigned natural = bit_of(d) | bit_of(d + 1) | bit_of(d + 7);
-                if (onward_[std::size_t(d)][around] & ~natural) return reach(place, at, g, d, queue);
+                if (pruning_[std::size_t(d)][around] & ~natural) return reach(place, at, g, d, queue);
             }
             for (int aside : sides) scan(place, at, g, aside, queue);
         }
@@ -173,7 +173,7 @@ class JumpPoints {
                 return;
             }
             const unsigned around = grid_.around(to.row, to.column);
-            if (!(onward_[std::size_t(d)][around] & ~unsigned(node.done))) return;
+            if (!(pruning_[std::size_t(d)][around] & ~unsigned(node.done))) return;
             node.pending = std::uint8_t(bit_of(d));
         } else {
             return;

@@ -32,7 +32,7 @@ constexpr int side(Corners rule, int d, int which) {
 }
 
 // The directions in which a way goes on that has come in direction d, a bit each.
-constexpr unsigned onward(Corners rule, unsigned around, int d) {
+constexpr unsigned keep_moves(Corners rule, unsigned around, int d) {
     unsigned open = bit_of(d);
     if (is_leading(rule, d)) open |= bit_of(side(rule, d, 0)) | bit_of(side(rule, d, 1));
     for (int turn : {1, -1}) {
@@ -49,26 +49,26 @@ constexpr unsigned onward(Corners rule, unsigned around, int d) {
     return open & allowed_moves[std::size_t(rule)][around];
 }
 
-using OnwardTable = std::array<std::array<std::uint8_t, 512>, 8>;
-constexpr OnwardTable onward_table(Corners rule) {
-    OnwardTable table{};
+using PruningTable = std::array<std::array<std::uint8_t, 512>, 8>;
+constexpr PruningTable make_pruning_table(Corners rule) {
+    PruningTable table{};
     for (int d = 0; d < 8; ++d)
         for (unsigned around = 0; around < 512; ++around)
-            table[std::size_t(d)][around] = std::uint8_t(onward(rule, around, d));
+            table[std::size_t(d)][around] = std::uint8_t(keep_moves(rule, around, d));
     return table;
 }
 
 // A constant for each rule, because compilers bound the work that one constant may take.
 template <Corners rule>
-inline constexpr OnwardTable onward_of = onward_table(rule);
+inline constexpr PruningTable pruning_of = make_pruning_table(rule);
 
 }  // namespace jump
 
-using jump::OnwardTable;
+using jump::PruningTable;
 
 // By rule, direction of arrival and pattern of the cells around.
-inline constexpr std::array<const OnwardTable*, corner_rules> onward_moves = {
-    &jump::onward_of<Corners::never>, &jump::onward_of<Corners::one>, &jump::onward_of<Corners::always>,
-    &jump::onward_of<Corners::four>};
+inline constexpr std::array<const PruningTable*, corner_rules> pruned_moves = {
+    &jump::pruning_of<Corners::never>, &jump::pruning_of<Corners::one>, &jump::pruning_of<Corners::always>,
+    &jump::pruning_of<Corners::four>};
 
 }  // namespace cspace::navigation

@@ -83,7 +83,7 @@ bool is_open(const LineOf& line_of, Corners rule, int k, int at, int last, int e
 
 }  // namespace sight
 
-inline bool sees(const maps::BitGrid& grid, Corners rule, maps::Cell a, maps::Cell b) {
+inline bool can_see(const maps::BitGrid& grid, Corners rule, maps::Cell a, maps::Cell b) {
     if (std::abs(b.row - a.row) <= std::abs(b.column - a.column))
         return sight::is_open([&](int k) { return grid.row(k); }, rule, a.row, a.column, b.row, b.column);
     return sight::is_open([&](int k) { return grid.column(k); }, rule, a.column, a.row, b.column, b.row);
@@ -147,7 +147,7 @@ struct SightParents {
     Reach<G> way(Search& search, std::uint32_t number, double g, std::uint32_t parent, maps::Cell,
                  maps::Cell to, int direction) const {
         const maps::Cell before = search.cell(parent);
-        if (sees(search.grid(), corners, before, to))
+        if (can_see(search.grid(), corners, before, to))
             return {search.node(parent).g + straight_distance(to.row - before.row, to.column - before.column),
                     parent};
         return {g + (is_diagonal(direction) ? sqrt_two : 1.0), number};
@@ -174,7 +174,7 @@ struct LazySightParents {
     void settle(Search& search, std::uint32_t number) const {
         auto& node = search.node(number);
         const maps::Cell at = search.cell(number);
-        if (node.parent == number || sees(search.grid(), corners, search.cell(node.parent), at)) return;
+        if (node.parent == number || can_see(search.grid(), corners, search.cell(node.parent), at)) return;
         node.g = std::numeric_limits<double>::infinity();
         const auto& allowed = allowed_moves[std::size_t(corners)];
         for (unsigned open = allowed[search.grid().around(at.row, at.column)]; open; open &= open - 1) {

@@ -193,7 +193,7 @@ inline Retraction retract_along(const Sites& sites, Index site, Point foot, Poin
     return up;
 }
 
-inline Retraction retract(const Sites& sites, Point p) {
+inline Retraction retract_point(const Sites& sites, Point p) {
     const Nearest near = nearest_site(sites, p);
     if (near.site == none) return {};
     constexpr double finest = 1e-13;  // of the extent: the rounding of a single coordinate

@@ -121,13 +121,13 @@ class Roadmap {
         Landing landing;
         Point p = end.at - diagram_.sites.origin;
         landing.lead = {p};
-        Retraction up = retract(diagram_.sites, p);
+        Retraction up = retract_point(diagram_.sites, p);
         const double on_wall = tolerance::widening * diagram_.sites.extent;
         landing.clearance = up.clearance;
         for (const double share : {1.0 / 64, 1.0 / 4, 1.0}) {
             if (up.clearance > on_wall && up.b != none) break;
             p = landing.lead[0] + share * (middle_of(end, component) - landing.lead[0]);
-            up = retract(diagram_.sites, p);
+            up = retract_point(diagram_.sites, p);
         }
         if (p != landing.lead[0]) landing.lead.push_back(p), landing.clearance = 0;
         if (up.b == none) return landing;

@@ -27,7 +27,7 @@ class Tracer {
 
     // Adds the part of the component that a point lies in; false where it would have no end.
     bool trace(Point seed) {
-        const Retraction up = retract(s_, seed);
+        const Retraction up = retract_point(s_, seed);
         if (up.b == none) return true;
         component_ = s_.component[std::size_t(s_.edge_of(up.a))];
         const std::size_t arcs = d_.arcs.size();

@@ -93,6 +93,8 @@ inline double distance_to_corners(const Piece& piece, Point p) {
     }
     return is_inside ? 0 : std::sqrt(nearest);
 }
-inline bool contains(const Piece& piece, Point p) { return distance_to_corners(piece, p) <= piece.radius; }
+inline bool contains_point(const Piece& piece, Point p) {
+    return distance_to_corners(piece, p) <= piece.radius;
+}
 
 }  // namespace cspace::planning::two_joints

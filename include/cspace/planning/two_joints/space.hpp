@@ -52,7 +52,7 @@ class Space {
         for (const Piece& obstacle : obstacles) {
             const Piece piece = obstacle.moved(-1 * arm.base).grown(arm.radius);
             if (norm(piece.center) - piece.extent > piece.radius + reach) continue;
-            if (contains(piece, {})) buried_in_ = std::int32_t(pieces_.size());
+            if (contains_point(piece, {})) buried_in_ = std::int32_t(pieces_.size());
             pieces_.push_back(piece);
         }
         arm_.base = {};

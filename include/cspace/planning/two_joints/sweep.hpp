@@ -55,7 +55,7 @@ inline bool is_wide(const Gap& gap) { return gap.high - gap.low > narrowest_gap;
 // What a piece covers all the time while it moves by less than `off`; no corners where that may be nothing.
 // Where it has a radius, of that length or more, the radius shrinks; else the sides come nearer to the
 // middle.
-inline Piece shrunk(const Piece& piece, double off) {
+inline Piece shrink_piece(const Piece& piece, double off) {
     if (piece.radius >= off) return piece.grown(-off);
     Point middle;
     for (const Point corner : piece.corners) middle = middle + (1.0 / double(piece.size())) * corner;
@@ -278,14 +278,14 @@ class Sweep {
         const Piece& turned = space_.pieces()[std::size_t(number)];
         const auto add = [&](const Piece& piece, double slack, std::vector<BlockedInterval>& to) {
             if (piece.size() == 0 || arm.length_2 == 0) return;
-            if (contains(piece, elbow)) return to.push_back({0, turn, number});
+            if (contains_point(piece, elbow)) return to.push_back({0, turn, number});
             const BlockedArc arc = find_blocked_arc(piece, elbow, arm.length_2);
             if (arc.is_empty) return;
             const BlockedInterval found = space_.interval_of_link_2(arc, middle, number);
             to.push_back({found.low - slack, found.high + slack, number});
         };
         add(turned.grown(off), detail::arc_slack, outer_);
-        add(detail::shrunk(turned, off), -detail::arc_slack, inner_);
+        add(detail::shrink_piece(turned, off), -detail::arc_slack, inner_);
     }
     // Whether the ends of gaps in two rows are those of the same contacts, near each other.
     bool is_traced(const SweepRow& a, const SweepRow& b) const {

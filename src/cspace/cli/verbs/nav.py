@@ -81,8 +81,8 @@ def run(args: argparse.Namespace, out: Output) -> int:
         out.document({"schema": "cspace.nav/1", **asked, **results})
     else:
         print_answers(found, out, details=args.details)
-        for name, why in refused.items():
-            out.line(f"{name}: {why}")
+        for name, cause in refused.items():
+            out.line(f"{name}: {cause}")
         if args.animate:
             out.line(f"{args.animate}: the search of {routes[0].planner}")
         for path in written:

@@ -123,7 +123,7 @@ def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...
 
 
 def rotation_steps(
-    arm: Any,
+    arm: Screws,
     turns: tuple[int, int, int],
     ahead: Vector,
     behind: Vector,

@@ -98,7 +98,7 @@ class Loop:
             f"begins with {t[0]}.",
             (self.chain_equation(), self.split_equation(joints, backwards)),
         )
-        return [loop, *(self.two_sheets(t) if self.slides == 2 else self.elimination(t))]
+        return [loop, *(self.two_prismatic_steps(t) if self.slides == 2 else self.elimination(t))]
 
     def elimination(self, t: list[str]) -> list[Step]:
         """At most one prismatic joint: the elimination of Raghavan and Roth."""
@@ -128,7 +128,7 @@ class Loop:
             ),
         ]
 
-    def two_sheets(self, t: list[str]) -> list[Step]:
+    def two_prismatic_steps(self, t: list[str]) -> list[Step]:
         """Two prismatic joints: the orientation is made by four turns."""
         turns = [each for each in t[1:] if "t" in each]
         slides = [each for each in t if "q" in each]

@@ -34,7 +34,7 @@ def wrist_steps(form: Form, kind: int) -> list[Step]:
             define("w_z", symbol("d_3") + ca3 * symbol("d_4"), "m"),
         ),
     )
-    in_order_of_the_core = (last_parallel, first_meet, last_meet, first_parallel, any_three)
+    in_order_of_the_core = (last_parallel, first_meet, last_meet, first_parallel, pieper_quartic)
     return [where, *in_order_of_the_core[kind](form), *turn_steps(form, 3, "4")]
 
 
@@ -212,7 +212,7 @@ def first_parallel(form: Form) -> list[Step]:
     ]
 
 
-def any_three(form: Form) -> list[Step]:
+def pieper_quartic(form: Form) -> list[Step]:
     """Three axes in general position."""
     ca1, sa1 = form.twist(1)
     x2, y2 = turned_by_two(form)

@@ -9,7 +9,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats, leading_axes, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.solver import Solver
-from cspace.ik.wrapping import turning_joints
+from cspace.ik.wrapping import revolute_joints
 from cspace.spatial import as_pose, exp_so3
 from cspace.spatial.poses import assemble
 from cspace.tolerances import FARTHEST, LEVEL_SLIDE, UPRIGHT_TURN
@@ -75,7 +75,7 @@ def lift_points(solver: Solver, p: Array) -> Array:
     """Points (..., 2) of the plane z = constant in which an arm keeps its tip, as points (..., 3)."""
     chain = solver.chain
     along_z = np.abs(chain.axes[:, 2])
-    in_plane = np.where(turning_joints(chain.joint_types), along_z > 1 - UPRIGHT_TURN, along_z < LEVEL_SLIDE)
+    in_plane = np.where(revolute_joints(chain.joint_types), along_z > 1 - UPRIGHT_TURN, along_z < LEVEL_SLIDE)
     if not in_plane.all():
         raise InputError(
             f"position has shape {p.shape}, but {solver.name} is not a planar arm; give three coordinates"

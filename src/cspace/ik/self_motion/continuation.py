@@ -17,7 +17,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.solver import Solver
-from cspace.ik.wrapping import into_limits, nearest_winding, short_way, turning_joints
+from cspace.ik.wrapping import into_limits, nearest_winding, revolute_joints, short_way
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.model import Limits
 from cspace.tolerances import RESTING_JOINT
@@ -97,7 +97,7 @@ class Arc:
             low, high = np.where(drift < 0, -np.inf, low), np.where(drift > 0, np.inf, high)
         if self.is_loop:
             round_about = (shift != 0) | (high - low >= TURN)
-            round_about &= turning_joints(curve.solver.joint_types)
+            round_about &= revolute_joints(curve.solver.joint_types)
             low, high = np.where(round_about, -np.pi, low), np.where(round_about, np.pi, high)
         return np.stack([low, high], axis=1)
 
@@ -147,7 +147,7 @@ def nearest_member(
         low, high = s[max(k - 1, 0)], s[min(k + 1, parts - 1)]
     if limits is not None:
         return nearest_winding(points[k], seed, solver.joint_types, limits.lower, limits.upper)
-    return np.where(turning_joints(solver.joint_types), wrap_near(points[k], seed), points[k])
+    return np.where(revolute_joints(solver.joint_types), wrap_near(points[k], seed), points[k])
 
 
 def measure_distances(solver: Solver, points: Array, seed: Array, limits: Limits | None) -> Array:
@@ -168,7 +168,7 @@ def trace_curve(
     start, ends, shift = 0, (end, end), None
     if end == CLOSED:
         shift = np.where(
-            turning_joints(solver.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0
+            revolute_joints(solver.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0
         )
     else:
         behind, back, other = _core._ik_follow(solver, q, -np.ascontiguousarray(direction), whole_pose)

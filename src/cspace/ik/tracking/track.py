@@ -16,7 +16,7 @@ from cspace.ik.numeric.descend import ik_numeric
 from cspace.ik.numeric.problem import Question, middle_configuration, pose_problem
 from cspace.ik.solver import as_solver
 from cspace.ik.tracking.result import Branch, Track
-from cspace.ik.wrapping import turning_joints
+from cspace.ik.wrapping import revolute_joints
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_choice, limits_of
 from cspace.spatial import interpolate_decoupled, log_so3
@@ -73,10 +73,10 @@ def track(
     chosen = limits_of(robot.limits, limits, robot.name)
     bounds = np.stack([chosen.lower, chosen.upper, check_strides(robot, max_step)])
     starts, numbers, complete, note = starts_of(robot, question, T, start, limits)
-    whole_turns = start is None and not is_redundant(robot, question)
+    starts_wound = start is None and not is_redundant(robot, question)
     b, n = len(starts), len(robot.joint_names)
     q, last, info = np.empty((b, len(T), n)), np.empty((b, n)), np.empty((b, 5))
-    _core._ik_track(robot, question.frame, T, starts, bounds, whole_turns, q, last, info)
+    _core._ik_track(robot, question.frame, T, starts, bounds, starts_wound, q, last, info)
     branches = []
     for k, (reached, end, fate, joint, sigma) in enumerate(info.tolist()):
         rows, cause = q[k, : int(reached)], FATES[int(fate)]
@@ -109,7 +109,7 @@ def check_strides(robot: KinematicModel, max_step: Any) -> Array:
     steps = as_floats(max_step, "max_step", finite=False)
     n = len(robot.joint_names)
     if steps.ndim == 0:
-        steps = np.where(turning_joints(robot.joint_types), steps, np.inf)
+        steps = np.where(revolute_joints(robot.joint_types), steps, np.inf)
     if steps.shape != (n,) or not (steps > 0).all():
         raise InputError(
             f"max_step is {max_step!r}; expected one positive angle, or {n} steps, one per joint"
