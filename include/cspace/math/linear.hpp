@@ -94,7 +94,7 @@ CSPACE_INLINE void reflect(const Matrix& A, int m, int k, V factor, V* b) {
 // A x = b by elimination with partial pivoting in each lane (Golub & Van Loan 2013, section 3.4). A is used
 // up, b becomes x; `pivots` tell whether A is regular.
 template <int n, class V>
-CSPACE_INLINE void eliminate(V (&A)[n][n], V (&b)[n], V (&pivots)[n]) {
+CSPACE_INLINE void eliminate_lower(V (&A)[n][n], V (&b)[n], V (&pivots)[n]) {
     V inverse[n];
     for (int k = 0; k < n; ++k) {
         for (int i = k + 1; i < n; ++i) lift_pivot(A, b, k, i);
@@ -118,7 +118,7 @@ CSPACE_INLINE void eliminate(V (&A)[n][n], V (&b)[n], V (&pivots)[n]) {
 template <int n, class V>
 CSPACE_INLINE mask_of<V> solve_linear(V (&A)[n][n], V (&b)[n]) {
     V pivots[n];
-    linear::eliminate(A, b, pivots);
+    linear::eliminate_lower(A, b, pivots);
     return linear::full_rank(pivots);
 }
 
