@@ -191,6 +191,27 @@ inline void divide_domain(const CriticalValues& critical, Cells& cells) {
     for (int k = 0; k < n; ++k) cells.middle[k] = 0.5 * (boundary[k] + boundary[k + 1]);
 }
 
+// Whether short cells have the same feasible branches towards both of their ends as in the middle. Two limit
+// points next to a fold may have been taken for one.
+inline bool are_short_cells_uniform(const Redundant& arm, const Sweep& sweep, const Cells& cells) {
+    constexpr double longest = 1e-2;  // [rad, m]
+    double value[2 * Cells::room];
+    int cell[2 * Cells::room], count = 0;
+    for (int k = 0; k < cells.count; ++k) {
+        const double length = cells.boundary[k + 1] - cells.boundary[k];
+        for (const double part : {-0.4, 0.4}) {
+            if (length > longest) continue;
+            cell[count] = k;
+            value[count++] = cells.middle[k] + part * length;
+        }
+    }
+    bool same = true;
+    sweep_values(sweep, value, count, [&](int i, const SweptRows& rows) {
+        same = same && view_of(arm, rows, sweep.parameter).within == cells.within[cell[i]];
+    });
+    return same;
+}
+
 // For one locked joint at an end of the chain and a closed form with known folds. An interval is a run of
 // cells in which one branch is feasible.
 inline void walk_cells(const Redundant& arm, const Sweep& sweep, const CriticalValues& critical,
@@ -219,6 +240,7 @@ inline void walk_cells(const Redundant& arm, const Sweep& sweep, const CriticalV
             for (int i = 0; i < arm.chain.n; ++i) made.q[i] = view.q[b][i];
         }
     });
+    out.complete = out.complete && are_short_cells_uniform(arm, sweep, cells);
     for (int i = 0; i < out.count; ++i) {
         Interval made = out.interval[i];
         const auto holds = [&](int cell) { return cells.within[cell % n] >> made.branch & 1; };

@@ -83,7 +83,7 @@ double divide_square(const std::array<double, n * n>& M, const std::array<double
     constexpr double singular = 1e-12;
     double rows[n][n], y[n], pivots[n], sum = 0;
     for (std::size_t r = 0; r < n; ++r) std::copy_n(M.data() + r * n, n, rows[r]), y[r] = e[r];
-    linear::eliminate<int(n)>(rows, y, pivots);
+    linear::eliminate_lower<int(n)>(rows, y, pivots);
     for (std::size_t k = 0; k < n; ++k) {
         if (!(std::fabs(pivots[k]) > singular)) return 0;
         sum += e[k] * y[k];
