@@ -21,7 +21,7 @@ from cspace.model.values import (
     name_of,
     unit_axis,
 )
-from cspace.tables import align_cells, html_table, one_line, shown
+from cspace.tables import align_cells, html_table, one_line, show_fields, shown
 
 FREEDOMS: Final[dict[str, int]] = {
     "fixed": 0,
@@ -50,6 +50,7 @@ RESISTANCES: Final = ("damping", "friction", "armature")
 """What a joint itself opposes to motion."""
 
 
+@show_fields
 @dataclass(frozen=True)
 class Mimic:
     """A joint that follows another: its value is multiplier · q(joint) + offset.
@@ -67,6 +68,7 @@ class Mimic:
         object.__setattr__(self, "offset", finite_number(self.offset, "mimic offset"))
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Joint:
     """A joint of the tree: the child link moves against the parent link.
@@ -147,6 +149,7 @@ class Joint:
         return 0 if self.mimic is not None else FREEDOMS[self.type]
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Loop:
     """A joint that closes a loop: it connects two links that the tree already contains.
