@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -67,6 +67,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
     """
 
     description: Description
+    _knows_foreign_names: ClassVar = True
 
     def __init__(
         self,

@@ -180,6 +180,10 @@ DEGREE_LIMITS: Final = (25.0, 720.0)
 """Limits of revolute joints in URDF [rad], above the first and up to the second, that were probably meant in
 degrees: four turns are more than an arm's cables bear, and two turns of 360 degrees the most they do."""
 
+DEGREE_ANGLES: Final = (6.5, 720.0)
+"""Angles of a rotation [rad], above the first and up to the second, that were probably meant in degrees: an
+angle is typed within one turn, 6.283."""
+
 XACRO_SECONDS: Final = 60.0
 """Longest expansion of a xacro file [s]: the largest robots take two."""
 
