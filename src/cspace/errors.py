@@ -365,7 +365,8 @@ def keyword_error(text: str) -> TypeError:
     """The error for "f() got an unexpected keyword argument 'name'", with the new name of an old keyword."""
     name = text.rpartition(" keyword argument ")[2].partition("'")[2].partition("'")[0]
     function = text.partition("(")[0].rpartition(".")[2]
-    if remedy := FOREIGN_KEYWORDS.get("ik" if function == "solve" else function, {}).get(name):
+    words = FOREIGN_KEYWORDS.get("ik" if function == "solve" else function)
+    if words and (remedy := words.get(name)):
         return InputTypeError(f"unknown keyword {name!r}: {remedy}")
     if name not in RENAMED:
         return TypeError(text)
