@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import re
+from collections.abc import Mapping, ValuesView
+from dataclasses import fields, is_dataclass
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -11,7 +15,8 @@ import pytest
 
 import cspace as cs
 from cspace import navigation
-from cspace.tables import LONGEST_LINE, MOST_ROWS, html_table, markdown_table, one_line
+from cspace.search import Planner
+from cspace.tables import LONGEST_LINE, MOST_ROWS, html_table, list_fields, markdown_table, one_line
 
 ROOMS = ("ik", "kinematics", "navigation", "model", "export", "maps", "search", "robot")
 WORLD = cs.PolygonWorld([[(2, 2), (4, 2), (4, 4)]], (0, 0, 10, 10))
@@ -112,3 +117,83 @@ def test_a_long_line_ends_with_an_ellipsis():
     line = one_line("Kind", "word " * 50)
     assert len(line) <= LONGEST_LINE
     assert line.endswith("…>")
+
+
+# Classes that nobody gets as an answer: bases of others, and those that Markdown shows.
+BASES = {"HasSolver", "KinematicModel", "MotionNoise", "WheelBase"}
+UNEXAMINED = {"cartesian", "trajectory", "plot", "cli", "errors", "files", "tables"}
+
+
+def public_classes():
+    """Every class that a room offers, errors aside, with its room."""
+    for path in sorted((Path(cs.__file__).parent).iterdir()):
+        room = path.stem
+        if room in UNEXAMINED or room.startswith(("_", ".")) or not (path.is_dir() or path.suffix == ".py"):
+            continue
+        module = importlib.import_module(f"cspace.{room}")
+        for name in getattr(module, "__all__", ()):
+            thing = getattr(module, name)
+            if inspect.isclass(thing) and not issubclass(thing, BaseException) and name not in BASES:
+                yield room, thing
+
+
+def has_short_fields(kind):
+    """Whether the representation that dataclasses make cannot be long: numbers, choices and options alone."""
+    return all(re.fullmatch(r"(float|int|bool|str|None|[| ])+", str(f.type)) for f in fields(kind) if f.repr)
+
+
+@pytest.mark.parametrize(
+    ("room", "kind"), [pytest.param(*x, id=f"{x[0]}.{x[1].__name__}") for x in public_classes()]
+)
+def test_every_public_class_has_a_line_and_a_table(room, kind):
+    assert kind.__repr__ is not object.__repr__
+    assert hasattr(kind, "_repr_html_") or hasattr(kind, "_repr_markdown_")
+    if is_dataclass(kind) and hasattr(kind.__repr__, "__wrapped__"):
+        assert issubclass(kind, Planner) or has_short_fields(kind), "show_fields makes its line"
+
+
+def parts_of(answer, depth=3):
+    """What the fields of an answer contain, objects of this library alone."""
+    yield answer
+    names = [n for n in dir(type(answer)) if isinstance(inspect.getattr_static(type(answer), n), property)]
+    names = [*names, *list_fields(answer)] if depth else []
+    for name in names:
+        if name.startswith("_"):
+            continue
+        try:
+            value = getattr(answer, name)
+        except (cs.CspaceError, AttributeError):
+            continue
+        values = value.values() if isinstance(value, Mapping) else value
+        values = values if isinstance(values, (list, tuple, ValuesView)) else (value,)
+        for part in list(values)[:3]:
+            if type(part).__module__.startswith("cspace"):
+                yield from parts_of(part, depth - 1)
+
+
+def test_what_answers_are_made_of_has_lines_and_tables_too():
+    robot = cs.load_robot("ur5e")
+    panda = cs.load_robot("panda")
+    catalogue = cs.robots.rows()
+    wholes = [robot.description, robot.ik_plan(), panda.ik_plan(), robot.collision, robot.link_matrices()]
+    wholes += [catalogue[0], robot.ik_plan().tables, cs.LaserScanner(), cs.Scene([cs.Sphere(0.1)])]
+    wholes += [
+        robot.collision.shapes,
+        robot.collision.compiled,
+        cs.spatial.screw_of(robot.fk(np.full(6, 0.3))),
+    ]
+    wholes += [robot.clearance(np.full(6, 0.3)), robot.edge(np.zeros(6), np.full(6, 0.1))]
+    wholes += [robot.ik(robot.fk(np.full((2, 6), 0.3))), cs.plan(robot, np.zeros(6), np.full(6, 0.1))]
+    seen = 0
+    for whole in wholes:
+        for part in parts_of(whole):
+            line = repr(part)
+            if type(part).__name__ in ("CatalogueRows", "mappingproxy", "dict"):
+                continue
+            assert "\n" not in line, type(part)
+            assert len(line) <= LONGEST_LINE, (type(part), line)
+            assert " object at 0x" not in line, line
+            if hasattr(part, "_repr_html_"):
+                ElementTree.fromstring(f"<div>{part._repr_html_()}</div>")
+            seen += 1
+    assert seen > 100

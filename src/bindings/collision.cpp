@@ -3,6 +3,7 @@
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
 #include "bindings.hpp"
@@ -168,7 +169,12 @@ std::tuple<double, Doubles, bool, std::optional<NamedContact>> find_clearance(co
 void bind_collision(nb::module_& m) {
     nb::class_<RobotData>(m, "CollisionRobot", "A robot made of spheres and solids.")
         .def(nb::new_(&make_robot), "joints"_a, "bounds"_a, "link_bodies"_a, "spheres"_a, "sphere_links"_a,
-             "pairs"_a, "solids"_a, "sphere_solids"_a);
+             "pairs"_a, "solids"_a, "sphere_solids"_a)
+        .def("__repr__", [](const RobotData& robot) {
+            return "<CollisionRobot of " + std::to_string(robot.given_spheres().size()) + " spheres, " +
+                   std::to_string(robot.given_solids().size()) + " solids, " +
+                   std::to_string(robot.given_joints().size()) + " joints>";
+        });
     nb::class_<SceneData>(m, "CollisionScene", "Obstacles in the frame of a robot's base.")
         .def(nb::new_(&make_scene), "boxes"_a, "capsules"_a, "cylinders"_a, "half_spaces"_a, "triangles"_a,
              "mesh_sizes"_a, "is_solid"_a, "points"_a, "cloud_sizes"_a, "cloud_radii"_a, "owners"_a);
@@ -178,6 +184,11 @@ void bind_collision(nb::module_& m) {
                  return std::make_shared<Checker>(robot, scene, margin, read_pairs(allowed));
              }),
              "robot"_a, "scene"_a, "margin"_a, "allowed"_a)
+        .def("__repr__",
+             [](const Checker& checker) {
+                 return "<CollisionChecker of configurations with " + std::to_string(checker.dof()) +
+                        " joints>";
+             })
         .def("find_contact", &find_contact, "q"_a, "What touches at a configuration (dof,), None if nothing.")
         .def("check_rows", &check_rows, "q"_a, "threads"_a,
              "A byte per configuration (n, dof): 1 where something touches.")

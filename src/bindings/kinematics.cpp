@@ -79,8 +79,9 @@ T_world_base (..., 4, 4): where the base is, for a floating base or to place the
 T_world_frame. out (..., 4, 4): float64 array to write into. threads: 1 for one configuration, for a batch all
 processors (0 or None).
 
-Returns T (..., 4, 4), which maps coordinates in the frame to coordinates in the base.
-Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame.
+Returns T (..., 4, 4), which maps coordinates in the frame to coordinates in the base. In a batch, rows of NaN
+alone, such as robot.ik(Ts).q has behind the last solution of a goal, give poses of NaN.
+Raises InputError for a wrong shape or any other NaN, UnknownNameError for an unknown frame.
 
 Murray, Li and Sastry 1994, section 3.2.)doc";
 
@@ -98,8 +99,8 @@ result) or "tip" (the axes of the frame itself). T_world_base (..., 4, 4): where
 dof): float64 array to write into. threads: as in fk.
 
 Returns J (..., 6, dof), rows [v; ω]; the columns of a floating base, [v; ω] of the base at its origin in
-world axes, come first. Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame or
-axes.
+world axes, come first; rows of NaN as in fk. Raises InputError for a wrong shape or any other NaN,
+UnknownNameError for an unknown frame or axes.
 
 Whitney 1969; Siciliano et al. 2009, section 3.1.)doc";
 

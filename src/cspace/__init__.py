@@ -206,10 +206,12 @@ def __getattr__(name: str) -> Any:
     elif not name.startswith("_") and name in (spatial := import_room("cspace.spatial")).__all__:
         value = getattr(spatial, name)
     else:
+        from cspace.errors import FOREIGN_NAMES
+
         # With name and obj Python itself adds the nearest name to the message that a person sees.
-        raise AttributeError(
-            f"module 'cspace' has no attribute {name!r}", name=name, obj=sys.modules[__name__]
-        )
+        ours = FOREIGN_NAMES.get(name)
+        text = f"module 'cspace' has no attribute {name!r}" + (f": use {ours}" if ours else "")
+        raise AttributeError(text, name=name, obj=sys.modules[__name__])
     globals()[name] = value
     return value
 

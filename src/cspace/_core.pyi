@@ -55,8 +55,9 @@ class KinematicsBase:
         T_world_frame. out (..., 4, 4): float64 array to write into. threads: 1 for one configuration, for a batch all
         processors (0 or None).
 
-        Returns T (..., 4, 4), which maps coordinates in the frame to coordinates in the base.
-        Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame.
+        Returns T (..., 4, 4), which maps coordinates in the frame to coordinates in the base. In a batch, rows of NaN
+        alone, such as robot.ik(Ts).q has behind the last solution of a goal, give poses of NaN.
+        Raises InputError for a wrong shape or any other NaN, UnknownNameError for an unknown frame.
 
         Murray, Li and Sastry 1994, section 3.2.
         """
@@ -73,8 +74,8 @@ class KinematicsBase:
         dof): float64 array to write into. threads: as in fk.
 
         Returns J (..., 6, dof), rows [v; ω]; the columns of a floating base, [v; ω] of the base at its origin in
-        world axes, come first. Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame or
-        axes.
+        world axes, come first; rows of NaN as in fk. Raises InputError for a wrong shape or any other NaN,
+        UnknownNameError for an unknown frame or axes.
 
         Whitney 1969; Siciliano et al. 2009, section 3.1.
         """
@@ -517,6 +518,8 @@ class CollisionRobot:
 
     def __init__(self, joints: numpy.typing.NDArray[numpy.float64], bounds: numpy.typing.NDArray[numpy.float64], link_bodies: numpy.typing.NDArray[numpy.int64], spheres: numpy.typing.NDArray[numpy.float64], sphere_links: numpy.typing.NDArray[numpy.int64], pairs: numpy.typing.NDArray[numpy.int64], solids: numpy.typing.NDArray[numpy.float64], sphere_solids: numpy.typing.NDArray[numpy.int64]) -> None: ...
 
+    def __repr__(self) -> str: ...
+
 class CollisionScene:
     """Obstacles in the frame of a robot's base."""
 
@@ -526,6 +529,8 @@ class CollisionChecker:
     """A robot among obstacles."""
 
     def __init__(self, robot: CollisionRobot, scene: CollisionScene, margin: float, allowed: numpy.typing.NDArray[numpy.int64]) -> None: ...
+
+    def __repr__(self) -> str: ...
 
     def find_contact(self, q: numpy.typing.NDArray[numpy.float64]) -> tuple[bool, int, int] | None:
         """What touches at a configuration (dof,), None if nothing."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import sys
+import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Final
@@ -17,7 +18,7 @@ from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
 __all__ += ["any_array", "bounded_number", "guard_memory", "one_array", "shape_of", "truth_value"]
-__all__ += ["whole_number"]
+__all__ += ["outside_level", "warn_of_degrees", "whole_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -271,3 +272,21 @@ def as_generator(rng: int | np.random.Generator | None) -> np.random.Generator:
     if rng is not None and rng < 0:
         raise InputError(f"rng is {rng}; a seed must be 0 or more")
     return np.random.default_rng(rng)
+
+
+def warn_of_degrees(subject: str, values: Array, doubted: tuple[float, float], remedy: str) -> None:
+    """Warn the caller of the library of values (...) [rad] in the doubted range, which look like degrees."""
+    sizes = np.abs(values)
+    if not ((sizes > doubted[0]) & (sizes <= doubted[1])).any():
+        return
+    largest = float(sizes[sizes <= doubted[1]].max())
+    text = f"{subject} holds {largest:g}: angles are in radians, are these degrees? {remedy}"
+    warnings.warn(text, stacklevel=outside_level(sys._getframe(1)))
+
+
+def outside_level(frame: Any) -> int:
+    """The stacklevel of a warning that names the first line outside the library, seen from a frame in it."""
+    level = 2
+    while frame is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] == "cspace":
+        frame, level = frame.f_back, level + 1
+    return level

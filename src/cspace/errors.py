@@ -27,6 +27,7 @@ __all__ = [
     "keyword_error",
     "module_error",
     "name_new_keywords",
+    "plain_letters",
     "shorten",
     "shown",
     "suggest",
@@ -100,14 +101,147 @@ RENAMED: Final = MappingProxyType(
     }
 )
 """Attributes and keywords of earlier versions and of other libraries, and ours."""
+FOREIGN_NAMES: Final = MappingProxyType(
+    {
+        "CIRC": "robot.move_arc",
+        "DHRobot": 'cs.Robot.from_dh(table, convention="standard")',
+        "DhRobot": 'cs.Robot.from_dh(table, convention="standard")',
+        "DurationDiscretization": "cycle= of cs.trajectory.state_to_state",
+        "ERobot": "cs.load_robot(path)",
+        "GaussNewtonOptimizer": "cs.PoseGraph.read(path).optimize()",
+        "HPRobot": "cs.Robot.from_screws(axes, points, T_zero)",
+        "ISAM2": "cs.IncrementalGraph().add(i, j, z, information)",
+        "InputParameter": "cs.trajectory.state_to_state(start, goal, velocity=, acceleration=, jerk=)",
+        "JointAccelerationConstraint": "acceleration= of cs.time_parametrize",
+        "JointTorqueConstraint": "torque=True of cs.time_parametrize",
+        "JointVelocityConstraint": "velocity= of cs.time_parametrize",
+        "LIN": "robot.move_linear",
+        "Link": "cs.model.Link",
+        "Marginals": "answer.covariance(i) of a pose graph",
+        "PTP": "robot.move_to",
+        "RevoluteDH": 'cs.Robot.from_dh(table, convention="standard")',
+        "RobotModel": "cs.load_robot(path)",
+        "RobotTrajectory": "cs.time_parametrize(path, robot)",
+        "Ruckig": "cs.trajectory.state_to_state(start, goal, velocity=, acceleration=, jerk=)",
+        "SE2": "cs.pose_2d",
+        "SE3": "cs.pose([x, y, z], rpy=[…])",
+        "SO3": "cs.rotation(rpy=[…])",
+        "SplineInterpolator": "cs.spline(waypoints)",
+        "Synchronization": 'synchronize="time", "phase" or "none"',
+        "TOPPRA": "cs.time_parametrize(path, robot, start_speed=v0, end_speed=v1)",
+        "URDF": "cs.load_robot(path)",
+        "UrdfRobot": "cs.load_robot(path)",
+        "aba": "robot.forward_dynamics(q, qd, tau, friction=False)",
+        "addCollisionObject": "scene.add(shape)",
+        "amcl": 'cs.localize(log, grid, filter="mcl")',
+        "astar": 'cs.navigate(world, start, goal, planner="a_star")',
+        "a_star": 'cs.navigate(world, start, goal, planner="a_star")',
+        "attachObject": "scene.attach(name, frame, T_frame_object, touch=[…])",
+        "buildModelFromMJCF": "cs.load_robot(path)",
+        "buildModelFromUrdf": "cs.load_robot(path)",
+        "buildReducedModel": 'cs.load_robot(path, locked={"joint": value})',
+        "ccrba": "robot.centroidal_momentum_matrix(q)",
+        "centerOfMass": "robot.center_of_mass(q)",
+        "computeABADerivatives": "robot.forward_dynamics_derivatives(q, qd, tau)",
+        "computeCartesianPath": "robot.move_linear(T, start=q)",
+        "computeCoriolisMatrix": "robot.coriolis_matrix(q, qd)",
+        "computeFrameJacobian": "robot.jacobian(q, frame)",
+        "computeGeneralizedGravity": "robot.gravity_torques(q)",
+        "computeJointJacobian": "robot.jacobian(q, frame)",
+        "computeJointTorqueRegressor": "robot.regressor(q, qd, qdd)",
+        "computeRNEADerivatives": "robot.inverse_dynamics_derivatives(q, qd, qdd)",
+        "compute_trajectory": "cs.time_parametrize(path, robot, start_speed=v0, end_speed=v1)",
+        "createData": "the robot itself; there is no data beside it",
+        "crba": "robot.mass_matrix(q)",
+        "ctraj": "robot.move_linear(T, start=q)",
+        "dijkstra": 'cs.navigate(world, start, goal, planner="dijkstra")',
+        "ekf_slam": "cs.localization.run_ekf_slam(log)",
+        "evo_ape": "cs.ate(b, a)",
+        "evo_rpe": "cs.rpe(b, a, delta=1)",
+        "exp6": "cs.exp_se3(v)",
+        "fast_slam2": "cs.localization.run_fast_slam(log)",
+        "fk": "robot.fk(q) of robot = cs.load_robot(name)",
+        "forwardKinematics": "robot.fk_all(q)",
+        "forward_kinematics": "robot.fk(q)",
+        "framesForwardKinematics": "robot.fk(q, frame)",
+        "getKinematicFamily": "robot.ik_plan()",
+        "global_localization": "start=None of cs.localize",
+        "gmapping": "cs.slam(log)",
+        "gridpoints": "grid= of cs.time_parametrize",
+        "gridpt_max_err_threshold": "tolerance= of cs.time_parametrize",
+        "initialpose": "start=(x, y, θ) of cs.localize",
+        "intermediate_positions": "cs.time_parametrize(cs.spline(waypoints), jerk=…)",
+        "inverse_kinematics": "robot.ik(T)",
+        "isPathValid": "robot.edge(q_a, q_b, scene)",
+        "isStateColliding": "robot.collides(q, scene)",
+        "jtraj": 'robot.move_to(q1, start=q0, profile="quintic", duration=…)',
+        "laser_max_beams": "cs.LaserScanner(beams=)",
+        "log6": "cs.log_se3(T)",
+        "map_saver": "cs.maps.EvidenceGrid.save_ros(path)",
+        "map_server": "cs.maps.EvidenceGrid.from_ros(path)",
+        "marginalCovariance": "answer.covariance(i) of a pose graph",
+        "max_particles": "most= of cs.ParticleFilter",
+        "minimum_duration": "duration= of cs.trajectory.state_to_state",
+        "min_acceleration": "lowest_acceleration= of cs.trajectory.state_to_state",
+        "min_particles": "n= of cs.ParticleFilter",
+        "min_velocity": "lowest_velocity= of cs.trajectory.state_to_state",
+        "models": "cs.load_robot(name); cs.robots.names() lists the robots",
+        "mstraj": "cs.time_parametrize(cs.blend(via, deviation), robot)",
+        "mtraj": 'robot.move_to(q1, start=q0, profile="trapezoidal")',
+        "nv": "robot.dof",
+        "plot": "cs.plot.robot(robot, q)",
+        "q0": 'a configuration of yours, or robot.named_poses["home"]',
+        "randomConfiguration": "robot.random_configuration(rng=7)",
+        "readG2o": "cs.PoseGraph.read(path)",
+        "rnea": "robot.inverse_dynamics(q, qd, qdd, friction=False)",
+        "rrt": 'cs.navigate(world, start, goal, planner="rrt"), for arms cs.plan(…, planner="rrt")',
+        "setFromIK": "robot.ik(T, near=q)",
+        "set_joint_value_target": "cs.plan(robot, start, q, scene)",
+        "set_pose_target": "cs.plan(robot, start, T, scene)",
+        "slam_toolbox": "cs.slam(log)",
+        "current_velocity": "start_velocity= of cs.trajectory.state_to_state",
+        "target_acceleration": "goal_acceleration= of cs.trajectory.state_to_state",
+        "teach": "cs.plot.robot(robot, q)",
+        "trapezoidal": 'robot.move_to(q1, start=q0, profile="trapezoidal")',
+    }
+)
+"""Functions and classes of other libraries, and what to write here."""
+FOREIGN_KEYWORDS: Final = MappingProxyType(
+    {
+        "ik": MappingProxyType(
+            dict.fromkeys(
+                ("rpy", "wxyz", "xyzw", "quaternion", "quat", "euler", "xyz"),
+                "use cs.pose(xyz, rpy=…) as the goal, or position= and rotation= for its parts",
+            )
+            | dict.fromkeys(("orientation", "R"), "use rotation= for the orientation alone, (3, 3)")
+            | dict.fromkeys(
+                ("T", "target", "pose", "target_pose", "matrix"), "use the pose (4, 4) first: robot.ik(T)"
+            )
+            | dict.fromkeys(("q_init", "initial", "guess", "q_start", "init", "initial_guess"), "use near=")
+            | {"mask": "use position=, rotation= or direction= for the parts of the pose that matter"}
+            | dict.fromkeys(
+                ("tol", "tolerance", "eps", "max_iterations", "ilimit"),
+                "use no tolerance: solutions are exact up to rounding; robot.ik_numeric has one",
+            )
+            | dict.fromkeys(("timeout", "time_limit"), "use no time limit: a list takes microseconds")
+            | dict.fromkeys(
+                ("frame", "link", "end", "ee", "tip", "end_effector"),
+                "use cs.load_robot(name, tip=…), whose tip is the frame that reaches the goal",
+            )
+        )
+    }
+)
+"""Keywords of functions of other libraries, by our function, and what to write here."""
 FOREIGN_WORDS: Final = MappingProxyType(
     {
         "a*": "a_star",
         "amcl": "mcl",
         "astar": "a_star",
+        "bfs": "wavefront",
         "d*": "d_star_lite",
         "fast_slam": "fastslam",
         "gmapping": "graph",
+        "jps": "jump_point_search",
         "kalman": "ekf",
         "local": "tip",
         "particle": "mcl",
@@ -116,6 +250,7 @@ FOREIGN_WORDS: Final = MappingProxyType(
         "pf": "mcl",
         "slam_toolbox": "graph",
         "theta*": "theta_star",
+        "ucs": "dijkstra",
         "world": "base",
     }
 )
@@ -195,8 +330,10 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     import difflib  # costs a millisecond, which `import cspace` does not pay
 
     names, asked = sorted(known), shorten(str(name), SHORT)
-    near = [repr(n) for n in difflib.get_close_matches(asked, names, n=3, cutoff=0.5)]
-    if (ours := FOREIGN_WORDS.get(asked.lower())) in names:
+    found = (difflib.get_close_matches(word, names, n=3, cutoff=0.5) for word in (asked, asked.lower()))
+    near = [repr(n) for n in next(filter(None, found), ())]
+    spelt = {plain_letters(n): n for n in names}
+    if (ours := FOREIGN_WORDS.get(asked.lower(), spelt.get(plain_letters(asked)))) in names:
         near = [repr(ours)]
     said = repr(asked) if isinstance(name, SHOWN) else f"of type {type(name).__name__}"
     text = f"no {subject} {said}" + (f" in {owner}" if owner else "")
@@ -211,6 +348,11 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     else:
         text += f"; {len(names)} {_plural(subject)} are known"
     return UnknownNameError(text)
+
+
+def plain_letters(name: str) -> str:
+    """A name without capitals and separators, its stars in words: RRT* and rrt_star are rrtstar."""
+    return re.sub(r"[\W_]", "", name.lower().replace("*", "star"))
 
 
 def check_known(subject: str, name: object, known: Iterable[str]) -> None:
@@ -228,6 +370,10 @@ def check_kind(subject: str, value: object, kind: type | tuple[type, ...], remed
 def keyword_error(text: str) -> TypeError:
     """The error for "f() got an unexpected keyword argument 'name'", with the new name of an old keyword."""
     name = text.rpartition(" keyword argument ")[2].partition("'")[2].partition("'")[0]
+    function = text.partition("(")[0].rpartition(".")[2]
+    words = FOREIGN_KEYWORDS.get("ik" if function == "solve" else function)
+    if words and (remedy := words.get(name)):
+        return InputTypeError(f"unknown keyword {name!r}: {remedy}")
     if name not in RENAMED:
         return TypeError(text)
     return InputTypeError(f"unknown keyword {name!r}: use {RENAMED[name]}=")
@@ -251,7 +397,8 @@ def name_new_keywords(function: Callable[Given, Answer]) -> Callable[Given, Answ
 def attribute_error(owner: object, name: str) -> AttributeError:
     """The error for an unknown attribute, with the new name of an old attribute.
 
-    The `_elsewhere` of the class names attributes of other classes, with what to do instead.
+    The `_elsewhere` of the class names attributes of other classes, with what to do instead; one with
+    `_knows_foreign_names` answers to the functions of other libraries.
     """
     text = f"{type(owner).__name__!r} object has no attribute {name!r}"
     own = owner.__dict__ if type(owner).__dictoffset__ else ()
@@ -260,6 +407,8 @@ def attribute_error(owner: object, name: str) -> AttributeError:
         text += f": use {ours}"
     elif hint := getattr(type(owner), "_elsewhere", {}).get(name):
         text += f"; {hint}"
+    elif getattr(type(owner), "_knows_foreign_names", False) and (call := FOREIGN_NAMES.get(name)):
+        text += f": use {call}"
     return AttributeError(text, name=name, obj=owner)
 
 

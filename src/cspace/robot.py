@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,7 @@ from cspace.kinematics import KinematicModel
 from cspace.late_imports import import_room, postpone_interrupts
 from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
+from cspace.tables import html_table, shown
 
 if TYPE_CHECKING:
     from cspace import cartesian, dynamics, ik, trajectory
@@ -66,6 +67,7 @@ class Robot(Renamed, RobotBase, KinematicModel):
     """
 
     description: Description
+    _knows_foreign_names: ClassVar = True
 
     def __init__(
         self,
@@ -409,3 +411,11 @@ class Robot(Renamed, RobotBase, KinematicModel):
         freedom = f"{self.joint_types}, {self.dof} dof" + (" with a floating base" if self.floating else "")
         mounted = ", mounted in the world" if self._T_world_base is not None else ""
         return f"<Robot {self.name}: {freedom}, {ends}{mounted}>"
+
+    def _repr_html_(self) -> str:
+        columns = self.limits.lower, self.limits.upper, self.limits.velocity
+        rows = [
+            (name, kind, *map(shown, numbers))
+            for name, kind, *numbers in zip(self.joint_names, self.joint_types, *columns, strict=True)
+        ]
+        return html_table(repr(self)[1:-1], ("joint", "type", "lower", "upper", "velocity"), rows)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -14,16 +14,25 @@ __all__ = [
     "count_things",
     "html_table",
     "join_words",
+    "list_fields",
     "markdown_table",
     "one_line",
     "show_fields",
     "shown",
+    "shown_field",
+    "tabulate",
 ]
 
 Record = TypeVar("Record")
 
 LONGEST_LINE = 120
 """Characters of a line that represents an object."""
+
+LONGEST_CELL = 80
+"""Characters of a field in a line or in a table."""
+
+SHORT_ARRAY = 8
+"""Numbers of an array that are shown one by one."""
 
 MOST_ROWS = 60
 """Rows of a table that a notebook shows; of longer ones it shows the first, and how many follow."""
@@ -50,17 +59,63 @@ def one_line(kind: str, text: str) -> str:
     return line if len(line) <= LONGEST_LINE else line[: LONGEST_LINE - 2].rstrip() + "…>"
 
 
+def shown_field(value: Any) -> str:
+    """The value of a field in a few words: numbers and short arrays themselves, of the rest what it is."""
+    if isinstance(value, np.ndarray):
+        if value.size > SHORT_ARRAY or value.ndim > 1 or value.dtype.kind not in "biuf":
+            return f"{value.shape} array"
+        return ", ".join(map(shown, value.ravel()))
+    if isinstance(value, (bool, np.bool_)) or value is None:
+        return str(value)
+    if isinstance(value, (float, np.floating)):
+        return shown(float(value))
+    if isinstance(value, str):
+        return value
+    if isinstance(value, (Mapping, Sequence)) and not hasattr(value, "_fields"):
+        words = value if all(isinstance(item, (str, int, float)) for item in value) else ()
+        listed = ", ".join(map(str, words)) if not isinstance(value, Mapping) else ""
+        return listed if 0 < len(listed) <= LONGEST_CELL else f"{len(value)} entries"
+    line = " ".join(repr(value).split())
+    return line if len(line) <= LONGEST_CELL else line[: LONGEST_CELL - 1] + "…"
+
+
+def list_fields(answer: Any) -> tuple[str, ...]:
+    """The names of the public fields of a dataclass or a named tuple."""
+    names: Any = getattr(answer, "_fields", None) or getattr(answer, "__dataclass_fields__", ())
+    return tuple(name for name in names if not name.startswith("_"))
+
+
+def tabulate(*names: str) -> Callable[[type[Record]], type[Record]]:
+    """A decorator of a class: notebooks show its objects as a table of these attributes, or of its fields."""
+
+    def add_table(record: type[Record]) -> type[Record]:
+        def table(answer: Any) -> str:
+            rows = [(name, shown_field(getattr(answer, name))) for name in names or list_fields(answer)]
+            return html_table(" ".join(repr(answer).strip("<>").split()), ("field", "value"), rows)
+
+        record._repr_html_ = table  # type: ignore[attr-defined]
+        return record
+
+    return add_table
+
+
 def show_fields(record: type[Record]) -> type[Record]:
-    """The class, its objects shown as one line: their fields, with shapes in place of arrays."""
+    """The class, its objects shown as one line: their fields, with shapes in place of arrays. Notebooks show
+    them as a table.
+    """
+
+    def show(value: Any) -> str:
+        if isinstance(value, np.ndarray):
+            return str(value.shape)
+        line = repr(value)
+        return line if len(line) <= LONGEST_CELL else shown_field(value)
 
     def line(answer: Any) -> str:
-        names = getattr(answer, "_fields", None) or answer.__dataclass_fields__
-        values = ((name, getattr(answer, name)) for name in names if not name.startswith("_"))
-        texts = (f"{k} {v.shape}" if isinstance(v, np.ndarray) else f"{k} {v!r}" for k, v in values)
+        texts = (f"{name} {show(getattr(answer, name))}" for name in list_fields(answer))
         return one_line(type(answer).__name__, ", ".join(texts))
 
     record.__repr__ = line  # type: ignore[method-assign]
-    return record
+    return tabulate()(record)
 
 
 def align_cells(rows: Sequence[Sequence[str]]) -> str:

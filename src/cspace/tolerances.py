@@ -180,11 +180,18 @@ DEGREE_LIMITS: Final = (25.0, 720.0)
 """Limits of revolute joints in URDF [rad], above the first and up to the second, that were probably meant in
 degrees: four turns are more than an arm's cables bear, and two turns of 360 degrees the most they do."""
 
+DEGREE_ANGLES: Final = (6.5, 720.0)
+"""Angles of a rotation [rad], above the first and up to the second, that were probably meant in degrees: an
+angle is typed within one turn, 6.283."""
+
 XACRO_SECONDS: Final = 60.0
 """Longest expansion of a xacro file [s]: the largest robots take two."""
 
-XACRO_ELEMENTS: Final = 200_000
+XACRO_ELEMENTS: Final = 50_000
 """Most steps and elements of the expansion of a xacro file: the largest robots take ten thousand."""
+
+XACRO_COPIES: Final = 1_000_000
+"""Most elements that the macros and blocks of a xacro file copy, all together: each step copies some tens."""
 
 XACRO_BITS: Final = 4096
 """Most bits of a whole number in an expression of xacro: no double has more than 1024 before the point."""

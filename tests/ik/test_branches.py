@@ -179,3 +179,16 @@ def test_branches_of_an_arm_in_general_position_are_numbered_as_all_branches_wit
     labels = robot.ik(robot.fk(np.linspace(0.4, 0.9, 6))).branch
     assert labels
     assert all(label.startswith("branch ") for label in labels), labels
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda", "jaco2", "planar_3r"])
+def test_a_batch_has_the_branches_and_poses_of_its_goals(name):
+    robot = load_robot(name)
+    T = robot.fk(robot.random_configuration(4, rng=7))
+    T = np.concatenate([T, T[:2] + 9.0 * np.eye(4, k=3)]).reshape(2, 3, 4, 4)
+    batch = robot.ik(T)
+    assert batch.branch.shape == batch.q.shape[:-1]
+    for index in np.ndindex(2, 3):
+        assert tuple(batch.branch[index][: batch.count[index]]) == batch[index].branch
+        assert (batch.branch[index][batch.count[index] :] == "").all()
+    assert np.array_equal(np.isnan(robot.fk(batch.q)[..., 0, 0]), np.isnan(batch.q[..., 0]))

@@ -82,7 +82,9 @@ BAD_CALLS = [
     (lambda r: r.fk(np.zeros(6, complex)), InputTypeError, "q must be numbers"),
     (lambda r: r.fk(np.array([0, 0, np.nan, 0, 0, 0])), InputError, r"q holds nan at index \(2,\)"),
     (lambda r: r.jacobian(np.array([0, 0, 0, 0, -np.inf, 0])), InputError, r"q holds -inf at index \(4,\)"),
-    (lambda r: r.fk_jacobian(np.full((2, 6), np.nan)), InputError, r"q holds nan at index \(0, 0\)"),
+    (lambda r: r.fk_jacobian(np.full(6, np.nan)), InputError, r"q holds nan at index \(0,\)"),
+    (lambda r: r.fk_jacobian([[0, np.nan, 0, 0, 0, 0]] * 2), InputError, r"q holds nan at index \(0, 1\)"),
+    (lambda r: r.singular_values(np.full((2, 6), np.nan)), InputError, r"q holds nan at index \(0, 0\)"),
     (lambda r: r.fk_all(np.full((9, 6), np.inf)), InputError, r"q holds inf at index \(0, 0\)"),
     (lambda r: r.center_of_mass(np.full(6, np.inf)), InputError, "q holds inf"),
     (
@@ -249,3 +251,23 @@ def test_what_describes_a_model_is_not_replaced(name, kind):
     with pytest.raises(AttributeError, match=f"{name} of .* cannot be set; build another one"):
         setattr(model, name, before)
     assert getattr(model, name) is before
+
+
+@pytest.mark.parametrize("name", ["ur5e", "panda", "planar_3r", "scara_arm"])
+def test_rows_without_a_configuration_pass_through_as_nan(name):
+    """What robot.ik gives for many goals can be given back: its rows of NaN are poses of NaN."""
+    robot = cs.load_robot(name)
+    q = robot.random_configuration(3, rng=7, reach=0.1)
+    batch = np.stack([q, np.full_like(q, np.nan), q])
+    for made, count in ((robot.fk, 1), (robot.jacobian, 1), (robot.fk_jacobian, 2), (robot.fk_all, 1)):
+        whole, rows = made(batch), made(q)
+        for all_rows, some in zip(*((x,) if count == 1 else x for x in (whole, rows)), strict=True):
+            assert np.isnan(all_rows[1]).all()
+            assert np.array_equal(all_rows[0], some)
+            assert np.array_equal(all_rows[2], some)
+    batch[1, 0, 0] = 0.0
+    for made in (robot.fk, robot.jacobian, robot.fk_jacobian, robot.fk_all):
+        with pytest.raises(InputError, match="q holds nan"):
+            made(batch)
+        with pytest.raises(InputError, match="q holds nan"):
+            made(np.full(len(robot.joint_names), np.nan))

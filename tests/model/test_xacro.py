@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 from importlib.util import find_spec
 
 import numpy as np
@@ -247,10 +248,10 @@ def test_a_fault_in_an_included_file_is_told_there(arm):
 
 @needs_xacro
 def test_a_file_that_computes_for_ever_is_stopped(tmp_path, monkeypatch):
-    monkeypatch.setattr(cspace.model.xacro, "XACRO_SECONDS", 2.0)
+    monkeypatch.setattr(cspace.model.xacro, "XACRO_SECONDS", 0.05)
     path = tmp_path / "slow.xacro"
-    path.write_text(HEAD + '<link name="${math.factorial(10**8)}"/></robot>')
-    with pytest.raises(DescriptionError, match="longer than 2 s"):
+    path.write_text(HEAD + 1000 * '<link name="${max([k for k in range(9*10**5)])}"/>' + "</robot>")
+    with pytest.raises(DescriptionError, match=r"longer than 0\.05 s"):
         load_description(path)
 
 
@@ -293,6 +294,13 @@ SIZES = {
     "len([[0]*10**5 for k in range(10**5)])": "items",
     "len(list(map(str, range(10**9))))": "items",
     "'a'.ljust(10**10)": "items",
+    "factorial(10**6)": "bits",
+    "math.comb(10**7, 5*10**6)": "bits",
+    "math.perm(10**6, 10**6)": "bits",
+    "math.prod(python.range(1, 10**5))": "bits",
+    "'%1000000000d' % 1": "items",
+    "'%*d' % (10**9, 1)": "items",
+    "('a'*600000) + ('a'*600000)": "items",
 }
 
 
@@ -329,3 +337,45 @@ def test_operators_keep_their_meaning(expression, value, tmp_path):
     )
     (joint,) = load_description(path).joints
     np.testing.assert_allclose(joint.origin[0, 3], value, rtol=1e-12)
+
+
+def nested(*lines):
+    """A xacro file of these lines."""
+    return HEAD + "".join(lines) + '<link name="a"/></robot>'
+
+
+# A first one, the opening of the k-th, what is in it ten times, its closing, a use of the last, and what is
+# counted.
+GROWING = {
+    "macros": (
+        '<xacro:macro name="m0"><link name="a"/></xacro:macro>',
+        *('<xacro:macro name="m{k}">', "<xacro:m{j}/>", "</xacro:macro>", "<xacro:m29/>", "elements"),
+    ),
+    "blocks": (
+        '<xacro:property name="b0"><link name="a"/></xacro:property>',
+        *('<xacro:property name="b{k}">', '<xacro:insert_block name="b{j}"/>', "</xacro:property>"),
+        *('<xacro:insert_block name="b29"/>', "elements"),
+    ),
+    "texts": (
+        '<xacro:property name="x0" value="aaaa"/>',
+        *('<xacro:property name="x{k}" value="', "${{x{j}}}", '"/>', '<link name="${{x29}}"/>', "characters"),
+    ),
+    "sums": (
+        '<xacro:property name="x0" value="aaaa"/>',
+        *('<xacro:property name="x{k}" value="${{x0', "+x{j}", '}}"/>', '<link name="${{x29}}"/>', "items"),
+    ),
+}
+
+
+@needs_xacro
+@pytest.mark.parametrize("kind", GROWING)
+def test_a_short_file_that_grows_without_measure_is_refused(kind, tmp_path):
+    """Ten of each in the one behind it: 10^29 of them, of which a budget stops the expansion."""
+    first, opening, inside, closing, last, says = GROWING[kind]
+    levels = [(opening + 10 * inside + closing).format(k=k, j=k - 1) for k in range(1, 30)]
+    path = tmp_path / "growing.xacro"
+    path.write_text(nested(first, *levels, last.format()), encoding="utf-8")
+    started = time.perf_counter()
+    with pytest.raises(DescriptionError, match=f"more than [0-9]+ {says}, which is the maximum"):
+        from_xacro(path)
+    assert time.perf_counter() - started < 30.0

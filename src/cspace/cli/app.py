@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import sys
+import textwrap
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from types import MappingProxyType
@@ -150,15 +152,19 @@ def run_verb(verb: str, words: list[str]) -> int:
 
 def write_overview() -> str:
     """The text of `cspace --help`."""
-    width = max(map(len, VERBS))
-    verbs = "\n".join(f"  {name:<{width}}  {summary}" for name, summary in VERBS.items())
+    width, columns = max(map(len, VERBS)), shutil.get_terminal_size().columns
+    indent = " " * (width + 4)
+    verbs = "\n".join(
+        textwrap.fill(f"  {name:<{width}}  {summary}", columns, subsequent_indent=indent)
+        for name, summary in VERBS.items()
+    )
     return (
         "usage: cspace VERB …\n\n"
         "From a robot's description to its motion.\n\n"
         f"verbs:\n{verbs}\n\n"
         "cspace VERB --help    the arguments of a verb, with examples\n"
         "cspace --version      the version\n\n"
-        "A robot is a name of the catalogue (cspace robots) or a file. Every verb takes --json."
+        "A robot is a name of the catalogue (cspace robots) or a file.\nEvery verb takes --json."
     )
 
 
@@ -172,7 +178,10 @@ def in_words_of_shell(message: str) -> str:
 def print_message(message: str) -> None:
     """One message for people, on the error stream."""
     with contextlib.suppress(OSError, ValueError):
-        print(f"cspace: {message}", file=sys.stderr)
+        text = f"cspace: {message}"
+        if sys.stderr is not None and sys.stderr.isatty():
+            text = "\n".join(textwrap.wrap(text, shutil.get_terminal_size().columns, break_long_words=False))
+        print(text, file=sys.stderr)
 
 
 def silence_output() -> None:

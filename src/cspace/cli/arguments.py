@@ -6,7 +6,9 @@ import argparse
 import io
 import math
 import re
+import shutil
 import sys
+import textwrap
 import threading
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, NoReturn
@@ -48,12 +50,33 @@ class Parser(argparse.ArgumentParser):
 
     def print_help(self, file: Any = None) -> None:
         """Write the help; that of argparse would not report a failure, such as a full disk."""
-        (file or sys.stdout or io.StringIO()).write(self.format_help())
+        folded = fold_help(self.format_help(), shutil.get_terminal_size().columns)
+        (file or sys.stdout or io.StringIO()).write(folded)
 
     def error(self, message: str) -> NoReturn:
         """Raise the fault instead of printing the usage and leaving the process."""
         unguarded = re.sub(r"(?<=[\s'])\s+(?=-)", "", message)
         raise UsageError(f"{unguarded}; see {self.prog} --help")
+
+
+def fold_help(text: str, width: int) -> str:
+    """A help whose lines fit a terminal: sentences go on below their indent, commands behind a backslash."""
+    lines: list[str] = []
+    for line in text.splitlines():
+        if len(line) <= width:
+            lines.append(line)
+            continue
+        indent = " " * (len(line) - len(line.lstrip()))
+        is_command = line.lstrip().startswith("cspace ")
+        folded = textwrap.wrap(
+            line,
+            width - 2 if is_command else width,
+            subsequent_indent=indent + "    " if is_command else indent,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        lines += [part + " \\" for part in folded[:-1]] + folded[-1:] if is_command else folded
+    return "\n".join(lines) + "\n"
 
 
 def add_option(where: Any, typed: str, text: str, read: Any = None, **more: Any) -> None:

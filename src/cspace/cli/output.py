@@ -21,6 +21,16 @@ MOST_COLUMNS: Final = 400
 """The widest table: one that a terminal is too narrow for runs over its edge rather than lose digits."""
 
 
+DECIMALS: Final = 6
+"""Decimals of poses and Jacobians."""
+
+MORE_DECIMALS: Final = 12
+"""Decimals of poses that must be typed as they are: arms of fewer than six joints miss one with eight."""
+
+LONGEST_NAME: Final = 22
+"""The widest name beside which the values of all facts are aligned."""
+
+
 STYLES: Final[Mapping[str, int]] = MappingProxyType({"bold": 1, "dim": 2, "yellow": 33, "cyan": 36})
 """The styles of lines and the numbers by which terminals know them (ECMA-48)."""
 
@@ -87,7 +97,7 @@ class Output:
 
     def heading(self, text: str) -> None:
         """A heading above a block."""
-        self.line(text, style="bold")
+        self.sentence(text, style="bold")
 
     def hint(self, text: str) -> None:
         """A remark for people at a terminal, if there is one; pipes stay quiet."""
@@ -96,10 +106,29 @@ class Output:
 
     def facts(self, facts: Mapping[str, str]) -> None:
         """Names and values, one pair a line."""
-        width = max(map(len, facts), default=0)
+        width = max((len(name) for name in facts if len(name) <= LONGEST_NAME), default=0)
         for name, value in facts.items():
             shown = f"{name:<{width}}  " if value else name
-            self.stream.write(self._styled(shown, "cyan") + value.rstrip() + "\n")
+            lines = self._fold(value.rstrip(), len(shown), width + 2)
+            self.stream.write(self._styled(shown, "cyan") + "\n".join(lines) + "\n")
+
+    def _fold(self, text: str, first: int, indent: int) -> list[str]:
+        """A text of which `first` columns of its first line are taken, as lines of the terminal: those behind
+        the first are indented.
+        """
+        if self.width is None or first + len(text) <= self.width:
+            return [text]
+        lines = textwrap.wrap(text, self.width, initial_indent=" " * first, subsequent_indent=" " * indent)
+        return [lines[0][first:], *lines[1:]] if lines[0][:first].isspace() else ["", *lines]
+
+    def page(self, text: str) -> None:
+        """Lines of text, of which a terminal breaks the longer ones; each goes on below its own indent."""
+        for line in text.splitlines():
+            kept = self.width is None or len(line) <= self.width
+            indent = " " * (len(line) - len(line.lstrip()))
+            folded = [line] if kept else textwrap.wrap(line, self.width or 0, subsequent_indent=indent)
+            for part in folded:
+                self.line(part)
 
     def table(self, table: Table) -> None:
         """A table; a terminal gets lines and colours if rich is there."""
@@ -113,10 +142,10 @@ class Output:
             console.width = needed
         console.print(drawn, crop=False)
 
-    def matrix(self, values: Array, name: str) -> None:
+    def matrix(self, values: Array, name: str, decimals: int = DECIMALS) -> None:
         """A matrix under its name, digits aligned; at a narrow terminal some columns at a time."""
         self.heading(name)
-        texts = [[f"{tidy_number(x): .6f}" for x in row] for row in values]
+        texts = [[f"{tidy_number(x, decimals): .{decimals}f}" for x in row] for row in values]
         widest = max([10, *(len(text) for row in texts for text in row)])
         columns = values.shape[1]
         stride = columns if self.width is None else max(1, min(columns, self.width // (widest + 2)))
@@ -147,7 +176,7 @@ def _knows_colours() -> bool:
     return not plain and (sys.platform != "win32" or "WT_SESSION" in os.environ)
 
 
-def tidy_number(x: float, decimals: int = 6) -> float:
+def tidy_number(x: float, decimals: int = DECIMALS) -> float:
     """A number for print: zero, without a sign, where it would be rounded to zero."""
     return 0.0 if abs(x) < 0.5 * 10.0**-decimals else x
 

@@ -17,7 +17,7 @@ from cspace.collision.robot_geometry import RobotGeometry
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.batch import thread_count
-from cspace.tables import one_line, show_fields, shown
+from cspace.tables import one_line, show_fields, shown, tabulate
 from cspace.tolerances import LARGEST_NUMBER
 
 MOST_CAUSES = 3
@@ -53,6 +53,7 @@ class Clearance:
     crease: Any
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Edge:
     """A straight motion between two configurations, checked; truthy if it is free.

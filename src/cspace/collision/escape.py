@@ -11,13 +11,14 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, bounded_number, positive_number
 from cspace.collision.checks import HasGeometry, clearance, one_configuration, read_geometry
 from cspace.collision.scene import Scene
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, shown, tabulate
 from cspace.tolerances import BEYOND_MARGIN, FLAT_CLEARANCE, LARGEST_NUMBER
 
 LONGEST_STEP: Final = 0.02
 """Of one step [L2 norm of the joints]: the nearest pair is looked up anew so often."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Escape:
     """A way out of a collision; truthy if it ends free.

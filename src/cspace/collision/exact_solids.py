@@ -11,6 +11,7 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.shapes import Box, Capsule, Cylinder, Shape, Sphere, cover_shape
 from cspace.spatial.poses import transform_points
+from cspace.tables import show_fields
 from cspace.tolerances import FLAT_SHARE, LEAST_COVERED
 
 SOLID_WIDTH: Final = 16
@@ -26,6 +27,7 @@ NO_SOLIDS: Final = np.empty((0, SOLID_WIDTH))
 Integers = npt.NDArray[np.int64]
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class PlacedShapes:
     """Shapes in the frame of a body. spheres (m, 4) [m] cover them; solids (k, 16): those that are exact;

@@ -25,7 +25,7 @@ from cspace.kinematics import Assembly
 from cspace.model import Description
 from cspace.shapes import Box, Capsule, Cylinder, HalfSpace, PointCloud, Shape, Sphere
 from cspace.shapes.shape import IDENTITY
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, shown, tabulate
 from cspace.tolerances import LARGEST_NUMBER, POINT_RADIUS
 
 VERIFY_STEP: Final = 0.005
@@ -55,6 +55,7 @@ class HasShapes(Protocol):
         """Poses of a frame."""
 
 
+@tabulate()
 @dataclass(frozen=True)
 class MeshVerdict:
     """What a judge found on a path; truthy if nothing touches.
@@ -90,6 +91,7 @@ class _Piece:
     radius: float
 
 
+@tabulate("joint_names", "margin")
 class MeshJudge:
     """Checks of a robot in a scene with the exact shapes of its links.
 

@@ -28,7 +28,7 @@ from cspace.kinematics import Assembly, KinematicModel, random_configurations
 from cspace.model import Description
 from cspace.shapes import Shape
 from cspace.spatial.poses import invert_pose, transform_points
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import LARGEST_NUMBER
 
 GEOMETRIES: Final = ("collision", "skeleton")
@@ -48,6 +48,7 @@ NO_PAIRS: Final[Integers] = np.empty((0, 2), dtype=np.int64)
 """No links are checked against each other, or nothing may touch."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class RobotGeometry:
     """Spheres and solids that stand for the links of a robot in collision checks; falsy, with a reason,

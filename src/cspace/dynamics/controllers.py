@@ -17,12 +17,14 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.batch import check_flag
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
+from cspace.tables import show_fields
 from cspace.tolerances import FARTHEST
 
 Motion = Callable[[float], tuple[ArrayLike, ArrayLike, ArrayLike]]
 """t → q, qd and qdd."""
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class PD:
     """Proportional and derivative control: tau = kp (q_goal − q) − kd q̇ + g(q).
@@ -76,6 +78,7 @@ class PD:
         return _check_count(self.q_goal, "q_goal", robot)
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class ComputedTorque:
     """Computed torque control: the torques that give q̈ = q̈_d + kd (q̇_d − q̇) + kp (q_d − q).

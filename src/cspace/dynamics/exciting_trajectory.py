@@ -18,7 +18,7 @@ from cspace.errors import InputError
 from cspace.kinematics import require_limits
 from cspace.kinematics.batch import check_robot, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import LEAST_EXCITATION
 
 MOST_HARMONICS: Final = 100
@@ -48,6 +48,7 @@ GROWTH, SHRINKAGE = 1.3, 0.93
 better (Rechenberg 1973)."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class ExcitingTrajectory:
     """A periodic motion that excites the base parameters; falsy if it leaves some of them undetermined.

@@ -10,6 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.model import Description, Geometry, Link
+from cspace.tables import show_fields
 from cspace.tolerances import INERTIA_ROUNDING, LEAST_GYRATION
 
 MOST_GYRATION: Final = 10.0
@@ -21,6 +22,7 @@ SPACING: Final = 16.0 * np.finfo(float).eps
 """Rounding of the eigenvalues of a symmetric matrix (3, 3), relative to the largest."""
 
 
+@show_fields
 @dataclass(frozen=True)
 class InertiaFault:
     """What is wrong with the mass properties of one part of a robot.

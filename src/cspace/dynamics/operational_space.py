@@ -16,10 +16,11 @@ from cspace.kinematics import jacobian
 from cspace.kinematics.batch import check_output, check_robot, frame_number
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import LOST_MOTION
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class OperationalSpace:
     """How a frame answers wrenches: ν̇ = mobility · w, with ν = [v; ω] and w = [f; n] in the axes of the base.

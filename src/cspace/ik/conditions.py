@@ -11,12 +11,14 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import CspaceError
 from cspace.kinematics import KinematicModel
+from cspace.tables import show_fields
 
 
 class NoClosedFormError(CspaceError, NotImplementedError):
     """No geometry that this version solves fits the arm; the message lists the conditions that failed."""
 
 
+@show_fields
 @dataclass(frozen=True)
 class Condition:
     """One geometric condition: what it says, whether it holds, the measured miss and its limit [rad or m]."""

@@ -11,6 +11,7 @@ from cspace import _core
 from cspace.ik.conditions import Condition, NoClosedFormError, explain_missing_form, measure_conditions
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.kinematics import KinematicModel
+from cspace.tables import show_fields
 
 FAMILIES = {
     0: "none",
@@ -34,6 +35,7 @@ FIRST_THREE = {
 GENERAL = "Every solution comes from the general method: one joint's angle as the root of a determinant"
 
 
+@show_fields
 @dataclass(frozen=True)
 class Geometry:
     """The closed form of an arm, truthy if it has one. family: its name, "general" for six joints that are

@@ -20,7 +20,7 @@ from cspace.ik.solver import Solver
 from cspace.ik.wrapping import wrap_joints
 from cspace.kinematics.batch import limits_of
 from cspace.model import Limits
-from cspace.tables import one_line
+from cspace.tables import html_table, one_line
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +58,8 @@ class SolutionsBatch(Answers):
 
     q: (..., k_max, dof) [rad, m], the solutions of each goal first, NaN behind them. count: (...,)
     solutions per goal. goal: (..., 4, 4), or (..., 3) for positions. status: (...,) strings as of
-    `Solutions`. freedom: what the goals leave free, as of `Solutions`. Index with one goal's index to get its
-    `Solutions`: batch[i].branch, batch[i].self_motions.
+    `Solutions`. freedom: what the goals leave free, as of `Solutions`. branch: names (..., k_max). Index
+    with one goal's index to get its `Solutions`: batch[i], batch[i].self_motions.
     """
 
     solver: Solver
@@ -112,6 +112,15 @@ class SolutionsBatch(Answers):
     def reachable(self) -> npt.NDArray[np.bool_]:
         """Whether each goal has a solution, (...,)."""
         return self.count > 0
+
+    @property
+    def branch(self) -> npt.NDArray[np.str_]:
+        """A name for each solution, (..., k_max), as of `Solutions`; "" where a goal has fewer. Made when
+        read, goal by goal."""
+        out = np.full(self.q.shape[:-1], "", dtype=object)
+        for index in np.ndindex(self.count.shape):
+            out[index][: self.count[index]] = self[index].branch
+        return out.astype(np.str_)
 
     @property
     def reason(self) -> npt.NDArray[np.object_]:
@@ -214,3 +223,11 @@ class SolutionsBatch(Answers):
             f"{self.solver.name}: {self.count.size} goals, {reached} with solutions, "
             f"{unreachable} unreachable, {int(self.count.sum())} configurations",
         )
+
+    def _repr_html_(self) -> str:
+        columns = self.status.ravel(), self.count.ravel().tolist(), self.complete.ravel()
+        rows = [
+            (", ".join(map(str, index)), str(status), str(count), str(bool(complete)))
+            for index, status, count, complete in zip(np.ndindex(self.count.shape), *columns, strict=True)
+        ]
+        return html_table(repr(self)[1:-1], ("goal", "status", "solutions", "complete"), rows)

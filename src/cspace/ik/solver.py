@@ -20,6 +20,7 @@ from cspace.ik.locked_joints import joint_number, locked_values
 from cspace.kinematics import KinematicModel, assemble_chain
 from cspace.kinematics.batch import limits_of
 from cspace.model import Chain, Limits, chain, from_screws
+from cspace.tables import tabulate
 from cspace.tolerances import REACH_ROUNDING
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class HasSolver(Protocol):
     def solver(self) -> Solver: ...
 
 
+@tabulate("name", "joint_names", "joint_types", "base", "tip", "max_solutions")
 class Solver(_core.SolverBase, KinematicModel):
     """Every configuration of one arm that reaches a goal: `solve`.
 

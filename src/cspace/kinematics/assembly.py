@@ -16,10 +16,12 @@ from cspace.model.joint import RESISTANCES
 from cspace.model.tree import lump_links
 from cspace.spatial.poses import invert_pose
 from cspace.spatial.vectors import frame_along
+from cspace.tables import show_fields
 
 Numbers = npt.NDArray[np.intp]
 
 
+@show_fields
 @dataclass
 class Assembly:
     """The numbers of a robot, every fixed link folded into the joint that carries it.

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array
-from cspace.kinematics.batch import Batch, check_output, frame_number, refuse_infinite, rows_of
+from cspace.arrays import Array, as_floats
+from cspace.kinematics.batch import Batch, check_output, frame_number, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
+from cspace.tolerances import FARTHEST
 
 
 def forward_kinematics(
@@ -24,8 +26,8 @@ def forward_kinematics(
     """The pose of a frame at a configuration; see Robot.fk, which is this function.
 
     q (..., n) [rad or m], T_world_base (..., 4, 4), out (..., 4, 4). Returns T (..., 4, 4), which maps
-    coordinates in the frame to coordinates in the base. Raises InputError for a wrong shape or NaN,
-    UnknownNameError for an unknown frame.
+    coordinates in the frame to coordinates in the base; in a batch, rows of NaN alone give NaN. Raises
+    InputError for a wrong shape or other NaN, UnknownNameError for an unknown frame.
     """
     number = frame_number(robot, frame)
     batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
@@ -50,7 +52,9 @@ def forward_kinematics_all(
     batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
     T = check_output(out, (*batch.shape, len(robot.frames), 4, 4))
     if not _core._tree_rows(robot, batch.q, batch.T_world_base, T, None, None, batch.threads):
-        refuse_infinite(batch)
+        q, absent = split_absent(batch)
+        _core._tree_rows(robot, q, batch.T_world_base, T, None, None, batch.threads)
+        mark_absent(absent, T)
     return T
 
 
@@ -69,11 +73,40 @@ def compute_chain(
     """Fill the arrays given, for one frame: T (..., 4, 4), J and J_rate (..., 6, dof), sigma (..., k).
 
     chosen: bit r set where row r of the Jacobian counts for the singular values. Raises InputError for NaN
-    in q.
+    in q; in a batch, rows of NaN alone give T and J of NaN, see split_absent.
     """
-    given = batch.q, batch.qd, batch.T_world_base, batch.point
-    if not _core._chain_rows(robot, frame, *given, T, J, J_rate, sigma, chosen, in_tip, batch.threads):
-        refuse_infinite(batch)
+    outputs = T, J, J_rate, sigma
+
+    def fill(q: Array) -> bool:
+        given = q, batch.qd, batch.T_world_base, batch.point
+        return bool(_core._chain_rows(robot, frame, *given, *outputs, chosen, in_tip, batch.threads))
+
+    if not fill(batch.q):
+        q, absent = split_absent(batch, J_rate, sigma)
+        fill(q)
+        mark_absent(absent, T, J)
+
+
+def split_absent(batch: Batch, *others: Array | None) -> tuple[Array, npt.NDArray[np.bool_]]:
+    """The configurations (rows, n) of a batch with zeros in place of rows that are NaN alone, as batches of
+    solutions have them behind the last, and where these are (...).
+
+    Raises InputError for any other value that is not finite, for a single configuration, and where `others`
+    are asked for.
+    """
+    absent = np.asarray(np.isnan(batch.q).all(axis=1))
+    q = np.where(absent[:, None], 0.0, batch.q)
+    if not batch.shape or any(other is not None for other in others):
+        q = batch.q
+    as_floats(q.reshape((*batch.shape, q.shape[1])), "q", largest=FARTHEST)
+    return q, absent.reshape(batch.shape)
+
+
+def mark_absent(absent: npt.NDArray[np.bool_], *outputs: Array | None) -> None:
+    """Fill the rows of outputs (..., …) that stand for no configuration with NaN."""
+    for output in outputs:
+        if output is not None:
+            output[absent] = np.nan
 
 
 def measure_misses(robot: KinematicModel, q: Array, goals: Array) -> Array:

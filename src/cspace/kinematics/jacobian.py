@@ -29,8 +29,8 @@ def jacobian(
     """The geometric Jacobian of a frame, or of a point fixed to it; see Robot.jacobian.
 
     q (..., n) [rad or m], point (..., 3) [m] in the frame, T_world_base (..., 4, 4), out (..., 6, dof).
-    Returns J (..., 6, dof), rows [v; ω].
-    Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame or axes.
+    Returns J (..., 6, dof), rows [v; ω]; rows of NaN in q as in fk.
+    Raises InputError for a wrong shape or any other NaN, UnknownNameError for an unknown frame or axes.
     """
     number, in_tip = frame_number(robot, frame), check_choice(expressed_in, "expressed_in", AXES) == "tip"
     batch = rows_of(robot, q, point=point, T_world_base=T_world_base, threads=threads)

@@ -20,7 +20,7 @@ from cspace.kinematics.loop_freedom import find_rank_tolerance, find_scaled_jaco
 from cspace.kinematics.loop_newton import close_rows, polish_rows, select_columns, solve_least
 from cspace.kinematics.workspace import random_configurations
 from cspace.math.wrapping import wrap_near
-from cspace.tables import count_things, join_words, one_line, shown
+from cspace.tables import count_things, join_words, one_line, shown, tabulate
 from cspace.tolerances import FARTHEST, LOOP_CLOSED, LOOP_SINGULAR, SAME_MODE, SHORTEST_PART
 
 Flags = NDArray[np.bool_]
@@ -46,6 +46,7 @@ LONGER: Final = 2.0
 """Factor of the stride after a success; a failure halves it."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class LoopClosure:
     """Configurations with closed loops; falsy if one could not be closed.
@@ -69,6 +70,7 @@ class LoopClosure:
         return one_line("LoopClosure", f"{count_things(self.closed.size, 'configuration')}, {self.reason}")
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class AssemblyModes:
     """The configurations of a mechanism for given driven coordinates; falsy if there is none.
@@ -94,6 +96,7 @@ class AssemblyModes:
         return one_line("AssemblyModes", text)
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class LoopMotion:
     """The motion of a mechanism along values of its driven coordinates; falsy if it stops before the last.

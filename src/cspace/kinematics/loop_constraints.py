@@ -15,6 +15,7 @@ from cspace.kinematics.batch import check_robot, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.loop_rows import Flags, find_frames, make_rows
 from cspace.model import Loop
+from cspace.tables import tabulate
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +28,7 @@ class Placement:
     over: Flags
 
 
+@tabulate("loops", "rows", "length")
 class LoopConstraints:
     """The constraints φ(q) = 0 of the closed loops of a robot, with φ̇ = K q̇ and φ̈ = K q̈ + k.
 

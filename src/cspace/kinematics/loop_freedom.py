@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array
 from cspace.kinematics.loop_constraints import LoopConstraints, Placement
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import ALIKE_ROWS, FARTHEST, LOOP_RANK, LOOP_RANK_SLACK
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class LoopFreedom:
     """The freedom of a mechanism at a configuration.

@@ -16,7 +16,7 @@ from cspace.kinematics.forward import compute_chain
 from cspace.kinematics.jacobian import AXES, jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, shown, tabulate
 from cspace.tolerances import POSSIBLE_MOTION
 
 ROWS = ("vx", "vy", "vz", "wx", "wy", "wz")
@@ -28,6 +28,7 @@ SAMPLES = 8
 """Configurations whose Jacobians give a generic rank: it is lost at all of them only if it is never there."""
 
 
+@tabulate()
 class Ellipsoid(NamedTuple):
     """The twists that joint velocities of norm one reach.
 

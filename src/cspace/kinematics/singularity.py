@@ -16,13 +16,14 @@ from cspace.kinematics.jacobian import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.manipulability import ROWS, select_rows
 from cspace.spatial.checks import PoseLike
-from cspace.tables import join_words, one_line
+from cspace.tables import join_words, one_line, tabulate
 from cspace.tolerances import SINGULAR_ROUNDING, SINGULAR_VALUE
 
 MOST_COLUMNS = 12
 """Joints among which every set is tried: 2509 sets of up to six."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Singularity:
     """The singularity that is nearest to a configuration; true if the configuration is singular itself.

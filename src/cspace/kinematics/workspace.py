@@ -17,7 +17,7 @@ from cspace.kinematics.planar_boundary import PlanarArm, trace_boundary
 from cspace.math.wrapping import TURN
 from cspace.model import Chain, Limits
 from cspace.spatial.vectors import frame_along
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import PLANAR_AXES
 
 Seed: TypeAlias = "int | np.random.Generator | None"
@@ -65,6 +65,7 @@ def random_configurations(
     return q[0] if n is None else q
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Workspace:
     """Reachable positions of a frame.

@@ -12,7 +12,7 @@ from cspace.errors import InputError
 from cspace.mobile import Odometry, TimedPoses
 from cspace.mobile.timed_poses import read_rows, read_times
 from cspace.spatial import as_pose_2d
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, show_fields, tabulate
 from cspace.tolerances import COVARIANCE_SYMMETRY, FARTHEST_POINT
 
 Ids = npt.NDArray[np.int64]
@@ -22,6 +22,7 @@ UNKNOWN = -1
 """The landmark of a reading that does not say which one it saw."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Readings:
     """Ranges and bearings of landmarks, a row per reading; NaN where one of the two was not measured.
@@ -77,6 +78,7 @@ class Readings:
         return Readings(self.times[keep], self.landmark[keep], self.range[keep], self.bearing[keep])
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Landmarks:
     """A map of points with names.
@@ -124,6 +126,7 @@ class Landmarks:
         return np.where(asked == UNKNOWN, UNKNOWN, rows)
 
 
+@show_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Headings:
     """Headings of a compass, θ of base in map. times (k,) [s], increasing. angles (k,) [rad]."""
@@ -140,6 +143,7 @@ class Headings:
         return len(self.times)
 
 
+@show_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Fixes:
     """Positions of a satellite receiver in map. times (k,) [s], increasing. points (k, 2): x, y [m]."""
@@ -161,6 +165,7 @@ LARGEST_RANGE = float(np.finfo(np.float32).max)
 """The largest range that float32 holds; a larger one is no return."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Scans:
     """Scans of a planar laser range finder.
@@ -223,6 +228,7 @@ class Scans:
         return np.isfinite(self.ranges) & (self.ranges < self.most)
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Log:
     """A drive of a robot: what it measured, and what is known of where it was.

@@ -10,8 +10,10 @@ import numpy as np
 
 from cspace.arrays import Array, bounded_number, one_array, one_number, positive_number, whole_number
 from cspace.errors import InputError, check_kind, check_known
+from cspace.tables import show_fields
 
 
+@show_fields
 @dataclass(frozen=True)
 class RangeBearing:
     """A sensor that measures ranges and bearings of landmarks, or only one of the two.
@@ -42,6 +44,7 @@ class RangeBearing:
             raise InputError(f"bearing_sigma is {self.bearing_sigma:g} rad; give radians, below π")
 
 
+@show_fields
 @dataclass(frozen=True)
 class Compass:
     """A sensor of the heading. sigma [rad]: its standard deviation. bias [rad]: what it reads too much, such
@@ -55,6 +58,7 @@ class Compass:
         object.__setattr__(self, "bias", one_number(self.bias, "bias"))
 
 
+@show_fields
 @dataclass(frozen=True)
 class Gps:
     """A sensor of its own position. sigma [m]: standard deviation of x and of y. lever (2,): where on base
@@ -74,6 +78,7 @@ MOST_BEAMS: Final = 10_000
 """The most beams of a scan."""
 
 
+@show_fields
 @dataclass(frozen=True)
 class LaserScanner:
     """A planar laser range finder, as particle filters weigh its scans and as `simulate` draws them.

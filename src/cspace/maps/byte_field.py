@@ -10,9 +10,10 @@ import numpy.typing as npt
 from cspace.arrays import Array, positive_number, whole_number
 from cspace.errors import InputError
 from cspace.maps.points import as_point
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class ByteField:
     """A score for every cell of a grid, for instance how likely a laser beam ends there.

@@ -17,6 +17,7 @@ from cspace.maps.byte_field import ByteField
 from cspace.maps.likelihood_field import LIKELIHOOD_FLOOR, SIGMA, check_hit_model
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.points import as_point
+from cspace.tables import tabulate
 from cspace.tolerances import FARTHEST_CELL, FINEST_CELL, MAP_CELLS
 
 LIMIT: Final = 1000
@@ -38,6 +39,7 @@ MOST_THREADS: Final = 4096
 Sums = npt.NDArray[np.int32]
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class EvidenceGrid:
     """Square cells with log-odds of being occupied; zero means unknown.

@@ -16,6 +16,7 @@ from cspace.errors import InputError, InputTypeError, shown, suggest
 from cspace.maps.byte_field import ByteField
 from cspace.maps.likelihood_field import LIKELIHOOD_FLOOR, SIGMA, check_hit_model
 from cspace.maps.points import as_path, as_point, check_inflation
+from cspace.tables import tabulate
 from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CELLS
 
 RULES: Final = ("cells", "centers")
@@ -25,6 +26,7 @@ OUTSIDE: Final = 2
 """The kinds of positions: in a free cell, in a blocked cell (1), or outside the grid."""
 
 
+@tabulate("rows", "columns", "resolution", "origin", "bounds", "blocked_cells")
 class OccupancyGrid(_core.GridBase):
     """Square cells, each free or blocked; everything outside the grid is blocked.
 

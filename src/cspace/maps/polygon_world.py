@@ -31,9 +31,11 @@ from cspace.maps.outlines import (
 from cspace.maps.points import as_path, as_point, check_inflation
 from cspace.maps.polygon_files import read_geojson, read_polygons, write_geojson, write_polygons
 from cspace.maps.rasterize import rasterize_world
+from cspace.tables import tabulate
 from cspace.tolerances import ON_WALL
 
 
+@tabulate("obstacles", "bounds", "components")
 class PolygonWorld:
     """Obstacles in the plane, and the free space between them.
 

@@ -10,8 +10,10 @@ import numpy as np
 
 from cspace.math.trig_matrix import Product
 from cspace.math.trig_polynomial import TrigPolynomial
+from cspace.tables import show_fields
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Equation:
     """left = right. defines: the symbol that the equation introduces (its left side), or "".
@@ -58,6 +60,7 @@ class Equation:
     __str__ = text
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class MatrixEquation:
     """left = right, both products of displacements written by the names of their factors."""

@@ -12,9 +12,11 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.math.trig_polynomial import Angle, TrigPolynomial, as_polynomial
+from cspace.tables import one_line, show_fields, tabulate
 from cspace.tolerances import PRINTED_ROUNDING
 
 
+@tabulate("entries")
 class TrigMatrix:
     """A square matrix of polynomials; immutable. entries: row by row."""
 
@@ -113,9 +115,11 @@ class TrigMatrix:
     __str__ = text
 
     def __repr__(self) -> str:
-        return f"<TrigMatrix\n{self.text()}>"
+        side = len(self.entries)
+        return one_line("TrigMatrix", f"{side} × {side}: " + "; ".join(map(", ".join, self.texts())))
 
 
+@show_fields
 @dataclass(frozen=True)
 class Product:
     """A product of displacements, written by the names of its factors. factors: text, LaTeX, matrix."""

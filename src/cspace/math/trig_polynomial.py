@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from cspace.math import typeset
+from cspace.tables import tabulate
 from cspace.tolerances import INTEGER_ROUNDING, PRINTED_ROUNDING
 
 Plain = tuple[tuple[str, int], ...]
@@ -23,6 +24,7 @@ Turn = tuple[int, str, typeset.Combination]
 Monomial = tuple[Plain, tuple[Turn, ...]]
 
 
+@tabulate()
 @dataclass(frozen=True)
 class Angle:
     """An angle that formulas know: its number, and the group of parallel axes that it belongs to."""
@@ -31,6 +33,7 @@ class Angle:
     group: int
 
 
+@tabulate("terms")
 class TrigPolynomial:
     """A sum of numbers times symbols, cosines and sines; immutable. terms: factor per product."""
 

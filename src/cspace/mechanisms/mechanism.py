@@ -16,12 +16,13 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics import AssemblyModes, LoopClosure, LoopConstraints, LoopFreedom, LoopMotion
 from cspace.model import Loop
 from cspace.robot import Robot
-from cspace.tables import count_things
+from cspace.tables import count_things, tabulate
 
 Seed = int | np.random.Generator | None
 Driven = Mapping[str, ArrayLike]
 
 
+@tabulate("name", "joint_names", "loops")
 class Mechanism:
     """A robot whose links close loops.
 

@@ -17,7 +17,7 @@ from cspace.mobile.noise import RandomWalk
 from cspace.mobile.odometry import Odometry
 from cspace.mobile.timed_poses import NO_REFERENCE, TimedPoses, mark_times, read_times
 from cspace.mobile.wheels import DifferentialDrive
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 Rows = npt.NDArray[np.intp]
 
@@ -25,6 +25,7 @@ FEWEST_WINDOWS: Final = 8
 """Windows below which the three factors and their standard errors are not determined."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Calibration:
     """Factors of a log's odometry that bring it closest to reference poses, by least squares.
@@ -256,6 +257,7 @@ def solve_nonnegative(A: Array, b: Array) -> Array:
     return found
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class WheelCalibration:
     """A differential drive fitted to a log: vehicle, the radius of each wheel, their covariance.

@@ -16,6 +16,7 @@ from cspace.math.wrapping import wrap_angle
 from cspace.mobile.arcs import arc_jacobians
 from cspace.spatial import adjoint_2d, exp_se2, log_se2, pose_2d, to_xytheta
 from cspace.spatial.twists import sinc
+from cspace.tables import show_fields, tabulate
 from cspace.tolerances import FARTHEST_POINT
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
@@ -40,6 +41,7 @@ class MotionNoise(Protocol):
         """Steps with random noise, twists times durations (..., 3) [m, rad]; arguments as of covariance."""
 
 
+@tabulate()
 @dataclass(frozen=True)
 class RandomWalk:
     """White noise along the arc: variances in proportion to distance, turn and time. The default of filters.
@@ -87,6 +89,7 @@ class RandomWalk:
         )
 
 
+@show_fields
 @dataclass(frozen=True)
 class VelocityNoise:
     """The velocity model of Thrun, in variances: v̂ = v + ε(α1 v² + α2 ω²), ω̂ = ω + ε(α3 v² + α4 ω²), and a
@@ -137,6 +140,7 @@ class VelocityNoise:
         return twist, np.stack([a[i] * v2 + a[i + 1] * w2 for i in (0, 2, 4)], axis=-1)
 
 
+@show_fields
 @dataclass(frozen=True)
 class OdometryNoise:
     """The odometry model of Thrun, in variances: a step is a turn, a straight line and a turn, each with

@@ -15,12 +15,13 @@ from cspace.mobile.arcs import chain_increments
 from cspace.mobile.timed_poses import TimedPoses, find_between, read_rows, read_times
 from cspace.mobile.wheels import WheelBase
 from cspace.spatial import exp_se2, inverse_pose_2d, log_se2, pose_2d, to_xytheta
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 
 MOST_BITS = 64
 """The widest counters of ticks."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Odometry:
     """Steps between times, each along the arc of a constant twist.

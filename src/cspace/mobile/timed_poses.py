@@ -11,10 +11,11 @@ import numpy.typing as npt
 from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, shown
 from cspace.math.wrapping import wrap_angle
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import MOST_MARKS
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class TimedPoses:
     """Planar poses at times, such as the ground truth of a log.

@@ -11,9 +11,10 @@ import numpy.typing as npt
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, check_kind
 from cspace.mobile.wheels import DifferentialDrive
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class SquareTest:
     """What UMBmark finds.

@@ -12,10 +12,12 @@ import numpy.typing as npt
 from cspace.arrays import Array, as_floats, bounded_number
 from cspace.errors import InputError
 from cspace.mobile.arcs import drive
+from cspace.tables import tabulate
 
 MAY_BE_ZERO = ("max_reverse", "rear", "radius")
 
 
+@tabulate()
 @dataclass(frozen=True)
 class Unicycle:
     """A robot with two driven wheels: it drives along its heading and turns as it likes, on the spot too.
@@ -61,6 +63,7 @@ class Unicycle:
         return [0.0, 0.0, 0.0, self.radius]
 
 
+@tabulate()
 @dataclass(frozen=True)
 class Car:
     """A car as a bicycle model: it steers with its front wheels; its place is the middle of its rear axle.

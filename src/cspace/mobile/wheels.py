@@ -15,7 +15,7 @@ from cspace import tolerances
 from cspace.arrays import Array, as_floats, bounded_number, one_number, positive_number
 from cspace.errors import InputError
 from cspace.mobile.arcs import drive
-from cspace.tables import join_words
+from cspace.tables import join_words, show_fields, tabulate
 from cspace.tolerances import FARTHEST_POINT
 
 Floats = npt.ArrayLike
@@ -103,6 +103,7 @@ class WheelBase(ABC):
     _rule = "project it with vehicle.allowed_twists"
 
 
+@tabulate()
 @dataclass(frozen=True)
 class DifferentialDrive(WheelBase):
     """Two driven wheels on one axle, left then right: rows (1, 0, ∓track/2)/r of J.
@@ -130,6 +131,7 @@ class DifferentialDrive(WheelBase):
     _rule = "it cannot slide, so vy must be 0"
 
 
+@show_fields
 @dataclass(frozen=True)
 class Omni(WheelBase):
     """Omnidirectional wheels on a circle: rows (−sin αᵢ, cos αᵢ, L)/r of J.
@@ -159,6 +161,7 @@ class Omni(WheelBase):
         return np.stack([-np.sin(a), np.cos(a), np.full_like(a, self.distance)], axis=-1)
 
 
+@tabulate()
 @dataclass(frozen=True)
 class Mecanum(WheelBase):
     """Four mecanum wheels: rows (1, ∓1, ∓(lx + ly))/r of J, front left, front right, rear left, rear right.
@@ -181,6 +184,7 @@ class Mecanum(WheelBase):
         return np.array([[1.0, -1.0, -arm], [1.0, 1.0, arm], [1.0, 1.0, -arm], [1.0, -1.0, arm]])
 
 
+@tabulate()
 @dataclass(frozen=True)
 class Tracked(WheelBase):
     """Two tracks, left then right, that turn about their instantaneous centres of rotation (ICR).

@@ -24,9 +24,10 @@ from cspace.model.screws import twists
 from cspace.model.values import finite_number, freeze_array
 from cspace.spatial import exp_se3
 from cspace.spatial.poses import invert_pose
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Chain:
     """The joints between two links, as screws in the base frame at zero.

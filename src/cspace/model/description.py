@@ -16,9 +16,10 @@ from cspace.model.joint import Joint, Loop
 from cspace.model.link import Link
 from cspace.model.structure import ElementError, check_mimics, check_tree, unique_names
 from cspace.model.values import finite_number, name_of
-from cspace.tables import one_line
+from cspace.tables import one_line, show_fields, tabulate
 
 
+@show_fields
 @dataclass(frozen=True)
 class Source:
     """Where a group of numbers comes from, and under which licence."""
@@ -27,6 +28,7 @@ class Source:
     licence: str = ""
 
 
+@show_fields
 @dataclass(frozen=True)
 class Provenance:
     """Who made the robot and who published its numbers.
@@ -51,6 +53,7 @@ class Provenance:
         return type(self), (self.title, self.vendor, dict(self.sources), self.missing, self.aliases)
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Description:
     """A robot as a tree of links and joints, all of them kept, fixed ones too.

@@ -11,6 +11,7 @@ from cspace.arrays import Array
 from cspace.errors import DescriptionError
 from cspace.model.joint import Joint, Limits
 from cspace.model.values import IDENTITY
+from cspace.tables import show_fields
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +29,7 @@ class Elementary:
     joint: Joint
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Coordinates:
     """The independent coordinates q of a row of joints: joint k has the value multiplier·q[index] + offset.

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, positive_number
+from cspace.arrays import Array, as_floats, positive_number, warn_of_degrees
 from cspace.errors import InputError, suggest
 from cspace.model.values import (
     IDENTITY,
@@ -21,7 +22,8 @@ from cspace.model.values import (
     name_of,
     unit_axis,
 )
-from cspace.tables import align_cells, html_table, one_line, shown
+from cspace.tables import align_cells, html_table, one_line, show_fields, shown
+from cspace.tolerances import DEGREE_LIMITS
 
 FREEDOMS: Final[dict[str, int]] = {
     "fixed": 0,
@@ -50,6 +52,7 @@ RESISTANCES: Final = ("damping", "friction", "armature")
 """What a joint itself opposes to motion."""
 
 
+@show_fields
 @dataclass(frozen=True)
 class Mimic:
     """A joint that follows another: its value is multiplier · q(joint) + offset.
@@ -67,6 +70,7 @@ class Mimic:
         object.__setattr__(self, "offset", finite_number(self.offset, "mimic offset"))
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Joint:
     """A joint of the tree: the child link moves against the parent link.
@@ -147,6 +151,7 @@ class Joint:
         return 0 if self.mimic is not None else FREEDOMS[self.type]
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Loop:
     """A joint that closes a loop: it connects two links that the tree already contains.
@@ -202,7 +207,8 @@ class Limits:
     """The limits of all coordinates of a robot, each (dof,); ±inf where absent.
 
     lower, upper [rad or m], velocity [rad/s or m/s], acceleration, jerk, effort [N·m or N].
-    Omitted fields are filled with infinities. Raises InputError for different lengths, NaN, lower > upper.
+    Omitted fields are filled with infinities. Limits of many turns, which look like degrees, cause a warning.
+    Raises InputError for different lengths, NaN, lower > upper.
     """
 
     lower: Array
@@ -223,6 +229,10 @@ class Limits:
                 f"limits of coordinate {i} are reversed:"
                 f" lower {self.lower[i]:g} is above upper {self.upper[i]:g}"
             )
+        if sys._getframe(2).f_globals.get("__name__", "").partition(".")[0] != "cspace":  # typed by a person
+            values = np.concatenate([self.lower, self.upper])
+            remedy = "np.radians converts them; of slides these are metres, not millimetres"
+            warn_of_degrees("Limits", values, DEGREE_LIMITS, remedy)
 
     def __len__(self) -> int:
         return int(self.lower.size)

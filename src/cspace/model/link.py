@@ -11,6 +11,7 @@ from cspace.arrays import Array, one_array
 from cspace.errors import InputError, suggest
 from cspace.model.files import locate_file
 from cspace.model.values import IDENTITY, check_placement, check_size, finite_number, freeze_array, name_of
+from cspace.tables import show_fields
 from cspace.tolerances import INERTIA_SYMMETRY
 
 SHAPES: Final[dict[str, tuple[str, ...]]] = {
@@ -23,6 +24,7 @@ SHAPES: Final[dict[str, tuple[str, ...]]] = {
 """The shapes and the sizes [m] that each needs; cylinder and capsule lie along z, centred."""
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Inertial:
     """Mass properties of one link.
@@ -54,6 +56,7 @@ class Inertial:
         return Inertial(self.mass, R @ self.com + T_frame_link[:3, 3], R @ self.inertia @ R.T)
 
 
+@show_fields
 @dataclass(frozen=True)
 class Mesh:
     """A mesh file by reference; the file is not opened until the geometry is needed.
@@ -80,6 +83,7 @@ class Mesh:
         return locate_file(self.uri, self.beside, self.package_paths)
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Geometry:
     """One shape fixed to a link.
@@ -110,6 +114,7 @@ class Geometry:
         object.__setattr__(self, "origin", check_placement(self.origin, f"origin of a {self.shape}"))
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Link:
     """A rigid part: its name, mass properties (None if unknown) and shapes."""

@@ -14,7 +14,7 @@ from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.transmissions import read_rotors
 from cspace.model.xml import Element, parse_source
-from cspace.tables import one_line
+from cspace.tables import one_line, show_fields, tabulate
 
 CHILDREN: Final[dict[str, frozenset[str]]] = {
     "robot": frozenset(
@@ -57,6 +57,7 @@ MOST_VALUES: Final = 7
 LOG: Final = logging.getLogger("cspace")
 
 
+@show_fields
 @dataclass(frozen=True)
 class JointGroup:
     """A named part of a robot, as the file gives it.
@@ -71,6 +72,7 @@ class JointGroup:
     groups: tuple[str, ...] = ()
 
 
+@show_fields
 @dataclass(frozen=True)
 class GroupState:
     """A named configuration of a group: joint name → values [rad or m], several for joints of several."""
@@ -80,6 +82,7 @@ class GroupState:
     values: Mapping[str, tuple[float, ...]]
 
 
+@tabulate()
 @dataclass(frozen=True, repr=False)
 class Srdf:
     """The content of an SRDF file, by the names that it uses, whether a robot has them or not.

@@ -13,8 +13,10 @@ from cspace.model.description import Description
 from cspace.model.elementary import Coordinates, Elementary, coordinates_of, elementary_joints
 from cspace.model.link import Inertial
 from cspace.model.values import freeze_array
+from cspace.tables import show_fields
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Tree:
     """The turns and slides of a robot, each after its parent.

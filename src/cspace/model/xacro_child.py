@@ -15,7 +15,7 @@ from cspace.errors import CspaceError, DescriptionError, suggest
 from cspace.model.expressions import Budget, compile_bounded, evaluate_bounded
 from cspace.model.files import locate_package, read_bytes
 from cspace.model.xml import parse_document
-from cspace.tolerances import XACRO_ELEMENTS
+from cspace.tolerances import XACRO_COPIES, XACRO_ELEMENTS, XACRO_ITEMS
 
 Place = tuple[str, int]
 """A file and a line."""
@@ -90,7 +90,7 @@ class Expansion:
         self.file = file
         self.package_paths = package_paths
         self.place: Place = (file, 1)
-        self.steps = 0
+        self.steps = self.copies = 0
 
     def run(self, arguments: Arguments) -> minidom.Element:
         """The root element of the document that the file makes."""
@@ -106,11 +106,32 @@ class Expansion:
         for name in WATCHED:
             if hasattr(xacro, name):
                 setattr(xacro, name, self.watched(getattr(xacro, name)))
+        xacro.eval_text = self.measured(xacro.eval_text)
         elements: Any = minidom.Element
         copy = elements.cloneNode
-        elements.cloneNode = lambda node, deep: with_places(node, copy(node, deep))
+        elements.cloneNode = lambda node, deep: self.count_copies(with_places(node, copy(node, deep)))
         root: minidom.Element = xacro.process_file(self.file, mappings=arguments, verbosity=0).documentElement
         return root
+
+    def count_copies(self, element: minidom.Element) -> minidom.Element:
+        """A copied element, which counts with all inside it: what blocks insert into blocks grows so."""
+        self.copies += 1 + len(element.getElementsByTagName("*"))
+        if self.copies > XACRO_COPIES:
+            raise DescriptionError(
+                f"the expansion copies more than {XACRO_COPIES} elements, which is the maximum"
+            )
+        return element
+
+    def measured(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """The same function, whose texts are no longer than what one expression may make."""
+
+        def wrapper(*given: Any, **options: Any) -> Any:
+            value = function(*given, **options)
+            if isinstance(value, str) and len(value) > XACRO_ITEMS:
+                raise DescriptionError(f"a text has more than {XACRO_ITEMS} characters, which is the maximum")
+            return value
+
+        return wrapper
 
     def find(self, name: str) -> str:
         """The folder of a package: the value of $(find name)."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import Renamed
-from cspace.tables import count_things
+from cspace.tables import count_things, show_fields, tabulate
 
 if TYPE_CHECKING:
     from cspace.search.planner import Trace
@@ -16,6 +16,7 @@ STATUSES: Final = ("found", "unreachable", "undetermined", "local_minimum")
 """The verdicts, in the order of the compiled core."""
 
 
+@show_fields
 class Stats(NamedTuple):
     """What a search cost."""
 
@@ -27,6 +28,7 @@ class Stats(NamedTuple):
     """Wall time of the compiled search."""
 
 
+@tabulate("status", "reason", "planner", "length", "path", "stats")
 class Route(Renamed, _core.RouteBase):
     """The answer of one planner to one question; truthy if a path was found.
 

@@ -19,7 +19,7 @@ from cspace.plan_motion.plans import Seed, plan
 from cspace.planning import ArmPlanner, ArmSpace, Plan
 from cspace.planning.space import are_names
 from cspace.robot import Robot
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, shown, tabulate
 from cspace.tolerances import LEAST_DEVIATION, MOTION_CHECK_EXCESS, MOTION_CHECK_STEP, PATH_CURVED
 from cspace.trajectory import Path, TimedPath, blend, time_parametrize
 from cspace.trajectory.timed_motion import TimedMotion, stand_still
@@ -39,6 +39,7 @@ OF_OTHERS: Final = {
 """Keywords of other functions that make motions, and what goes in their place."""
 
 
+@tabulate("duration", "plan", "deviations", "checked")
 class Motion(TimedMotion):
     """A motion to a goal; falsy where there is none.
 

@@ -14,7 +14,7 @@ import numpy as np
 from cspace.arrays import Array, positive_number
 from cspace.errors import InputError, Renamed
 from cspace.planning.plan_files import write_path
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, shown, tabulate
 
 if TYPE_CHECKING:
     from cspace.planning.space import ArmSpace
@@ -28,6 +28,7 @@ CLEARANCE_STEP = 1.0 / 32.0
 """Distance of the configurations at which `Plan.clearance` looks [L2 norm of the joints]."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Plan(Renamed):
     """A way of an arm from a start to a goal; truthy if there is one.

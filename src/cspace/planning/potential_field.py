@@ -100,6 +100,7 @@ class PotentialRest(NamedTuple):
     """k, k_r, rho_0, cone, rho_links and step as they were used."""
 
 
+@show_fields
 class Potential(NamedTuple):
     """The potential at configurations q (..., dof)."""
 

@@ -16,7 +16,7 @@ from cspace.spatial import as_pose, as_rotation, exp_so3, pose, rotation_distanc
 from cspace.spatial.checks import one_pose
 from cspace.spatial.poses import assemble, invert_pose, transform_points
 from cspace.spatial.vectors import AXES, Z, frame_along, length_and_direction
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import FARTHEST, IN_REGION, LARGEST_NUMBER, SMALL_TURN
 
 HALVINGS: Final = 53
@@ -28,6 +28,7 @@ DIMENSIONS: Final = 6
 """Of the samples of a region: three for the position and three for the orientation."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Region:
     """A set of poses of the tip: a goal of `cs.plan`.

@@ -18,10 +18,11 @@ from cspace.collision.checks import HasGeometry, read_geometry
 from cspace.errors import InputError
 from cspace.kinematics.batch import find_pose
 from cspace.math.wrapping import TURN, wrap_near
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import LARGEST_NUMBER
 
 
+@tabulate("dof", "lower", "upper", "wraps", "margin")
 class ArmSpace:
     """Where an arm may be: within its limits, free of collisions with a scene and with itself.
 

@@ -12,6 +12,7 @@ from typing import Final
 
 from cspace.errors import InputTypeError, UnknownNameError, suggest
 from cspace.model import Description, from_toml
+from cspace.tables import show_fields
 
 FOLDER: Final = Path(__file__).parent / "catalogue"
 INDEX: Final = Path(__file__).parent / "index.json"
@@ -20,6 +21,7 @@ SEPARATORS: Final = r"[\s._-]"
 """Separators that are allowed anywhere in the name of a robot."""
 
 
+@show_fields
 @dataclass(frozen=True)
 class CatalogueRow:
     """The entry of a robot in the catalogue, available without opening its file.

@@ -14,8 +14,10 @@ import numpy as np
 
 from cspace.arrays import as_floats, as_generator
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.tables import show_fields
 
 
+@show_fields
 @dataclass(frozen=True)
 class Option:
     """One option of a planner."""

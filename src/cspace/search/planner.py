@@ -14,7 +14,7 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.errors import InputTypeError, attribute_error, suggest
 from cspace.search.options import Option, options_of
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 Same = TypeVar("Same", bound="Planner")
 
@@ -29,6 +29,7 @@ class _OldName:
         raise attribute_error(owner if planner is None else planner, self.name)
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Planner:
     """A planner with its options.
@@ -115,6 +116,7 @@ def check_names(options: Iterable[str], known: Iterable[str], planner: str) -> N
             raise InputTypeError(str(suggest("option", name, known, owner=f"planner {planner!r}")))
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Trace:
     """The events of a search in chronological order.

@@ -16,10 +16,11 @@ from cspace.errors import InputError, InputTypeError, TimeLimitError
 from cspace.shapes.cover_cache import find_key, load_cover, store_cover
 from cspace.shapes.shape import Shape
 from cspace.spatial.poses import inverse_pose, transform_points
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, show_fields, shown, tabulate
 from cspace.tolerances import LARGEST_NUMBER, MEASURE_TOLERANCE
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class SphereCover:
     """Spheres that contain a solid, or a surface, and a bound on how far they stick out of it.
@@ -56,6 +57,7 @@ class SphereCover:
         return one_line(type(self).__name__, f"{text}, {proof}")
 
 
+@show_fields
 class Bounds(NamedTuple):
     """A number between two bounds."""
 
@@ -63,6 +65,7 @@ class Bounds(NamedTuple):
     upper: float
 
 
+@tabulate()
 @dataclass(frozen=True, repr=False)
 class CoverMeasure:
     """How well given spheres cover a shape; each number between two bounds.

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats, one_array, shape_of
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial.checks import as_pose
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, shown, tabulate
 from cspace.tolerances import LARGEST_NUMBER
 
 IDENTITY: Array = np.eye(4)
@@ -25,6 +25,7 @@ ORIGIN = (0.0, 0.0, 0.0)
 S = TypeVar("S", bound="Shape")
 
 
+@tabulate("kind", "name", "pose", "bounds")
 class Shape:
     """A solid at a place: the base of all shapes.
 

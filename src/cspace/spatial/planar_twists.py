@@ -15,6 +15,7 @@ from cspace.spatial.checks import as_pose_2d
 from cspace.spatial.planar import angle_of, matrix_of_angle, to_theta
 from cspace.spatial.poses import assemble
 from cspace.spatial.twists import sinc, x_cot_x
+from cspace.tables import show_fields
 
 
 def hat_so2(angle: npt.ArrayLike) -> Array:
@@ -101,6 +102,7 @@ def logarithm_se2(T: Array) -> Array:
     return np.stack([a * x + half * y, a * y - half * x, angle], axis=-1)
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Pole:
     """The point that a planar displacement leaves in place, if there is one.

@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats, leading_axes
+from cspace.arrays import Array, as_floats, leading_axes, warn_of_degrees
 from cspace.errors import InputTypeError
 from cspace.spatial import single
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_rotation
 from cspace.spatial.quaternions import matrix_of_quaternion
 from cspace.spatial.rotations import matrix_of_axis_angle, matrix_of_rotvec
 from cspace.spatial.sequences import axes_of, matrix_of_euler, matrix_of_fixed
+from cspace.tolerances import DEGREE_ANGLES
 
 
 def pose(
@@ -33,8 +34,9 @@ def pose(
 
     xyz: (..., 3) [m], zero if left out. The rotation, the identity if left out, in one of the forms of
     `rotation`: wxyz, xyzw, rpy, rotvec, axis_angle, euler, fixed, matrix. Leading axes broadcast.
-    Returns (..., 4, 4). Raises InputError if a matrix is not a rotation, InputTypeError if nothing is given
-    or the rotation is given twice.
+    Returns (..., 4, 4). Angles of more than a turn, which look like degrees, cause a warning. Raises
+    InputError if a matrix is not a rotation, InputTypeError if nothing is given or the rotation is given
+    twice.
     """
     given = _given(wxyz, xyzw, rpy, rotvec, axis_angle, euler, fixed, matrix)
     if not given and xyz is None:
@@ -60,7 +62,7 @@ def rotation(
     wxyz, xyzw: quaternions (..., 4) of any length but zero. rpy: roll, pitch, yaw (..., 3) [rad] about the
     fixed x, y, z. rotvec: axis times angle (..., 3) [rad]. axis_angle: (axis (..., 3) of any length but zero,
     angle (...) [rad]). euler, fixed: (sequence, angles (..., 3) [rad]), such as ("ZYX", angles).
-    matrix: (..., 3, 3), checked. Returns (..., 3, 3).
+    matrix: (..., 3, 3), checked. Returns (..., 3, 3). Angles of more than a turn cause a warning, as of pose.
     Raises InputError if a matrix is not a rotation, InputTypeError if no form or more than one is given.
     """
     given = _given(wxyz, xyzw, rpy, rotvec, axis_angle, euler, fixed, matrix)
@@ -140,7 +142,11 @@ def _rotation_of(given: dict[str, Any], caller: str) -> Array:
     if len(given) > 1:
         raise InputTypeError(f"{caller} got the rotation {len(given)} times: {_names(given)}; give one")
     ((name, value),) = given.items()
-    return _FORMS[name](value)
+    R = _FORMS[name](value)
+    if name in _ANGLES:
+        angles = np.asarray(value if name == "rpy" else value[1], dtype=np.float64)
+        warn_of_degrees(f"{name}=", angles, DEGREE_ANGLES, "np.radians converts them")
+    return R
 
 
 def _from_axis_angle(value: Any) -> Array:
@@ -165,6 +171,9 @@ def _pair(value: Any, name: str, form: str) -> tuple[Any, Any]:
         raise InputTypeError(f"{name}= takes a pair {form}, got {type(value).__name__}")
     return value[0], value[1]
 
+
+_ANGLES = ("rpy", "axis_angle", "euler", "fixed")
+"""The forms with angles that people type."""
 
 _FORMS: dict[str, Callable[[Any], Array]] = {
     "wxyz": lambda q: matrix_of_quaternion(q, "wxyz"),

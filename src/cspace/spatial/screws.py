@@ -13,8 +13,10 @@ from cspace.errors import InputError
 from cspace.spatial.checks import PoseLike, as_pose
 from cspace.spatial.twists import exponential_se3, logarithm_se3
 from cspace.spatial.vectors import cross, length_and_direction
+from cspace.tables import show_fields
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Screw:
     """A screw motion: a line, a pitch and how far.

@@ -115,3 +115,24 @@ def test_what_is_no_question_is_refused():
         nav.follow(line, "dynamic_window", weights=(1, 2))
     with pytest.raises(InputError, match="margin"):
         nav.follow(line, "dynamic_window", margin=-1)
+
+
+@pytest.mark.parametrize("controller", ["pure_pursuit", "dynamic_window"])
+@pytest.mark.parametrize("planner", ["dijkstra", "fast_marching"])
+def test_who_stays_within_the_tolerance_has_arrived(planner, controller):
+    """A vehicle that comes no farther is stuck where the end is out of reach, not where it is at the end."""
+    arrived = 0
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        blocked = np.zeros((60, 60), dtype=bool)
+        row, column = rng.integers(10, 44, 2)
+        blocked[row : row + 5, column : column + 5] = True
+        world, ends = cs.OccupancyGrid(blocked, 0.1), rng.uniform(0.4, 5.6, (2, 2))
+        if not world.is_free(ends).all() or not (route := cs.navigate(world, *ends, planner=planner)):
+            continue
+        for patience in (0.25, 10.0):
+            run = nav.follow(route, controller, world=world, patience=patience)
+            missing = np.hypot(*(run.path[-1] - route.path[-1]))
+            assert run.status != "stuck" or missing > 0.05
+            arrived += run.status == "arrived"
+    assert arrived > 4

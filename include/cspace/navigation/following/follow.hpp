@@ -86,17 +86,21 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
         if (touched) return finish(Outcome::collision);
         const bool across = controller.leaves_path(vehicle);
         double left = at.left(across);
+        const double missing = distance(place_of(truth.pose), track[at.run].end());
         if (left <= settings.tolerance && std::fabs(at.now.speed) <= rest) {
-            if (at.on_last_run()) {
-                const double missing = distance(place_of(truth.pose), track[at.run].end());
+            if (at.on_last_run())
                 return finish(missing <= settings.tolerance ? Outcome::arrived : Outcome::missed);
-            }
             at.before += track[at.run++].length();
             at.look(vehicle, controller, 0, settings.window);
             left = at.left(across);
         }
         if (at.progress() > farthest + advance) farthest = at.progress(), farthest_time = time;
-        if (time - farthest_time >= settings.patience) return finish(Outcome::stuck);
+        if (time - farthest_time >= settings.patience) {
+            // Who comes no farther at the end is there, also where it cut the last corner of the path.
+            const bool there =
+                at.on_last_run() && at.left(false) <= settings.window && missing <= settings.tolerance;
+            return finish(there ? Outcome::arrived : Outcome::stuck);
+        }
         if (time >= settings.time_limit) return finish(Outcome::timeout);
         const bool rests = left <= settings.tolerance && time - farthest_time >= settled;
         const double fast =

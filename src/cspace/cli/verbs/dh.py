@@ -58,7 +58,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     else:
         print_table(out, robot.name, links, degrees=args.deg)
         for text in links.product_texts() if args.products else ():
-            out.line(f"\n{text}")
+            out.page(f"\n{text}")
     return Exit.DONE
 
 

@@ -151,5 +151,5 @@ def print_explanation(args: argparse.Namespace, robot: Robot, out: Output) -> in
         out.document({"schema": "cspace.ik_plan/1", **plan.to_dict()})
     else:
         form = "to_markdown" if args.markdown else "to_latex" if args.latex else "to_text"
-        out.line(getattr(plan, form)().rstrip())
+        (out.page if form == "to_text" else out.line)(getattr(plan, form)().rstrip())
     return Exit.DONE if plan else Exit.NEGATIVE

@@ -27,9 +27,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("words", nargs="*", metavar="WORD", help="words as for --search")
     add_option(parser, "--search WORD…", "all words must occur", default=[])
     add_option(parser, "--dof N", "only arms with N joints", int)
-    text = "only robots with all of these numbers; inertia: masses, for dynamics"
     words = tuple(field.replace(" ", "_") for field in FIELDS)
-    add_option(parser, "--has", text, choices=words, nargs="+", action="extend", default=[])
+    text = f"only robots with all of these numbers: {', '.join(words)}; inertia: masses, for dynamics"
+    add_option(
+        parser, "--has", text, choices=words, nargs="+", action="extend", default=[], metavar="NUMBERS"
+    )
 
 
 def run(args: argparse.Namespace, out: Output) -> int:

@@ -68,8 +68,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     text = "the tip on a straight line to X Y Z in the base, or X Y Z R P Y with roll, pitch, yaw"
     add_option(group, "--line X…", text, read_angle)
     group = parser.add_argument_group("motion")
-    text = "from a configuration to another (default: double_s)"
-    add_option(group, "--profile", text, choices=PROFILES)
+    text = f"from a configuration to another: {', '.join(PROFILES)} (default: double_s)"
+    add_option(group, "--profile", text, choices=PROFILES, metavar="PROFILE")
     add_option(group, "--duration S", "how long [s] (default: as short as the limits allow)", read_number)
     text = "round the corners of --waypoints within this distance [rad, m] (default: a spline through them)"
     add_option(group, "--blend D", text, read_number)

@@ -13,6 +13,7 @@ from cspace.ik.explain.page import Block
 from cspace.ik.explain.survey import InvariantDirection, InvariantPoint, Relation
 from cspace.math import Equation, MatrixEquation
 from cspace.spatial import as_pose
+from cspace.tables import show_fields
 from cspace.tolerances import FARTHEST
 
 Values = Callable[[Array, Array], dict[str, Any]]
@@ -23,6 +24,7 @@ WAYS: Final = {"subproblem 3": 2, "subproblem 4": 2, "subproblem 5": 4, "subprob
 """How many answers a subproblem has at most; one if it is not listed."""
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class Step:
     """One step of a solver. finds: the unknowns, as $t_1$. words: what happens, a sentence.

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from cspace.tables import align_cells, markdown_table
+from cspace.tables import align_cells, markdown_table, show_fields
 
 WIDTH: Final = 100
 """Columns of plain text."""
@@ -45,6 +45,7 @@ IN_LATEX: Final = (
 """What a character of prose is in LaTeX."""
 
 
+@show_fields
 @dataclass(frozen=True)
 class Block:
     """A part of a page: as plain text, as Markdown with formulas between dollar signs, and as LaTeX."""

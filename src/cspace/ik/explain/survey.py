@@ -11,8 +11,10 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import angle_between, common_point
+from cspace.tables import show_fields
 
 
+@show_fields
 @dataclass(frozen=True)
 class Relation:
     """Two neighbouring axes. joints: their numbers from 1. angle: between the lines [rad], 0 to π/2.
@@ -37,6 +39,7 @@ class Relation:
         return ", ".join(found) or "skew"
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class InvariantPoint:
     """A point that some joints do not move: their axes meet in it. place: (3,) in the base at zero [m].
@@ -49,6 +52,7 @@ class InvariantPoint:
     miss: float
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class InvariantDirection:
     """A direction that some joints do not change: their axes are parallel to it. direction: (3,) at zero.

@@ -16,12 +16,13 @@ from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, T
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.spatial.checks import one_pose
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import FARTHEST, SERVED, SETTLED
 
 MOST_STARTS = 1_000_000
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class TaskSolution:
     """The configuration that serves several tasks best, as far as steps from the start can tell.

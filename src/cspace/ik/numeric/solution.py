@@ -13,7 +13,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.ik.wrapping import nearest_winding
 from cspace.kinematics import KinematicModel
-from cspace.tables import html_table, one_line, shown
+from cspace.tables import html_table, one_line, shown, tabulate
 
 REACHED: Final = 0
 STALLED: Final = 1
@@ -22,6 +22,7 @@ Counts = npt.NDArray[np.int64]
 ENDINGS: Final = ("reached", "stalled", "out of iterations")
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class NumericSolution:
     """The configuration at which a descent ended, one per goal.

@@ -12,6 +12,7 @@ from cspace.errors import InputError
 from cspace.spatial.checks import PoseLike, one_pose
 from cspace.spatial.poses import assemble
 from cspace.spatial.vectors import length_and_direction
+from cspace.tables import show_fields
 from cspace.tolerances import FARTHEST
 
 POSE: Final = 0
@@ -22,6 +23,7 @@ HEAVIEST: Final = 1e6
 TASK_WIDTH: Final = 28
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class PoseTask:
     """A frame is to take a pose.
@@ -42,6 +44,7 @@ class PoseTask:
         _pack(self, POSE, one_pose(self.T, "T"), _weights(self.weight, 6))
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class PositionTask:
     """A point of a frame is to come to a place.
@@ -62,6 +65,7 @@ class PositionTask:
         _pack(self, POSITION, _at(self.p, "p"), _weights(self.weight, 3), _vector(self.point, "point"))
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class DirectionTask:
     """An axis of a frame is to point somewhere; turns about it are free.
@@ -84,6 +88,7 @@ class DirectionTask:
         _pack(self, DIRECTION, target, np.full(3, weight), _unit(self.axis, "axis"))
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class CenterOfMassTask:
     """The centre of mass is to come to a place.
@@ -102,6 +107,7 @@ class CenterOfMassTask:
         _pack(self, CENTER_OF_MASS, _at(self.p, "p"), _weights(self.weight, 3))
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class PostureTask:
     """The joints are drawn to a configuration; with a small weight this decides what other tasks leave free.

@@ -13,13 +13,14 @@ from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.ik.solver import Solver
 from cspace.math.wrapping import TURN
-from cspace.tables import html_table, one_line, shown
+from cspace.tables import html_table, one_line, shown, tabulate
 from cspace.tolerances import FARTHEST, ON_LIMIT
 
 MOST_SAMPLES = 100_000
 """Values of a free joint that one call answers for."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Interval:
     """Values of the parameter, lower to upper [rad or m], at which one branch keeps all limits.

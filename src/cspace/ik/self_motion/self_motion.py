@@ -18,10 +18,11 @@ from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
 from cspace.ik.solver import Solver
 from cspace.ik.wrapping import wrap_joints
 from cspace.model import Limits
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import MOVING_JOINT
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class SelfMotion:
     """A one-parameter family of configurations: the joints move, the tip stays.

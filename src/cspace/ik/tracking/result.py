@@ -14,9 +14,10 @@ from cspace.errors import Renamed
 from cspace.ik.branches import branch_labels
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel, singularity
-from cspace.tables import html_table, one_line
+from cspace.tables import html_table, one_line, tabulate
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Branch(Renamed):
     """One way of the joints along the poses, as far as it goes.

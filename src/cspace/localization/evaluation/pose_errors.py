@@ -15,13 +15,14 @@ from cspace.localization.evaluation.alignment import align_points
 from cspace.localization.evaluation.association import associate_tracks
 from cspace.localization.evaluation.tracks import Track, read_track
 from cspace.spatial import inverse_pose, inverse_pose_2d, rotation_distance, rotation_distance_2d
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 
 Rows = npt.NDArray[np.intp]
 ALIGNMENTS = ("se2", "se3")
 UNITS = ("m", "s", "frames")
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class PoseErrors:
     """Errors of an estimated trajectory, a row per pose (ate) or per pair of poses (rpe).

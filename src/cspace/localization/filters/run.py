@@ -17,7 +17,7 @@ from cspace.localization.log import Ids, Mask
 from cspace.mobile import TimedPoses
 from cspace.mobile.timed_poses import NO_REFERENCE
 from cspace.spatial import rotation_2d
-from cspace.tables import count_things, one_line, show_fields
+from cspace.tables import count_things, one_line, show_fields, tabulate
 
 FRAMES = ("base", "map")
 
@@ -93,6 +93,7 @@ class EstimatedPoses:
         )
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Localization(EstimatedPoses):
     """Where a robot was, a row per time; truthy if it is localised at the end.

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from cspace.arrays import Array, whole_number
 from cspace.errors import InputError, Renamed, check_known
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, show_fields, shown, tabulate
 from cspace.tolerances import SAME_CHI2
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ LIMITS: Final = {1: 10.828, 2: 13.816, 3: 16.266, 6: 22.458}
 """Squared errors that a true measurement of so many numbers exceeds once in a thousand times."""
 
 
+@show_fields
 class RejectedLoop(NamedTuple):
     """An edge that robust= left out."""
 
@@ -39,6 +40,7 @@ class RejectedLoop(NamedTuple):
     """The squared error up to which it would have counted."""
 
 
+@show_fields
 class Certificate(NamedTuple):
     """What the dual of a pose graph says about an answer; truthy if it is the global optimum."""
 
@@ -75,6 +77,7 @@ def turn_to_map(pose: Array) -> Array:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class GraphAnswer(Renamed):
     """An optimized pose graph; truthy if it converged.

@@ -16,13 +16,14 @@ from cspace.localization.checks import Running
 from cspace.localization.graph.answer import GraphAnswer, turn_to_map
 from cspace.localization.graph.checks import Ids, check_points, read_information, read_poses
 from cspace.localization.graph.pose_graph import PoseGraph
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import LARGEST_IN_GRAPH
 
 SHOWN_WAITING = 5
 """The most ids that a message lists."""
 
 
+@tabulate("ids", "landmark_ids", "waiting", "stats")
 class IncrementalGraph(Running):
     """A pose graph in the plane or in space to which measurements are added one after the other.
 

@@ -13,8 +13,10 @@ from cspace.localization.graph.files import read_graph
 from cspace.localization.graph.g2o_writer import write_g2o
 from cspace.localization.graph.graph_arrays import GraphArrays
 from cspace.localization.graph.optimize import Request, optimize_graph
+from cspace.tables import tabulate
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class PoseGraph(GraphArrays):
     """A pose graph in the plane or in space; its arrays cannot be changed.

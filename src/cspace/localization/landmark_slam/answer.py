@@ -14,7 +14,7 @@ from cspace.localization.filters.run import FRAMES, turn_covariances
 from cspace.localization.landmark_slam.outcomes import ReadingOutcomes
 from cspace.localization.log import Ids, Landmarks, Mask
 from cspace.mobile import TimedPoses
-from cspace.tables import count_things, one_line, show_fields
+from cspace.tables import count_things, one_line, show_fields, tabulate
 
 
 @show_fields
@@ -42,6 +42,7 @@ class LandmarkSlamStats:
     seconds: float
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class LandmarkSlam:
     """A drive with the landmarks that it found; truthy if the robot is localised on them at the end.

@@ -17,7 +17,7 @@ from cspace.localization.sensors import RangeBearing, read_sensor, read_share
 from cspace.mobile import MotionNoise, RandomWalk
 from cspace.mobile.noise import read_noise
 from cspace.spatial import log_se2, pose_2d
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 
 LINEARIZATIONS: Final = ("invariant", "first_estimate", "plain")
 ASSOCIATIONS: Final = ("joint", "nearest")
@@ -42,6 +42,7 @@ MOST_PARTICLES: Final = 1_000_000
 """Particles above which a map of each no longer fits into memory."""
 
 
+@tabulate("status", "pose", "covariance", "landmarks")
 class LandmarkFilter(Running):
     """What both filters share. Made by EkfSlam and FastSlam."""
 

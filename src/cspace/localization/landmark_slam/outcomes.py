@@ -10,12 +10,13 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.localization.log import Ids, Mask
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 
 VERDICTS: Final = ("used", "rejected", "created", "skipped")
 """Names of verdicts by their number in the core."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class ReadingOutcomes:
     """What a filter did with readings, a row each.

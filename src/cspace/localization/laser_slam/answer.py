@@ -13,9 +13,10 @@ from cspace.localization.graph import PoseGraph
 from cspace.localization.log import Scans
 from cspace.maps import EvidenceGrid
 from cspace.mobile import TimedPoses
-from cspace.tables import count_things, one_line, show_fields
+from cspace.tables import count_things, one_line, show_fields, tabulate
 
 
+@show_fields
 class LoopClosure(NamedTuple):
     """A scan that was matched against those of an earlier pass."""
 
@@ -52,6 +53,7 @@ class LaserSlamStats:
     seconds: float
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class LaserSlam:
     """A drive with its map; truthy if the robot is localised on it at the end.

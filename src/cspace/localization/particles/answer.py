@@ -10,7 +10,7 @@ from cspace.arrays import Array
 from cspace.localization.filters.run import EstimatedPoses
 from cspace.localization.log import Ids, Mask
 from cspace.localization.particles.state import FilterEvent, PoseMode
-from cspace.tables import show_fields
+from cspace.tables import show_fields, tabulate
 
 
 @show_fields
@@ -28,6 +28,7 @@ class MapLocalizationStats:
     seconds: float
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class MapLocalization(EstimatedPoses):
     """Where a robot was on a map, a row per time, by a filter that may have several modes; truthy if it is

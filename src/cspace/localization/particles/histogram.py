@@ -32,7 +32,7 @@ from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, read_sensor
 from cspace.maps import ByteField
 from cspace.spatial import log_se2, pose_2d, rotation_2d
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import LEAST_OF_BEST, STANDING, UNIFORM_SHARE, WHOLE_CELLS
 
 MOST_CELLS: Final = 4_000_000
@@ -47,6 +47,7 @@ LEAST_SHARE: Final = 0.01
 """Share of the probability from which a mode is listed."""
 
 
+@tabulate("status", "reason", "pose", "covariance", "modes")
 class HistogramFilter(Running):
     """Where a robot is, as the probability of each cell of x, y and θ.
 

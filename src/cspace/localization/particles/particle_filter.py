@@ -24,7 +24,7 @@ from cspace.localization.particles.state import FilterEvent, PoseMode
 from cspace.localization.sensors import LaserScanner, RangeBearing
 from cspace.mobile import MotionNoise
 from cspace.mobile.noise import read_noise
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import STANDING
 
 PARTICLES: Final = 1000
@@ -71,6 +71,7 @@ KEPT_SHARE: Final = 0.1
 """The least share of the weight that the particles before a search keep: later scans may agree with them."""
 
 
+@tabulate("status", "reason", "pose", "covariance", "modes")
 class ParticleFilter(Running):
     """Where a robot is, as weighted poses: predict with odometry, update with scans or readings.
 

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.tables import show_fields
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class PoseMode:
     """A cluster of particles. pose (3,): x, y [m], θ [rad]. covariance (3, 3) of ξ in T exp ξ, in base.
@@ -26,6 +28,7 @@ class PoseMode:
         return float(np.sqrt(max(longest, 0.0))), float(np.sqrt(max(self.covariance[2, 2], 0.0)))
 
 
+@show_fields
 @dataclass(frozen=True)
 class FilterEvent:
     """What a particle filter did beyond weighing: update, the number of the measurement; kind, "match" where

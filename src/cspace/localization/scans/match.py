@@ -14,7 +14,7 @@ from cspace.errors import InputError, check_known
 from cspace.localization.checks import read_pose
 from cspace.localization.scans.points import MOST_BEAMS, read_scan, thin_scan
 from cspace.maps import ByteField
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import WIDEST_BELL
 
 METHODS: Final = ("correlation", "icp")
@@ -24,6 +24,7 @@ LARGEST_WINDOW: Final = 100.0
 """Half a side [m]; search_pose is for whole maps."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class ScanMatch:
     """Where a scan fits best; truthy if it is matched.

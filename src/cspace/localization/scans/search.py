@@ -25,7 +25,7 @@ from cspace.arrays import (
 )
 from cspace.errors import InputError, InputTypeError, TimeLimitError
 from cspace.maps import ByteField
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 
 WIDEST_STEP: Final = 0.02
 """Between neighbouring headings [rad]: beams of five metres then end within a cell of 5 cm from where they
@@ -42,6 +42,7 @@ FARTHEST: Final = 1e8
 """Farthest point of a scan, in cells."""
 
 
+@tabulate()
 class PoseModes(NamedTuple):
     """Poses from which a scan fits a map, the best first; falsy if there is none.
 

@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.navigation.curves.curve import Curve
 from cspace.navigation.route import Stats
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import CAR_POSES
 
 REASONS: Final = (
@@ -23,6 +23,7 @@ REASONS: Final = (
 """The reasons for the end of a search, in the order of the compiled core."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class CarRoute:
     """The result of hybrid A*; truthy if a path was found.

@@ -32,6 +32,7 @@ from cspace.tolerances import FINEST_LEVEL, QUADTREE_CELLS, QUADTREE_DEPTH, UNIF
 METRICS: Final = ("euclidean", "manhattan")
 
 
+@show_fields
 class ApproximateCells(NamedTuple):
     """The squares of the decomposition of a world; they fill the square around its bounds."""
 

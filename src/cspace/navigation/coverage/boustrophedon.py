@@ -13,7 +13,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.checks import need_grid
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, tabulate
 from cspace.tolerances import CELL_ROUNDING
 
 ALONG: Final = ("x", "y")
@@ -21,6 +21,7 @@ ALONG: Final = ("x", "y")
 Labels = npt.NDArray[np.int32]
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Coverage:
     """A path that sweeps a grid; truthy if every free cell is swept.

@@ -11,6 +11,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, guard_memory, positive_number
 from cspace.errors import InputError
+from cspace.tables import show_fields, tabulate
 
 KINDS: Final = {1: "left", 0: "straight", -1: "right"}
 Pieces = tuple[tuple[int, float], ...]
@@ -18,6 +19,7 @@ Pieces = tuple[tuple[int, float], ...]
 reverse."""
 
 
+@show_fields
 @dataclass(frozen=True)
 class Segment:
     """One segment of a curve: kind "left", "straight" or "right" as seen when driving forwards, length [m],
@@ -29,6 +31,7 @@ class Segment:
     direction: int
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Curve:
     """A path of a car from pose to pose, composed of arcs of one radius and straight segments.

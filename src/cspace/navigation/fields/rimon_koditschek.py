@@ -30,7 +30,7 @@ from cspace.navigation.checks import check_ends
 from cspace.navigation.planner import NO_EVENTS, PlanePlanner
 from cspace.navigation.route import Route, Stats, new_route
 from cspace.search import option
-from cspace.tables import count_things, show_fields
+from cspace.tables import count_things, show_fields, tabulate
 from cspace.tolerances import (
     FARTHEST_POINT,
     NAVIGATION_FUNCTIONS,
@@ -53,6 +53,7 @@ class NavigationEvidence(NamedTuple):
     """The reason why there is no navigation function, as one sentence; empty where there is one."""
 
 
+@tabulate("kappa", "obstacles", "is_proven", "goal", "saddles")
 class NavigationFunction:
     """A navigation function: call it with points (..., 2) [m] for φ (...), 0 at the goal and 1 on walls.
 

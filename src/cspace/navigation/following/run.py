@@ -9,12 +9,13 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.mobile import Car
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 OUTCOMES: Final = ("arrived", "stuck", "collision", "timeout", "missed")
 """How a run may end, in the order of the compiled core."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class Run:
     """One run of a vehicle, a row per step of the simulator; truthy if it arrived.

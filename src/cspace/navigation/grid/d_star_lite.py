@@ -22,9 +22,10 @@ from cspace.navigation.checks import check_ends, need_grid
 from cspace.navigation.grid.search import METRICS, GridPlanner
 from cspace.navigation.route import STATUSES, Route, Stats, new_route
 from cspace.search import option
-from cspace.tables import count_things
+from cspace.tables import count_things, tabulate
 
 
+@tabulate("grid", "route")
 class DStarLite:
     """A robot on its way over a grid of which it learns more.
 

@@ -21,9 +21,10 @@ from cspace.navigation.checks import need_polygons
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import explain_division
-from cspace.tables import count_things
+from cspace.tables import count_things, show_fields
 
 
+@show_fields
 class VisibilityGraph(NamedTuple):
     """The corners of a world that see each other."""
 

@@ -10,9 +10,10 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.planning.joint_space.cells import JointPair
 from cspace.planning.joint_space.shares import find_standard_error, find_wilson_interval
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Projection(JointPair):
     """For each cell of two joints, whether the others can be set so that the robot is free.

@@ -12,12 +12,13 @@ import numpy.typing as npt
 
 from cspace.arrays import Array, guard_memory
 from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid, JointPair
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 SELF = "self"
 """What blocks a configuration in which the robot touches itself, or what it carries."""
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False)
 class Slice(JointPair):
     """Where a robot is free while two joints move and the others are held.

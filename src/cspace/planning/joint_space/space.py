@@ -27,7 +27,7 @@ from cspace.planning.joint_space.projections import Projection
 from cspace.planning.joint_space.slices import Slice, name_obstacles
 from cspace.planning.joint_space.volumes import Volume
 from cspace.planning.space import ArmSpace
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import LARGEST_NUMBER
 
 Seed = int | np.random.Generator | None
@@ -45,6 +45,7 @@ MOST_SAMPLES: Final = 10**10
 EXACT_ONLY: Final = "only planar arms with two joints have an exact space, cs.configuration_space(arm, scene)"
 
 
+@tabulate("joint_names", "lower", "upper", "obstacles", "margin")
 class JointSpace(Renamed):
     """The configurations of a robot with collision geometry, free or blocked, for any number of joints.
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cspace.planning.joint_space.shares import find_standard_error, find_wilson_interval
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 
 
+@tabulate()
 @dataclass(frozen=True)
 class Volume:
     """The free share of the configurations within the limits, and what blocks the others.
