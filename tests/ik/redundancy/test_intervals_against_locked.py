@@ -81,6 +81,16 @@ def miscounted(robot, T, found, joint, n):
     return wrong
 
 
+def touches_limit(robot, T, q, joint):
+    """Whether q is within its limits only there: the next values on both sides keep them no more."""
+    values = q[joint] + np.array([-1e-4, 1e-4])
+    own = (values > robot.limits.lower[joint]) & (values < robot.limits.upper[joint])
+    b = robot.ik(T, locked={joint: values[own]})
+    return all(
+        (excess(robot, rows[:count], joint) > 0).all() for rows, count in zip(b.q, b.count, strict=True)
+    )
+
+
 def check_goal(robot, q, n):
     """Whether the intervals are complete; they must then agree with the locked solver."""
     T = robot.fk(q)
@@ -89,8 +99,8 @@ def check_goal(robot, q, n):
         return False
     joint = robot.joint_names.index(found.parameter)
     assert miscounted(robot, T, found, joint, n) == []
-    nearest = min(abs(np.angle(np.exp(1j * (end - q[joint])))) for i in found for end in (i.lower, i.upper))
-    assert found.feasible(q[joint]) or nearest < 1e-6
+    gaps = [abs(np.angle(np.exp(1j * (end - q[joint])))) for i in found for end in (i.lower, i.upper)]
+    assert found.feasible(q[joint]) or min(gaps, default=np.inf) < 1e-6 or touches_limit(robot, T, q, joint)
     assert all(interval.upper - interval.lower <= TURN + 1e-12 for interval in found)
     return True
 
@@ -148,6 +158,36 @@ def test_a_whole_turn_more_changes_no_branch(name):
         value = q[robot.joint_names.index(found.parameter)]
         for turns in range(-3, 4):
             assert found.feasible(value + TURN * turns) == found.feasible(value) != ()
+
+
+def at_limits(robot, rng):
+    """A configuration, often at multiples of 45 degrees, with one joint exactly at one of its limits."""
+    lower, upper = robot.limits.lower, robot.limits.upper
+    q = robot.random_configuration(rng=rng)
+    if rng.integers(2):
+        q = round_angles(robot, q)
+    finite = np.flatnonzero(np.isfinite(lower) & (upper - lower < TURN))
+    joint = rng.choice(finite)
+    q[joint] = rng.choice([lower[joint], upper[joint]])
+    return q
+
+
+@pytest.mark.parametrize("name", [*SPHERICAL, *OTHERS])
+def test_joints_exactly_at_a_limit(name):
+    robot, rng = cs.load_robot(name), np.random.default_rng(11)
+    for _ in range(12):
+        check_goal(robot, at_limits(robot, rng), 25)
+
+
+@pytest.mark.parametrize("name", ["lwr4", "iiwa14", "xmatepro7", "r1pro_left"])
+def test_an_elbow_that_rests_on_its_limit_is_within(name):
+    """Where no self-motion moves the elbow, rounding decides on which side of its limit it computes."""
+    robot, rng = cs.load_robot(name), np.random.default_rng(12)
+    for bound in (robot.limits.lower, robot.limits.upper):
+        for q in robot.random_configuration(5, rng=rng):
+            q[3] = bound[3]
+            found = robot.redundancy(robot.fk(q))
+            assert found.feasible(q[robot.joint_names.index(found.parameter)])
 
 
 @pytest.mark.slow
