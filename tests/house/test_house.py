@@ -80,7 +80,9 @@ def test_private_attributes_are_set_by_the_file_of_their_class():
     for path in tree.python_files():
         name, text = str(path.relative_to(tree.PACKAGE)), path.read_text(encoding="utf-8")
         own = set(re.findall(r"\b(?:self|cls)\.(_\w+)|^    (_\w+):", text, re.M))
-        for found in re.finditer(r"^\s*(?!self\b)[\w.]+\.(_(?!_)\w+)(?:: [^=\n]+)? = ", text, re.M):
+        for found in re.finditer(
+            r"^\s*(?!self\b)[\w.]+\.(_(?!_|repr_html_)\w+)(?:: [^=\n]+)? = ", text, re.M
+        ):
             known = any(found.group(1) in pair for pair in own) or name in FOREIGN_STATE
             assert known, f"{name}: {found.group().strip()}"
 

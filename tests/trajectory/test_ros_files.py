@@ -14,7 +14,8 @@ import cspace as cs
 from cspace.errors import DescriptionError, InputError, MissingExtraError
 from cspace.trajectory import from_ros, state_to_state, to_csv, to_ros
 from cspace.trajectory.message_yaml import read_documents
-from localization.test_log_fuzz import mutate
+from localization.mutations import mutate
+from localization.test_log_fuzz import WORDS
 
 NAMES = ("shoulder", 'the "elbow", bent')
 
@@ -153,7 +154,7 @@ def test_mutated_messages_are_read_whole_or_refused(tmp_path, seed, style):
     whole = yaml.safe_dump(message_of(motion(seed), np.arange(0, 8 * 10**8, 10**8)), default_flow_style=style)
     refused = 0
     for _ in range(150):
-        path.write_text(mutate(whole, rng), encoding="utf-8")
+        path.write_text(mutate(whole, WORDS, rng), encoding="utf-8")
         found = read_or_refuse(path)
         refused += isinstance(found, str)
         assert "a.yaml" in found if isinstance(found, str) else np.isfinite(found).all()

@@ -243,11 +243,11 @@ inline bool follow_valley(const Chain& chain, const Posed& goal, double length, 
     double at[max_joints], best[max_joints], least = arrived;
     for (int i = 0; i < chain.n; ++i) at[i] = q[i];
     measure_error(chain, goal, length, at, error);
-    for (int step = 0, idle = 0; step < most_steps && least >= settled && idle < patience; ++step) {
+    for (int step = 0, waited = 0; step < most_steps && least >= settled && waited < patience; ++step) {
         const double size = size_of_error(error);
-        idle += least < arrived;
+        waited += least < arrived;
         if (size < least) {
-            if (size < 0.5 * least) idle = 0;
+            if (size < 0.5 * least) waited = 0;
             least = size;
             for (int i = 0; i < chain.n; ++i) best[i] = at[i];
             if (least < settled) break;

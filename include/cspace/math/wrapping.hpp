@@ -42,7 +42,7 @@ template <class V>
 CSPACE_INLINE V wrap_angle(V t) {
     return wrap_once(short_way(t));
 }
-// The angle in [start, start + 2π). The quotient of an angle just below a whole turn rounds to it.
+// The angle in [start, start + 2π). The quotient of an angle just below a multiple of 2π rounds to it.
 inline double wrap_above(double t, double start) {
     return max(start, t - 2 * pi * std::floor((t - start) / (2 * pi)));
 }

@@ -227,6 +227,9 @@ inline void trace_loops_at(Tracer& tracer, const LockedArm& locked, int joint, i
         }
     }
 }
+// [rad, m] Farther from an end than this, a value is certainly inside or outside.
+inline constexpr double far_from_end = 1e-4;
+
 // Number of intervals that contain a value modulo 2π; −1 where the value is within `near_end` of an end.
 inline int count_intervals(const Tracer& tracer, double value, double near_end) {
     int count = 0;
@@ -243,7 +246,7 @@ inline int count_intervals(const Tracer& tracer, double value, double near_end) 
 // Whether the number of intervals at a value equals the number of solutions there that satisfy their limits,
 // or an end is too close to tell.
 inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, double value,
-                                  double near_end = 1e-4) {
+                                  double near_end = far_from_end) {
     int within = 0;
     for (int j = 0; j < rows.count; ++j) {
         if (is_far(tracer, rows.q[j])) return true;  // where no arc is followed
@@ -262,7 +265,7 @@ inline void check_short_intervals(const Tracer& tracer, const Sweep& sweep, doub
         const Interval& interval = tracer.out->interval[k];
         const double length = interval.upper - interval.lower;
         if (length > spacing) continue;
-        const double near_end = min(1e-4, 0.1 * length);
+        const double near_end = min(far_from_end, 0.1 * length);
         const double middle = 0.5 * (interval.lower + interval.upper);
         sweep_values(sweep, &middle, 1, [&](int, const SweptRows& rows) {
             tracer.out->complete = agrees_with_solutions(tracer, rows, middle, near_end);

@@ -19,7 +19,8 @@ from cspace.errors import InputError, LogError, check_known
 from cspace.files import path_of, read_regular
 from cspace.localization.graph.graph_arrays import Graph
 from cspace.localization.logs.lines import Lines, unpack_gzip
-from cspace.spatial import pose
+from cspace.spatial import pose, rotation
+from cspace.spatial.sequences import matrix_of_fixed
 from cspace.tables import count_things
 from cspace.tolerances import LARGEST_IN_GRAPH, LOG_BYTES, SINGULAR_INFORMATION, UNIFORM_ANGLE
 
@@ -471,7 +472,9 @@ def make_poses(rows: list[Array]) -> Array:
         which = [k for k, row in enumerate(rows) if len(row) == width]
         numbers = np.array([rows[k] for k in which])
         turn, xyz = numbers[:, 3:], numbers[:, :3]
-        made[which] = pose(xyz, rpy=turn) if width == len(ANGLES) else pose(xyz, xyzw=turn)
+        has_angles = width == len(ANGLES)
+        R = matrix_of_fixed((0, 1, 2), turn) if has_angles else rotation(xyzw=turn)
+        made[which] = pose(xyz, matrix=R)
     return made
 
 
