@@ -5,10 +5,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "cspace/ik/numeric/descent.hpp"
 #include "cspace/ik/numeric/posture.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/math/wrapping.hpp"
 
 namespace cspace::ik {
@@ -183,14 +188,68 @@ inline bool is_one_solution(const Path& path, const Task& task, const Rows& rows
     for (int j = 0; j < path.n; ++j) {
         const double step = path.slides[j] ? (b[j] - a[j]) / path.length : short_way(b[j] - a[j]);
         apart = std::fmax(apart, std::fabs(step));
+        if (apart > close_solution) return false;
         halfway[j] = a[j] + 0.5 * step * unit_of(path, j);
     }
     if (apart <= same_solution) return true;
-    if (apart > close_solution) return false;
     Gap<double> gap;
     measure_gap(path, rows, T_goal_first, halfway, gap);
     return std::fmax(gap.position, gap.rotation) <= task.tolerance;
 }
+
+// Configurations by the value of one joint, in cells that are wider than close solutions are apart.
+class SolutionCells {
+  public:
+    SolutionCells(const Path& path, const DescentResults& results) : path_(path) {
+        constexpr std::size_t looks = 1000;
+        std::size_t most = 0;
+        for (int j = 0; j < path.n; ++j) {
+            std::unordered_set<std::int64_t> different;
+            for (std::size_t row = 0; row < std::min(looks, results.ends.size()); ++row)
+                if (results.ends[row].ending == Ending::reached)
+                    different.insert(cell_of(j, results.q.data() + std::size_t(path.n) * row));
+            if (different.size() <= most) continue;
+            most = different.size();
+            joint_ = j;
+        }
+    }
+    void add_row(const double* q, std::size_t row) { rows_[cell_of(joint_, q)].push_back(row); }
+
+    // The least of the rows near q for which is_wanted(row); `none` without.
+    template <class IsWanted>
+    std::size_t find_row(const double* q, std::size_t none, const IsWanted& is_wanted) const {
+        InterruptPoll poll(1 << 10);
+        const std::int64_t cell = cell_of(joint_, q);
+        std::size_t least = none;
+        for (const std::int64_t step : {-1, 0, 1}) {
+            const auto at = rows_.find(wrap_cell(joint_, cell + step));
+            if (at == rows_.end()) continue;
+            for (const std::size_t row : at->second) {
+                poll.step();
+                if (row >= least) break;
+                if (is_wanted(row)) least = row;
+            }
+        }
+        return least;
+    }
+
+  private:
+    static constexpr std::int64_t around = std::int64_t(2 * pi / close_solution);
+
+    std::int64_t wrap_cell(int j, std::int64_t cell) const {
+        return path_.slides[j] ? cell : (cell + around) % around;
+    }
+    std::int64_t cell_of(int j, const double* q) const {
+        const double unit = path_.slides[j] ? close_solution * path_.length : 2 * pi / double(around);
+        const double value = path_.slides[j] ? q[j] : wrap_above(q[j], 0);
+        constexpr double farthest = 1e18;  // what an integer holds
+        return wrap_cell(j, std::int64_t(std::floor(std::clamp(value / unit, -farthest, farthest))));
+    }
+
+    const Path& path_;
+    int joint_ = 0;
+    std::unordered_map<std::int64_t, std::vector<std::size_t>> rows_;
+};
 
 // Selects the rows of results that reach the goal and are distinct, in the order in which they were found.
 // Angles are given modulo 2π near `wanted` (n,). Returns their number; q (rows, n) receives them, and hits
@@ -201,14 +260,18 @@ inline std::size_t pick_distinct(const Path& path, const Task& task, const doubl
     const std::size_t n = std::size_t(path.n);
     const Rows rows = rows_of(task);
     const Posed T_goal_first = inverse(read_goal(goal).T) * path.T_base_first;
+    SolutionCells cells(path, results);
     std::size_t count = 0;
     for (std::size_t row = 0; row < results.ends.size(); ++row) {
         const DescentEnd& end = results.ends[row];
         if (end.ending != Ending::reached) continue;
         const double* found = results.q.data() + n * row;
-        std::size_t k = 0;
-        while (k < count && !is_one_solution(path, task, rows, T_goal_first, q + n * k, found)) ++k;
+        poll_interrupts();
+        const std::size_t k = cells.find_row(found, count, [&](std::size_t at) {
+            return is_one_solution(path, task, rows, T_goal_first, q + n * at, found);
+        });
         if (k == count) {
+            cells.add_row(found, k);
             std::copy_n(found, n, q + n * k);
             nearest_turns(path, task, wanted, q + n * k);
             residual[k] = std::fmax(end.position, end.rotation);
