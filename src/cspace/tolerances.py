@@ -705,8 +705,8 @@ CHAIN_CORRECTION: Final = 1e-4
 """Singular value below which a chain is not corrected towards its poses: the joints would have to jump."""
 
 CHAIN_HELD: Final = 1e-6
-"""Damping of a chain, as a share of its stiffness: a joint that turns the tip about its free axis may be
-anywhere, and nothing else holds it."""
+"""Damping of a chain, as a share of its stiffness: the goal leaves a joint that turns the tip about its free
+axis undetermined."""
 
 POSE_ROUNDING: Final = 1e-13
 """[m or rad] Of a pose that is reached."""

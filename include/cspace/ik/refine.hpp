@@ -319,7 +319,7 @@ inline void damped_step_by_reflections(const PoseError& error, double damping, d
 inline double descend_to_goal(const Chain& chain, const Posed& goal, double length, double* q,
                               PoseError& error, int most_steps, double settled = tolerance::last_digits) {
     constexpr double noise = 1e-13;
-    constexpr double coarse = 1e-20;         // damping from which normal equations are exact enough
+    constexpr double coarse = 1e-20;         // damping above which a free joint is at rest
     constexpr double least_damping = 1e-20;  // rises to one within thirty steps
     constexpr double growth = 4;
     double damping = 0, grow = growth;
