@@ -143,8 +143,8 @@ double PolygonCore::path_clearance(std::span<const Point> path) const {
 Table<std::uint8_t> PolygonCore::rasterize(double side, int rows, int columns) const {
     const PolygonWorld& world = state_->world;
     Table<std::uint8_t> blocked{zero_bytes(std::size_t(rows) * std::size_t(columns)), std::size_t(columns)};
-    maps::rasterize(world.space, world.outlines.low, side, rows, columns, state_->tolerance,
-                    blocked.values.data());
+    maps::rasterize_obstacles(world.space, world.outlines.low, side, rows, columns, state_->tolerance,
+                              blocked.values.data());
     return blocked;
 }
 

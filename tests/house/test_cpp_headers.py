@@ -83,15 +83,12 @@ ONE_WORD = {
         exchanged finish formulation forward height holds level lever link nearest noise once passes
         quarter range reversed scaled size times touching turned twice value values vertex weight
     """,
-    "localization": "widen",
-    "maps": "after before gap rasterize",
     "math": """
         append carry column crossing decompose deliver direction doubled evaluate fill fill3 fill33
         lane load meets middle negated orientation polished power project reduce reflect repeat
         rotate row select shortening slope store times variations where window
     """,
     "navigation": "ahead allowed bisector blocked centroid crossing leaves order other side",
-    "trajectory": "root",
 }
 """Of each room those that still have one word. Give new ones a verb and an object; take renamed ones out."""
 

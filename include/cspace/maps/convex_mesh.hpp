@@ -67,8 +67,8 @@ class Merger {
         previous.resize(count);
         gone.assign(count, 0);
         for (Index h = 0; h < Index(count); ++h) {
-            next[std::size_t(h)] = 3 * (h / 3) + after(h % 3);
-            previous[std::size_t(h)] = 3 * (h / 3) + before(h % 3);
+            next[std::size_t(h)] = 3 * (h / 3) + next_corner(h % 3);
+            previous[std::size_t(h)] = 3 * (h / 3) + previous_corner(h % 3);
         }
         merge();
     }
@@ -137,7 +137,7 @@ inline ConvexMesh make_convex_mesh(const FreeSpace& space) {
         for (Index h = seed; number[std::size_t(h)] == none; h = merged.next[std::size_t(h)]) {
             number[std::size_t(h)] = Index(half.size());
             half.push_back(h);
-            mesh.corner.push_back(sectors.of[std::size_t(3 * (h / 3) + after(h % 3))]);
+            mesh.corner.push_back(sectors.of[std::size_t(3 * (h / 3) + next_corner(h % 3))]);
             mesh.polygon.push_back(p);
             mesh.of_triangle[std::size_t(h / 3)] = p;
         }

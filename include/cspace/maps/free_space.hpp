@@ -259,9 +259,9 @@ inline Boundary boundary_of(const FreeSpace& space) {
     boundary.next.assign(boundary.points.size(), none);
     boundary.ring.assign(boundary.points.size(), none);
     const auto next_wall = [&](Index t, int e) {
-        for (e = after(e); !space.is_wall(t, e);) {
+        for (e = next_corner(e); !space.is_wall(t, e);) {
             const Index u = mesh[t].across[std::size_t(e)];
-            e = after(mesh[u].edge_to(t));
+            e = next_corner(mesh[u].edge_to(t));
             t = u;
         }
         return 3 * t + e;

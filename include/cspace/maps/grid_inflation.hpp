@@ -32,7 +32,7 @@ inline void widen_line(std::vector<std::uint64_t>& line, std::vector<std::uint64
 }
 
 // How many half cells lie between two cells that are d rows apart, or between a centre and a cell.
-inline std::int64_t gap(int d, bool from_centers) {
+inline std::int64_t half_cell_gap(int d, bool from_centers) {
     return std::max(2 * std::int64_t(d) - (from_centers ? 1 : 2), std::int64_t(0));
 }
 
@@ -42,9 +42,9 @@ inline std::vector<int> list_widths(double limit, bool from_centers, int rows, i
     std::vector<int> found;
     int width = columns + 1;
     for (int row = 0; row <= rows + 1; ++row) {
-        const std::int64_t up = gap(row, from_centers);
+        const std::int64_t up = half_cell_gap(row, from_centers);
         const auto is_near = [&](int w) {
-            const std::int64_t across = gap(w, from_centers);
+            const std::int64_t across = half_cell_gap(w, from_centers);
             return double(up * up + across * across) < limit;
         };
         while (width >= 0 && !is_near(width)) --width;

@@ -27,8 +27,8 @@ inline bool reaches_into(const Point* corner, int count, const Box& square) {
 // Marks in blocked (rows × columns, row by row from the lower left corner of the bounds, cells of a side)
 // those that an obstacle reaches into by more than a slack [m], which is what rounding makes of corners, and
 // those equally near to a wall without thickness: a wall between two cells blocks both.
-inline void rasterize(const FreeSpace& space, Point origin, double side, int rows, int columns, double slack,
-                      std::uint8_t* blocked) {
+inline void rasterize_obstacles(const FreeSpace& space, Point origin, double side, int rows, int columns,
+                                double slack, std::uint8_t* blocked) {
     const Triangulation& mesh = space.mesh;
     InterruptPoll poll(256);
     const auto mark = [&](const Point* corner, int count) {
@@ -60,7 +60,7 @@ inline void rasterize(const FreeSpace& space, Point origin, double side, int row
             continue;
         }
         for (int e = 0; e < 3; ++e) {
-            const Point wall[2] = {corner[after(e)], corner[before(e)]};
+            const Point wall[2] = {corner[next_corner(e)], corner[previous_corner(e)]};
             if (space.is_wall(t, e) && space.is_free(tri.across[std::size_t(e)])) mark(wall, 2);
         }
     }

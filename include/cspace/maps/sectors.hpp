@@ -33,22 +33,22 @@ inline Sectors find_sectors(const FreeSpace& space) {
         Index t = seed / 3;
         int i = int(seed % 3);
         const Index v = mesh[t].corner[std::size_t(i)];
-        while (!space.is_wall(t, before(i))) {  // clockwise to a wall, or once around
-            t = mesh[t].across[std::size_t(before(i))];
+        while (!space.is_wall(t, previous_corner(i))) {  // clockwise to a wall, or once around
+            t = mesh[t].across[std::size_t(previous_corner(i))];
             i = mesh[t].place_of(v);
             if (t == seed / 3) break;
         }
-        const bool has_walls = space.is_wall(t, before(i));
-        const Point first = mesh.point(mesh[t].corner[std::size_t(after(i))]), center = mesh.point(v);
+        const bool has_walls = space.is_wall(t, previous_corner(i));
+        const Point first = mesh.point(mesh[t].corner[std::size_t(next_corner(i))]), center = mesh.point(v);
         const Index sector = Index(found.all.size()), first_corner = 3 * t + i;
         for (;;) {
             found.of[std::size_t(3 * t + i)] = sector;
-            if (space.is_wall(t, after(i))) break;
-            t = mesh[t].across[std::size_t(after(i))];
+            if (space.is_wall(t, next_corner(i))) break;
+            t = mesh[t].across[std::size_t(next_corner(i))];
             i = mesh[t].place_of(v);
             if (found.of[std::size_t(3 * t + i)] == sector) break;
         }
-        const Point last = mesh.point(mesh[t].corner[std::size_t(before(i))]);
+        const Point last = mesh.point(mesh[t].corner[std::size_t(previous_corner(i))]);
         const int turn = orientation(last, center, first);
         const bool turns =
             has_walls && (turn < 0 || (turn == 0 && (first == last || !is_between(last, center, first))));

@@ -12,10 +12,11 @@ namespace cspace::maps {
 
 inline constexpr Index none = -1;
 
-constexpr int after(int i) { return i == 2 ? 0 : i + 1; }
-constexpr int before(int i) { return i == 0 ? 2 : i - 1; }
+constexpr int next_corner(int i) { return i == 2 ? 0 : i + 1; }
+constexpr int previous_corner(int i) { return i == 0 ? 2 : i - 1; }
 
-// Counterclockwise. Edge i lies opposite corner i and leads from corner after(i) to corner before(i).
+// Counterclockwise. Edge i lies opposite corner i and leads from corner next_corner(i) to corner
+// previous_corner(i).
 struct Triangle {
     std::array<Index, 3> corner;
     std::array<Index, 3> across;  // the triangle on the other side of each edge, or none
@@ -23,8 +24,8 @@ struct Triangle {
 
     int place_of(Index vertex) const { return corner[0] == vertex ? 0 : corner[1] == vertex ? 1 : 2; }
     int edge_to(Index triangle) const { return across[0] == triangle ? 0 : across[1] == triangle ? 1 : 2; }
-    Index begin(int edge) const { return corner[std::size_t(after(edge))]; }
-    Index end(int edge) const { return corner[std::size_t(before(edge))]; }
+    Index begin(int edge) const { return corner[std::size_t(next_corner(edge))]; }
+    Index end(int edge) const { return corner[std::size_t(previous_corner(edge))]; }
 };
 
 // Where a point lies: in a triangle, on its edge, or at its corner.
@@ -61,7 +62,7 @@ struct Triangulation {
             random = random * 1664525u + 1013904223u;
             const Triangle& tri = (*this)[t];
             int step = -1;
-            for (int k = 0, i = int(random >> 24) % 3; k < 3; ++k, i = after(i)) {
+            for (int k = 0, i = int(random >> 24) % 3; k < 3; ++k, i = next_corner(i)) {
                 if (tri.across[std::size_t(i)] == previous && previous != none) continue;
                 const int side = orientation(point(tri.begin(i)), point(tri.end(i)), p);
                 if (side < 0) {
@@ -97,7 +98,7 @@ struct Triangulation {
         do {
             const int i = (*this)[t].place_of(vertex);
             if (!visit(t, i)) return;
-            t = (*this)[t].across[std::size_t(after(i))];
+            t = (*this)[t].across[std::size_t(next_corner(i))];
         } while (t != first && t != none);
         if (t == first) return;
         for (t = clockwise(first, vertex); t != none; t = clockwise(t, vertex))
@@ -106,7 +107,7 @@ struct Triangulation {
 
   private:
     Index clockwise(Index t, Index vertex) const {
-        return (*this)[t].across[std::size_t(before((*this)[t].place_of(vertex)))];
+        return (*this)[t].across[std::size_t(previous_corner((*this)[t].place_of(vertex)))];
     }
 };
 

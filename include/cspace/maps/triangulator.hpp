@@ -135,7 +135,7 @@ class Triangulator {
             mesh.triangle_at[std::size_t(old.begin(i))] = u;
             suspects_.push_back({u, v});
         }
-        for (int i = 0; i < 3; ++i) join(part[i], 1, part[after(i)], 2, none);
+        for (int i = 0; i < 3; ++i) join(part[i], 1, part[next_corner(i)], 2, none);
         mesh.triangle_at[std::size_t(v)] = t;
     }
 
@@ -154,8 +154,8 @@ class Triangulator {
     std::pair<Index, Index> split_side(Index t, int e, Index v) {
         const Triangle old = mesh[t];
         const Index apex = old.corner[std::size_t(e)], u = add_triangle(), chain = old.owners[std::size_t(e)];
-        const int to_begin = before(e),
-                  to_end = after(e);  // the edges from the apex to begin, from end to the apex
+        const int to_begin = previous_corner(e),
+                  to_end = next_corner(e);  // the edges from the apex to begin, from end to the apex
         mesh[t].corner = {apex, old.begin(e), v};
         mesh[u].corner = {apex, v, old.end(e)};
         const Index begin_side = old.across[std::size_t(to_begin)],
@@ -182,7 +182,7 @@ class Triangulator {
         const Triangle a = mesh[t], b = mesh[u];
         const int f = b.edge_to(t);
         const Index r = a.corner[std::size_t(e)], s = b.corner[std::size_t(f)], p = a.begin(e), q = a.end(e);
-        const int rp = before(e), qr = after(e), sq = before(f), ps = after(f);
+        const int rp = previous_corner(e), qr = next_corner(e), sq = previous_corner(f), ps = next_corner(f);
         mesh[t].corner = {r, p, s};
         mesh[u].corner = {s, q, r};
         const Index t_old[2] = {a.across[std::size_t(rp)], a.owners[std::size_t(rp)]};
@@ -227,8 +227,8 @@ class Triangulator {
     std::pair<Index, int> edge_between(Index p, Index q) const {
         std::pair<Index, int> found{none, 0};
         mesh.around(p, [&](Index t, int i) {
-            if (mesh[t].corner[std::size_t(after(i))] != q) return true;
-            found = {t, before(i)};
+            if (mesh[t].corner[std::size_t(next_corner(i))] != q) return true;
+            found = {t, previous_corner(i)};
             return false;
         });
         return found;
@@ -263,8 +263,8 @@ class Triangulator {
         if (first == none) return;
         crossed_.clear();
         std::pair<Index, int> met{none, 0};  // the first edge on the way that is part of a segment
-        Index t = first, p = mesh[t].corner[std::size_t(after(i))],
-              q = mesh[t].corner[std::size_t(before(i))];
+        Index t = first, p = mesh[t].corner[std::size_t(next_corner(i))],
+              q = mesh[t].corner[std::size_t(previous_corner(i))];
         for (int e = i;;) {  // p lies to the right of the segment, q to the left, the edge between crosses it
             if (met.first == none && mesh[t].owners[std::size_t(e)] != none) {
                 met = {t, e};
@@ -295,7 +295,8 @@ class Triangulator {
         std::pair<Index, int> through{none, 0};
         const Point a = at(s.a), b = at(s.b);
         mesh.around(s.a, [&](Index t, int i) {
-            const Index u = mesh[t].corner[std::size_t(after(i))], v = mesh[t].corner[std::size_t(before(i))];
+            const Index u = mesh[t].corner[std::size_t(next_corner(i))],
+                        v = mesh[t].corner[std::size_t(previous_corner(i))];
             const int right = u == s.b ? 0 : orientation(a, b, at(u));
             if (right == 0 && is_between(a, at(u), b)) {
                 along = u;

@@ -17,8 +17,8 @@ inline double velocity_at_rest(const AxisState& s, double j) { return s.v + s.a 
 // Two phases, −J and then a hold, that lower the velocity to v_max.
 inline void lower_velocity(const AxisState& s, const AxisLimits& l, double* h) {
     const double J = l.jerk;
-    const double to_v_max = s.a / J + reach::root(s.a * s.a + 2 * J * (s.v - l.v_max)) / J;
-    const double to_v_min = s.a / J + reach::root(s.a * s.a / 2 + J * (s.v - l.v_min)) / J;
+    const double to_v_max = s.a / J + reach::root_or_zero(s.a * s.a + 2 * J * (s.v - l.v_max)) / J;
+    const double to_v_min = s.a / J + reach::root_or_zero(s.a * s.a / 2 + J * (s.v - l.v_min)) / J;
     const double first = std::min(to_v_max, to_v_min), to_a_min = (s.a - l.a_min) / J;
     h[0] = std::max(first, 0.0);
     if (!(to_a_min < first)) return;

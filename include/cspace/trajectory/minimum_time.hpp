@@ -93,7 +93,7 @@ CSPACE_INLINE V end_of_head(const VelocityChangeOf<V>& q) {
     const V held = select(kappa > 0, q.limits.a_max, -q.limits.a_min);
     const V until = (held * (9.0 / 16 * held + af - a0) + size) / (J * held);
     const V beyond = held * held - size;  // below zero: it is held for ever
-    const V while_held = select(beyond < 0, until, min(until, time_of(held - reach::root(beyond))));
+    const V while_held = select(beyond < 0, until, min(until, time_of(held - reach::root_or_zero(beyond))));
     return select(is_free, time_of(w), while_held);
 }
 

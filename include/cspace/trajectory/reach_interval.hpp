@@ -84,7 +84,7 @@ inline constexpr double time_rounding = 1e-12;
 inline constexpr double acceleration_rounding = 1e-14;
 
 template <class V>
-CSPACE_INLINE V root(V x) {
+CSPACE_INLINE V root_or_zero(V x) {
     return sqrt(max(x, fill<V>(0.0)));
 }
 template <class V>
@@ -126,7 +126,7 @@ CSPACE_INLINE mask_of<V> hold_peak(const VelocityChangeOf<V>& q, V T, mask_of<V>
     const V J = q.limits.jerk, a0 = q.a0, af = q.af, p = q.limits.a_max, dv = q.vf - q.v0;
     const V c = J * dv - J * p * T + p * (2 * p + af - a0) - (2 * p * p - a0 * a0 + af * af) / 2;
     const V s2 = p * p - c;
-    const V l = min(c / (p + root(s2)), p), hold = T - (2 * (p - l) + af - a0) / J;
+    const V l = min(c / (p + root_or_zero(s2)), p), hold = T - (2 * (p - l) + af - a0) / J;
     const auto fits =
         asked && s2 >= -square_rounding(q, T, p) && l >= q.limits.a_min && hold >= -time_rounding * T;
     const V bend = p * (p - 4 * l) / (4 * (p - l));
@@ -140,7 +140,7 @@ CSPACE_INLINE mask_of<V> hold_trough(const VelocityChangeOf<V>& q, V T, mask_of<
     const V J = q.limits.jerk, a0 = q.a0, af = q.af, l = q.limits.a_min, dv = q.vf - q.v0;
     const V c = J * l * T - l * (af - a0 - 2 * l) + (af * af - a0 * a0 - 2 * l * l) / 2 - J * dv;
     const V s2 = l * l - c;
-    const V p = max(-c / (root(s2) - l), l), hold = T - (2 * (p - l) + af - a0) / J;
+    const V p = max(-c / (root_or_zero(s2) - l), l), hold = T - (2 * (p - l) + af - a0) / J;
     const auto fits =
         asked && s2 >= -square_rounding(q, T, l) && p <= q.limits.a_max && hold >= -time_rounding * T;
     const V bend = -l * (4 * p - l) / (4 * (p - l));
@@ -186,7 +186,7 @@ CSPACE_INLINE Peaks<V> find_peaks(const VelocityChangeOf<V>& q, V T) {
 // From (v, a) to v_max without acceleration, +J, hold, −J: the times into t[0], t[1], t[2]. Returns the peak.
 template <class V>
 CSPACE_INLINE V climb_to_cruise(V v, V a, V v_max, V a_max, V J, V* t) {
-    V p = max(root(J * (v_max - v) + a * a / 2), a), hold = fill<V>(0.0);
+    V p = max(root_or_zero(J * (v_max - v) + a * a / 2), a), hold = fill<V>(0.0);
     const auto is_held = p > a_max;
     if (any(is_held)) {
         const V held = max(a_max, a);
@@ -301,7 +301,7 @@ namespace reach {
 template <class V>
 CSPACE_INLINE SevenPhasesOf<V> change_upwards(const VelocityChangeOf<V>& q) {
     const V J = q.limits.jerk, dv = q.vf - q.v0, a0 = q.a0, af = q.af, higher = max(a0, af);
-    V p = max(root(J * dv + (a0 * a0 + af * af) / 2), higher), hold = fill<V>(0.0);
+    V p = max(root_or_zero(J * dv + (a0 * a0 + af * af) / 2), higher), hold = fill<V>(0.0);
     const auto is_held = p > q.limits.a_max;
     if (any(is_held)) {
         const V held = max(q.limits.a_max, higher);
@@ -363,7 +363,7 @@ inline DomainOf<V> find_domain(const VelocityChangeOf<V>& q) {
                   zero,           u.a0 > 0 && u.af > 0 && room > 0};
     if (any(d.has_gap)) {
         const SevenPhasesOf<V> g = change_downwards(u);
-        const V begin = max((u.a0 + u.af - 2 * root(room)) / J, d.first), after = displace_axis(u, g);
+        const V begin = max((u.a0 + u.af - 2 * root_or_zero(room)) / J, d.first), after = displace_axis(u, g);
         d.gap_begin = select(d.has_gap, begin, never);
         d.gap_end = select(d.has_gap, duration_of(g), never);
         d.displacement_after_gap = select(upwards, after, -after);

@@ -74,7 +74,7 @@ inline MaxImage make_image(const maps::ByteField& field, int margin) {
 }
 
 // From squares of half the side.
-inline MaxImage widen(const MaxImage& image, int half) {
+inline MaxImage widen_image(const MaxImage& image, int half) {
     MaxImage made{image.margin, image.stride, image.rows, filled_vector<std::uint8_t>(image.values.size())};
     std::vector<std::uint8_t> both(std::size_t(image.stride) + std::size_t(half));
     InterruptPoll poll(64);
@@ -232,7 +232,7 @@ class MapSearch {
           at_(points.size()) {
         images_.push_back(map_search::make_image(field, 1 << level_));
         for (int k = 0; k < level_; ++k) {
-            images_.push_back(map_search::widen(images_.back(), 1 << k));
+            images_.push_back(map_search::widen_image(images_.back(), 1 << k));
             if (k > 0 && k < map_search::finest) images_[std::size_t(k)] = {};
         }
         least_ = int(std::ceil(rule.least_score * whole_ - rounding));

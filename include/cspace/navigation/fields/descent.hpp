@@ -36,7 +36,8 @@ inline std::vector<Point> find_start_directions(const maps::FreeSpace& space, co
     for (const maps::Index t : from.triangles) {
         const auto corner = [&](int i) { return space.mesh.point(space.mesh[t].corner[std::size_t(i)]); };
         const maps::Place place = space.mesh.place_in(t, from.at);
-        const Point b = corner(maps::after(place.index)), c = corner(maps::before(place.index));
+        const Point b = corner(maps::next_corner(place.index)),
+                    c = corner(maps::previous_corner(place.index));
         if (place.kind == maps::Place::at_corner)
             add(bisector(from.at, b, c));
         else if (place.kind == maps::Place::on_edge && space.is_wall(t, place.index))

@@ -71,11 +71,11 @@ class View {
         const Ray through{v, w};
         if (of_right > 0) {
             const Cone part{step.cone.right, of_left < 0 ? through : step.cone.left};
-            stack_.push_back({u, maps::after(apex), part});
+            stack_.push_back({u, maps::next_corner(apex), part});
         }
         if (of_left < 0) {
             const Cone part{of_right > 0 ? through : step.cone.right, step.cone.left};
-            stack_.push_back({u, maps::before(apex), part});
+            stack_.push_back({u, maps::previous_corner(apex), part});
         }
     }
 };
@@ -170,15 +170,15 @@ class VisibilityGraph {
         for (int i = int(s.first % 3);;) {
             const maps::Triangle& tri = mesh[t];
             const Point a = mesh.point(tri.begin(i)), b = mesh.point(tri.end(i));
-            note(3 * t + maps::after(i));
-            note(3 * t + maps::before(i));
+            note(3 * t + maps::next_corner(i));
+            note(3 * t + maps::previous_corner(i));
             const Ray right{v, a}, left{v, b};
             if (past_last.side(a) < 0 || (is_tip && a == s.end))
                 view.look(v, t, i, {right, past_last.side(b) <= 0 ? left : past_last}, enter, note);
             if (past_first.side(b) > 0 || (is_tip && b == s.begin))
                 view.look(v, t, i, {past_first.side(a) >= 0 ? right : past_first, left}, enter, note);
-            if (space_.is_wall(t, maps::after(i))) return;
-            const Index u = tri.across[std::size_t(maps::after(i))];
+            if (space_.is_wall(t, maps::next_corner(i))) return;
+            const Index u = tri.across[std::size_t(maps::next_corner(i))];
             i = mesh[u].place_of(tri.corner[std::size_t(i)]);
             t = u;
         }
