@@ -41,7 +41,7 @@ std::vector<int> entries(const Case& c) {
     for (int e = 0; e < c.walls.size(); ++e) {
         const Wall w = c.walls.wall(e);
         const Point before = c.walls.begin(c.walls.previous(e));
-        bool enters = crossing(m, w) == 1 && orientation(w.begin, w.end, m.from) >= 0 &&
+        bool enters = crossing_sign(m, w) == 1 && orientation(w.begin, w.end, m.from) >= 0 &&
                       orientation(w.begin, w.end, m.to) < 0;
         if (side_of(m, w.begin) == 0 && (w.begin == m.from || comes_after(m, m.from, w.begin)) &&
             comes_after(m, w.begin, m.to))
@@ -59,7 +59,7 @@ bool is_clear(const Case& c, const std::vector<Point>& path) {
         const Line step{path[i - 1], path[i]};
         for (int e = 0; e < c.walls.size(); ++e) {
             const Wall w = c.walls.wall(e);
-            if (crossing(step, w) != 0 &&
+            if (crossing_sign(step, w) != 0 &&
                 orientation(w.begin, w.end, step.from) * orientation(w.begin, w.end, step.to) < 0)
                 return false;
         }

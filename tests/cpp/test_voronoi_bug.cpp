@@ -23,7 +23,7 @@ bool is_clear(const PlaneWorld& world, const Walls& walls, const std::vector<Poi
         const Line step{path[i - 1], path[i]};
         for (int e = 0; e < walls.size(); ++e) {
             const Wall w = walls.wall(e);
-            if (crossing(step, w) != 0 &&
+            if (crossing_sign(step, w) != 0 &&
                 orientation(w.begin, w.end, step.from) * orientation(w.begin, w.end, step.to) < 0)
                 return false;
         }

@@ -88,7 +88,6 @@ ONE_WORD = {
         lane load meets middle negated orientation polished power project reduce reflect repeat
         rotate row select shortening slope store times variations where window
     """,
-    "navigation": "ahead allowed bisector blocked centroid crossing leaves order other side",
 }
 """Of each room those that still have one word. Give new ones a verb and an object; take renamed ones out."""
 

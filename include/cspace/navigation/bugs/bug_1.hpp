@@ -25,7 +25,7 @@ class Bug1 {
             if (!(leave.squared_distance < nearest)) return walker.finish(Status::undetermined);
             nearest = leave.squared_distance;
             const bool goes_on = leave.along <= round.length() - leave.along;
-            walker.go_to(leave.touch, goes_on ? hand_ : other(hand_));
+            walker.go_to(leave.touch, goes_on ? hand_ : other_hand(hand_));
             if (!shut) continue;
             walker.log.witness = robot.touch();
             return walker.finish(Status::unreachable);

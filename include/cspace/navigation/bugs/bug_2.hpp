@@ -41,14 +41,15 @@ class Bug2 {
     Hand hand_;
 
     bool is_free_at(const Wall& piece, const Touch& hit) const {
-        if (crossing(m_, piece) != -1 || orientation(piece.begin, piece.end, m_.to) <= 0) return false;
-        return hit.is_corner() ? order(-1, hit.at, piece) <= 0 : order(m_, hit.in, piece) <= 0;
+        if (crossing_sign(m_, piece) != -1 || orientation(piece.begin, piece.end, m_.to) <= 0) return false;
+        return hit.is_corner() ? order_on_line(-1, hit.at, piece) <= 0
+                               : order_on_line(m_, hit.in, piece) <= 0;
     }
 
     bool is_free_at_corner(const Touch& corner, const Touch& hit) const {
         if (side_of(m_, corner.at) != 0 || !comes_after(m_, corner.at, m_.to)) return false;
         const bool beyond = hit.is_corner() ? corner.at == hit.at || comes_after(m_, hit.at, corner.at)
-                                            : order(1, corner.at, hit.in) >= 0;
+                                            : order_on_line(1, corner.at, hit.in) >= 0;
         return beyond && way_towards(corner, m_.to) == Way::free;
     }
 };

@@ -112,11 +112,11 @@ class RayCast {
 
     bool comes_first(Point p) const {
         if (met.is_open()) return true;
-        return met.is_corner() ? comes_after(line_, p, at) : order(1, p, hit_) <= 0;
+        return met.is_corner() ? comes_after(line_, p, at) : order_on_line(1, p, hit_) <= 0;
     }
     bool comes_first(const Wall& wall) const {
         if (met.is_open()) return true;
-        return met.is_corner() ? order(1, at, wall) > 0 : order(line_, wall, hit_) < 0;
+        return met.is_corner() ? order_on_line(1, at, wall) > 0 : order_on_line(line_, wall, hit_) < 0;
     }
 };
 

@@ -70,7 +70,7 @@ inline Way way_towards(const Touch& corner, Point target) {
 
 // +1 where the line crosses the wall out of free space, −1 where it comes out into it, 0 where it only
 // touches or misses. Of a wall that is crossed, its left is what the line meets first if +1, last if −1.
-inline int crossing(const Line& line, const Wall& wall) {
+inline int crossing_sign(const Line& line, const Wall& wall) {
     const int a = side_of(line, wall.begin), b = side_of(line, wall.end);
     return a < 0 && b > 0 ? 1 : a > 0 && b < 0 ? -1 : 0;
 }
@@ -90,7 +90,7 @@ inline Point crossing_point(const Line& line, const Wall& wall) {
 }
 
 // Of a point on the line and a wall that it crosses: −1 if the point comes first, 1 if the wall does.
-inline int order(int crossing, Point p, const Wall& wall) {
+inline int order_on_line(int crossing, Point p, const Wall& wall) {
     return -crossing * orientation(wall.begin, wall.end, p);
 }
 
@@ -103,9 +103,9 @@ inline int side_of(const Wall& wall, const Wall& other) {
 
 // Of two walls that the line crosses: −1 if the first comes first, 1 if the second does, 0 if they are two
 // sides of one. Walls do not cross each other, so the whole of one lies on one side of the other.
-inline int order(const Line& line, const Wall& first, const Wall& second) {
-    if (const int side = side_of(first, second); side != 2) return crossing(line, first) * side;
-    if (const int side = side_of(second, first); side != 2) return -crossing(line, second) * side;
+inline int order_on_line(const Line& line, const Wall& first, const Wall& second) {
+    if (const int side = side_of(first, second); side != 2) return crossing_sign(line, first) * side;
+    if (const int side = side_of(second, first); side != 2) return -crossing_sign(line, second) * side;
     const double a = dot(line.to - line.from, crossing_point(line, first));
     const double b = dot(line.to - line.from, crossing_point(line, second));
     return (a > b) - (a < b);

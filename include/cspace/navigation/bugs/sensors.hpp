@@ -12,8 +12,10 @@ namespace cspace::navigation {
 // The hand that stays on the wall. With the right hand a robot walks pieces from begin to end.
 enum class Hand { left, right };
 
-inline Hand other(Hand hand) { return hand == Hand::left ? Hand::right : Hand::left; }
-inline const Wall& ahead(const Touch& touch, Hand hand) { return hand == Hand::right ? touch.out : touch.in; }
+inline Hand other_hand(Hand hand) { return hand == Hand::left ? Hand::right : Hand::left; }
+inline const Wall& wall_ahead(const Touch& touch, Hand hand) {
+    return hand == Hand::right ? touch.out : touch.in;
+}
 inline Point far_end(const Wall& wall, Hand hand) { return hand == Hand::right ? wall.end : wall.begin; }
 inline bool is_on(const Wall& wall, Point p) {
     return orientation(wall.begin, wall.end, p) == 0 && is_between(wall.begin, p, wall.end);

@@ -141,7 +141,7 @@ class TangentBug {
             walker_.log.witness = round.blocked.touch;
             return Stage::shut;
         }
-        walker_.go_to(round.free.touch, 2 * round.free.along <= round.length() ? hand : other(hand));
+        walker_.go_to(round.free.touch, 2 * round.free.along <= round.length() ? hand : other_hand(hand));
         return Stage::left;
     }
 

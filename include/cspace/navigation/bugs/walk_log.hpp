@@ -61,7 +61,7 @@ class Walker {
         const Touch hit = robot.touch();
         log.follows.push_back({hit, 0, log.route.path.size() - 1, 0});
         for (bool first = true;; first = false) {
-            const Wall piece = ahead(robot.touch(), hand);
+            const Wall piece = wall_ahead(robot.touch(), hand);
             const Point from = robot.position();
             if (is_on(piece, goal)) return stop(hand, goal), FollowEnd::goal;
             const bool last = !first && !hit.is_corner() && piece.name == hit.in.name;
@@ -82,7 +82,7 @@ class Walker {
     // Along the wall to a place on its ring.
     void go_to(const Touch& target, Hand hand) {
         while (!robot.touch().is_place_of(target) || !target.is_corner()) {
-            if (!target.is_corner() && ahead(robot.touch(), hand).name == target.in.name)
+            if (!target.is_corner() && wall_ahead(robot.touch(), hand).name == target.in.name)
                 return stop(hand, target.at);
             walk(hand);
         }

@@ -22,7 +22,7 @@ namespace cspace::navigation {
 // lead into an obstacle; so each triangle of free space at the point gives one direction that lies inside it.
 
 // Between the directions to b and c.
-inline Point bisector(Point a, Point b, Point c) {
+inline Point bisecting_direction(Point a, Point b, Point c) {
     return distance(a, c) * (b - a) + distance(a, b) * (c - a);
 }
 
@@ -39,7 +39,7 @@ inline std::vector<Point> find_start_directions(const maps::FreeSpace& space, co
         const Point b = corner(maps::next_corner(place.index)),
                     c = corner(maps::previous_corner(place.index));
         if (place.kind == maps::Place::at_corner)
-            add(bisector(from.at, b, c));
+            add(bisecting_direction(from.at, b, c));
         else if (place.kind == maps::Place::on_edge && space.is_wall(t, place.index))
             add({b.y - c.y, c.x - b.x});
         else

@@ -94,7 +94,7 @@ inline std::vector<Point> clip_polygon(const std::vector<Point>& shape, Point a,
     }
     return kept;
 }
-inline Point centroid(const std::vector<Point>& shape) {
+inline Point centroid_of(const std::vector<Point>& shape) {
     Point sum;
     double area = 0;
     for (std::size_t k = 1; k + 1 < shape.size(); ++k) {
@@ -116,7 +116,7 @@ inline bool kernel_point(const std::vector<Point>& corners, Point& found) {
     for (std::size_t k = 0; k < n && kernel.size() >= 3; ++k)
         kernel = detail::clip_polygon(kernel, corners[k], corners[(k + 1) % n]);
     if (kernel.size() < 3) return false;
-    found = detail::centroid(kernel);
+    found = detail::centroid_of(kernel);
     for (std::size_t k = 0; k < n; ++k)
         if (orientation(corners[k], corners[(k + 1) % n], found) <= 0) return false;
     return true;

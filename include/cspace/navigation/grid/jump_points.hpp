@@ -134,7 +134,7 @@ class JumpPoints {
     template <class Queue>
     void lead(std::uint32_t place, maps::Cell at, Steps g, int d, Queue& queue) {
         const int down = row_step[d], along = column_step[d];
-        const int sides[2] = {jump::side(rule, d, 0), jump::side(rule, d, 1)};
+        const int sides[2] = {jump::side_direction(rule, d, 0), jump::side_direction(rule, d, 1)};
         const Steps step = rule == Corners::four ? Steps{1, 0} : Steps{0, 1};
         while (may_step(at, down, along)) {
             at = {at.row + down, at.column + along};

@@ -36,15 +36,16 @@ inline constexpr std::int8_t direction_of[3][3] = {
 namespace moves {
 
 // Whether the neighbour in a direction is blocked, by the pattern BitGrid::around gives.
-constexpr bool blocked(unsigned around, int direction) {
+constexpr bool is_neighbour_blocked(unsigned around, int direction) {
     direction &= 7;
     return around >> (3 * (1 + row_step[direction]) + 1 + column_step[direction]) & 1;
 }
 
-constexpr bool allowed(Corners rule, unsigned around, int direction) {
-    if (blocked(around, direction)) return false;
+constexpr bool is_move_allowed(Corners rule, unsigned around, int direction) {
+    if (is_neighbour_blocked(around, direction)) return false;
     if (!is_diagonal(direction)) return true;
-    const int beside = blocked(around, direction - 1) + blocked(around, direction + 1);
+    const int beside =
+        is_neighbour_blocked(around, direction - 1) + is_neighbour_blocked(around, direction + 1);
     return rule == Corners::always || (rule == Corners::never && beside == 0) ||
            (rule == Corners::one && beside < 2);
 }
@@ -53,7 +54,7 @@ constexpr std::array<std::uint8_t, 512> allowed_table(Corners rule) {
     std::array<std::uint8_t, 512> table{};
     for (unsigned around = 0; around < 512; ++around)
         for (int d = 0; d < 8; ++d)
-            if (allowed(rule, around, d)) table[around] = std::uint8_t(table[around] | bit_of(d));
+            if (is_move_allowed(rule, around, d)) table[around] = std::uint8_t(table[around] | bit_of(d));
     return table;
 }
 

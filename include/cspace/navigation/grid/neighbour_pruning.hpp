@@ -26,7 +26,7 @@ constexpr bool is_leading(Corners rule, int d) {
     return rule == Corners::four ? d == 2 || d == 6 : is_diagonal(d);
 }
 // The two straight directions that a leading one scans.
-constexpr int side(Corners rule, int d, int which) {
+constexpr int side_direction(Corners rule, int d, int which) {
     const int turn = rule == Corners::four ? 2 : 1;
     return (d + (which ? turn : 8 - turn)) & 7;
 }
@@ -34,14 +34,14 @@ constexpr int side(Corners rule, int d, int which) {
 // The directions in which a way goes on that has come in direction d, a bit each.
 constexpr unsigned keep_moves(Corners rule, unsigned around, int d) {
     unsigned open = bit_of(d);
-    if (is_leading(rule, d)) open |= bit_of(side(rule, d, 0)) | bit_of(side(rule, d, 1));
+    if (is_leading(rule, d)) open |= bit_of(side_direction(rule, d, 0)) | bit_of(side_direction(rule, d, 1));
     for (int turn : {1, -1}) {
         if (is_diagonal(d)) {
-            if (moves::blocked(around, d + 3 * turn)) open |= bit_of(d + 2 * turn);
+            if (moves::is_neighbour_blocked(around, d + 3 * turn)) open |= bit_of(d + 2 * turn);
         } else if (turns_behind(rule)) {
-            if (moves::blocked(around, d + 3 * turn))
+            if (moves::is_neighbour_blocked(around, d + 3 * turn))
                 open |= bit_of(d + 2 * turn) | (rule == Corners::never ? bit_of(d + turn) : 0u);
-        } else if (moves::blocked(around, d + 2 * turn)) {
+        } else if (moves::is_neighbour_blocked(around, d + 2 * turn)) {
             open |= bit_of(d + turn);
         }
     }

@@ -19,7 +19,8 @@ inline Gate backward_gate(const Sites& sites, Index b) {
     return {sites.begin(e), -1.0 * sites.direction(sites.is_edge(b) ? e : sites.previous(e))};
 }
 // The first parameter from begin on at which a foot leaves its site.
-inline double leaves(const Sites& sites, const Bisector& curve, double begin, Gate gate, Grain grain) {
+inline double leaving_parameter(const Sites& sites, const Bisector& curve, double begin, Gate gate,
+                                Grain grain) {
     const Quadratic g = curve.along(gate.s, gate.q);
     constexpr double begins = 1e-3;  // of the grain: a foot that a step put on the end is on it
     const double slack = std::max(grain.at(curve.radius(begin)) * begins, 2 * sites.spacing);
@@ -70,8 +71,8 @@ ArcPiece next_piece(const Sites& s, Grain grain, Index a, Index b, Point from, c
     arc.curve = bisector_of(s, a, b, from);
     arc.begin = arc.end = arc.curve.parameter(from);
     if (!std::isfinite(arc.begin) || !std::isfinite(squared_norm(arc.curve.p2))) return arc;
-    const double end_a = leaves(s, arc.curve, arc.begin, forward_gate(s, a), grain),
-                 end_b = leaves(s, arc.curve, arc.begin, backward_gate(s, b), grain);
+    const double end_a = leaving_parameter(s, arc.curve, arc.begin, forward_gate(s, a), grain),
+                 end_b = leaving_parameter(s, arc.curve, arc.begin, backward_gate(s, b), grain);
     const double own = std::min({end_a, end_b, arc.begin + 4 * s.extent}), end = std::min(own, bound(arc));
     FirstTouch touch(s, grain, arc.curve, a, b, arc.begin, end);
     touch.find();
