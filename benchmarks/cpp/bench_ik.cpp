@@ -48,7 +48,7 @@ static std::vector<double> random_goals(const ik::Chain& chain, int count) {
     for (int k = 0; k < count; ++k) {
         double q[ik::max_joints];
         for (int i = 0; i < chain.n; ++i) q[i] = angle(rng);
-        const Posed T = forward(chain, q);
+        const Posed T = forward_kinematics(chain, q);
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j) goals.push_back(T.R.m[i][j]);
             goals.push_back(i == 0 ? T.t.x : i == 1 ? T.t.y : T.t.z);

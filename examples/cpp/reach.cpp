@@ -22,13 +22,13 @@ ik::Chain ur5e() {
 int main() {
     const ik::Arm arm = make_arm(ur5e());  // finds the geometry; once for each arm
     const double q[] = {0.3, -1.2, 1.4, -0.8, 0.7, 0.1};
-    const Posed goal = forward(arm.plan.chain, q);
+    const Posed goal = forward_kinematics(arm.plan.chain, q);
 
     const ik::Solutions found = solve_pose(arm, goal, nullptr);
     std::printf("%d configurations%s\n", found.count, found.complete ? "" : ", perhaps more");
     for (int k = 0; k < found.count; ++k) {
         for (int i = 0; i < arm.plan.chain.n; ++i) std::printf("%8.4f", found.q[k][i]);
-        const Posed reached = forward(arm.plan.chain, found.q[k]);
+        const Posed reached = forward_kinematics(arm.plan.chain, found.q[k]);
         const double error = ik::pose_difference(reached, goal, 1);  // of rotations, and of places in m
         std::printf("   error %.0e\n", error);
         if (error > 1e-12) return 1;

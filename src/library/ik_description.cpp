@@ -159,7 +159,7 @@ double hidden_determinant(const BuiltArm& built, const double* goal, int number,
     const GeneralPlan& plan = built.arm->general.plan;
     Posed T = read_goal(goal).T;
     T.t = (1 / plan.length) * T.t;
-    const Loop loop = make_loop(plan.frames, plan.chain.prismatic, T, formulation(number));
+    const Loop loop = make_loop(plan.frames, plan.chain.prismatic, T, formulation_of(number));
     if (plan.slides < 2) return determinant(eliminate_angles(loop), std::cos(a0), std::sin(a0));
     return lane(lack_on_both(two_sheets(loop), fill<Pack<4>>(std::cos(a0)), fill<Pack<4>>(std::sin(a0))), 0);
 }

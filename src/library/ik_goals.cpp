@@ -58,13 +58,13 @@ void meet_goal(const Solver& solver, const Posed& goal, const int* own_of, doubl
         q[j] = 0;
         if (!solver.leads_ahead(j) && count < most) open[count++] = j;
     }
-    const double away = norm(goal.t - forward(chain, q).t);
+    const double away = norm(goal.t - forward_kinematics(chain, q).t);
     for (int j = 0; j < chain.n; ++j)  // the distance to a point to look at does not depend on the direction
         if (own_of[j] < 0 && solver.leads_ahead(j)) q[j] = away;
     for (int step = 0; step < most_steps; ++step) {
         TipMotion<double> motion;
         tip_motion<0>(chain, goal, 1.0, q, motion);
-        const Vec3d turned = spatial::rotvec_of_rotation(goal.R * transpose(forward(chain, q).R));
+        const Vec3d turned = spatial::rotvec_of_rotation(goal.R * transpose(forward_kinematics(chain, q).R));
         const double error[6] = {motion.error[0], motion.error[1], motion.error[2],
                                  turned.x,        turned.y,        turned.z};
         double J[6][most], dq[most], reach = stride;

@@ -11,7 +11,7 @@ namespace cspace::ik {
 namespace {
 
 TipConstraint constraint_at(const Chain& chain, const double* q, bool whole_pose) {
-    return {forward(chain, q), whole_pose, characteristic_length(chain)};
+    return {forward_kinematics(chain, q), whole_pose, characteristic_length(chain)};
 }
 
 // Between metres and the unit of length of the curve.

@@ -92,7 +92,7 @@ inline ik::Chain random_arm(Class kind, bool backwards, Rng& rng) {
     Row rows[6];
     class_rows(kind, rng, rows);
     const ik::Chain arm = from_rows(rows, 6, random_pose(rng), random_pose(rng), rng);
-    return backwards ? reversed(arm) : arm;
+    return backwards ? reverse_chain(arm) : arm;
 }
 
 }  // namespace arms

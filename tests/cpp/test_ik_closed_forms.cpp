@@ -22,13 +22,13 @@ static void expect_every_generator_found(Class kind, bool backwards) {
         for (int pose = 0; pose < 10; ++pose) {
             double q[6];
             for (double& angle : q) angle = arms::uniform(rng, -pi, pi);
-            const Posed goal = forward(arm, q);
+            const Posed goal = forward_kinematics(arm, q);
             const ik::Solutions s = solve_carefully(plan, goal, nullptr);
             CHECK(s.status == ik::Status::exact);
             double nearest = 10;
             for (int k = 0; k < s.count; ++k) {
                 nearest = min(nearest, joint_distance(arm, s.q[k], q));
-                worst = max(worst, pose_difference(forward(arm, s.q[k]), goal, plan.form.length));
+                worst = max(worst, pose_difference(forward_kinematics(arm, s.q[k]), goal, plan.form.length));
             }
             missed += nearest > 1e-7;
         }
@@ -67,12 +67,12 @@ static void expect_shorter_arms_solved(Class kind, int left_out, int joints) {
         for (int pose = 0; pose < 5; ++pose) {
             double q[6];
             for (double& angle : q) angle = arms::uniform(rng, -pi, pi);
-            const Posed goal = forward(arm, q);
+            const Posed goal = forward_kinematics(arm, q);
             const ik::Solutions s = solve_carefully(plan, goal, nullptr);
             double nearest = 10;
             for (int k = 0; k < s.count; ++k) {
                 nearest = min(nearest, joint_distance(arm, s.q[k], q));
-                worst = max(worst, pose_difference(forward(arm, s.q[k]), goal, plan.form.length));
+                worst = max(worst, pose_difference(forward_kinematics(arm, s.q[k]), goal, plan.form.length));
             }
             missed += nearest > 1e-7;
         }

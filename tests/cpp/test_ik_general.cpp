@@ -32,12 +32,12 @@ static void ask(const ik::Chain& chain, int poses, arms::Rng& rng, Tally& tally)
     for (int pose = 0; pose < poses; ++pose) {
         double q[6];
         for (double& joint : q) joint = arms::uniform(rng, -pi, pi);
-        const Posed goal = forward(chain, q);
+        const Posed goal = forward_kinematics(chain, q);
         const ik::Solutions s = solve_pose(arm, goal, nullptr);
         double nearest = 10;
         for (int k = 0; k < s.count; ++k) {
             nearest = min(nearest, joint_distance(chain, s.q[k], q));
-            tally.worst = max(tally.worst, pose_difference(forward(chain, s.q[k]), goal, length));
+            tally.worst = max(tally.worst, pose_difference(forward_kinematics(chain, s.q[k]), goal, length));
         }
         tally.missed += nearest > 1e-6;
         tally.uncertain += !s.complete;
@@ -101,14 +101,14 @@ TEST(a_certified_list_holds_what_the_reversed_arm_finds_at_quarter_turns) {
     int compared = 0, lacking = 0;
     for (int repeat = 0; repeat < 400; ++repeat) {
         const int n = 5 + repeat % 2, first = rng() % n, second = rng() % n;
-        const ik::Chain chain = grid_arm(n, 1 << first | 1 << second, rng), back = reversed(chain);
+        const ik::Chain chain = grid_arm(n, 1 << first | 1 << second, rng), back = reverse_chain(chain);
         const ik::Arm arm = make_arm(chain), other = make_arm(back);
         if (!arm.is_general || !other.is_general) continue;
         for (int pose = 0; pose < 6; ++pose) {
             double q[6] = {};
             for (int i = 0; i < n; ++i)
                 q[i] = rng() % 3 ? 0.5 * pi * static_cast<int>(rng() % 4) - pi : arms::uniform(rng, -pi, pi);
-            const Posed goal = forward(chain, q);
+            const Posed goal = forward_kinematics(chain, q);
             if (smallest_singular_value(chain, goal, q) < 1e-2) continue;
             const ik::Solutions found = solve_pose(arm, goal, nullptr);
             if (!found.complete) continue;

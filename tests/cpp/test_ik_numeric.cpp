@@ -87,7 +87,7 @@ TEST(a_path_leads_where_its_chain_leads) {
         kinematics::chain_sines(view_of(path), q.data(), s, c);
         const Posed T = kinematics::follow_chain(view_of(path), path.T_base_first, q.data(), s, c,
                                                  [](int, auto&&, auto&&) {});
-        CHECK(largest_difference(T, forward(chain, q.data())) < 1e-13);
+        CHECK(largest_difference(T, forward_kinematics(chain, q.data())) < 1e-13);
     }
 }
 
@@ -131,7 +131,7 @@ TEST(what_descents_reach_is_among_the_solutions_of_the_closed_form) {
             arms::random_arm(arms::Class(trial % int(arms::Class::count)), trial & 1, rng);
         const ik::Arm arm = make_arm(chain);
         const auto truth = random_q(6, rng);
-        const Posed goal = forward(chain, truth.data());
+        const Posed goal = forward_kinematics(chain, truth.data());
         const ik::Solutions all = solve_pose(arm, goal, nullptr);
         const Runs runs = run(path_of(chain), {}, goal, random_q(6 * 32, rng));
         const std::vector<double>& q = runs.q;
@@ -139,7 +139,7 @@ TEST(what_descents_reach_is_among_the_solutions_of_the_closed_form) {
             ++starts;
             if (!(std::fmax(runs.ends[k].position, runs.ends[k].rotation) < 1e-9)) continue;
             ++reached;
-            CHECK(largest_difference(forward(chain, &q[6 * k]), goal) < 2e-9);
+            CHECK(largest_difference(forward_kinematics(chain, &q[6 * k]), goal) < 2e-9);
             double nearest = 10;
             for (int s = 0; s < all.count; ++s)
                 nearest = std::fmin(nearest, apart(chain, &q[6 * k], all.q[s]));
@@ -156,13 +156,14 @@ TEST(any_kinds_of_joints_reach_what_they_can) {
         for (int trial = 0; trial < 10; ++trial) {
             const ik::Chain chain = random_chain(n, unsigned(rng() & rng()), rng);
             const auto truth = random_q(n, rng);
-            const Posed goal = forward(chain, truth.data());
+            const Posed goal = forward_kinematics(chain, truth.data());
             const Runs runs = run(path_of(chain), {}, goal, random_q(32 * n, rng));
             bool some = false;
             for (std::size_t k = 0; k < 32; ++k) {
                 if (runs.ends[k].ending != ik::Ending::reached) continue;
                 some = true;
-                CHECK(largest_difference(forward(chain, &runs.q[k * std::size_t(n)]), goal) < 2e-9);
+                CHECK(largest_difference(forward_kinematics(chain, &runs.q[k * std::size_t(n)]), goal) <
+                      2e-9);
             }
             reached += some;
         }
@@ -175,7 +176,7 @@ TEST(a_start_ends_alike_in_any_company) {
     for (int n : {2, 6, 7, 12}) {
         const ik::Chain chain = random_chain(n, n == 7 ? 4u : 0u, rng);
         const ik::Path path = path_of(chain);
-        const Posed goal = forward(chain, random_q(n, rng).data());
+        const Posed goal = forward_kinematics(chain, random_q(n, rng).data());
         const auto starts = random_q(23 * n, rng);
         const Runs together = run(path, {}, goal, starts);
         std::size_t first = 23;
@@ -210,7 +211,8 @@ TEST(limits_hold_and_goals_within_them_are_found) {
             // Some goals have joints at their limits.
             truth[j] = rng() % 4 ? arms::uniform(rng, task.lower[j], task.upper[j]) : task.upper[j];
         }
-        const Runs runs = run(path_of(chain), task, forward(chain, truth.data()), random_q(64 * n, rng));
+        const Runs runs =
+            run(path_of(chain), task, forward_kinematics(chain, truth.data()), random_q(64 * n, rng));
         bool reached = false;
         for (std::size_t k = 0; k < 64; ++k) {
             reached = reached || runs.ends[k].ending == ik::Ending::reached;
@@ -229,7 +231,7 @@ TEST(what_is_out_of_reach_is_never_reached) {
     for (int trial = 0; trial < 30; ++trial) {
         const int n = 1 + trial % 8;
         const ik::Chain chain = random_chain(n, 0, rng);
-        Posed goal = forward(chain, random_q(n, rng).data());
+        Posed goal = forward_kinematics(chain, random_q(n, rng).data());
         goal.t = goal.t + Vec3d{0, 0, trial & 1 ? 30.0 : 1e6};
         for (const auto method : {ik::Method::levenberg_marquardt, ik::Method::newton}) {
             ik::Task task;
@@ -248,7 +250,7 @@ TEST(rows_without_weight_are_free) {
     arms::Rng rng(8);
     for (int trial = 0; trial < 30; ++trial) {
         const ik::Chain chain = random_chain(6, 0, rng);
-        const Posed goal = forward(chain, random_q(6, rng).data());
+        const Posed goal = forward_kinematics(chain, random_q(6, rng).data());
         ik::Task task;
         // The tip's z axis and its place, or a line along z: what is left free is a turn or a slide.
         const int free_row = trial & 1 ? 5 : 2;
@@ -258,7 +260,7 @@ TEST(rows_without_weight_are_free) {
         for (std::size_t k = 0; k < 32; ++k) {
             if (runs.ends[k].ending != ik::Ending::reached) continue;
             ++reached;
-            const Posed miss = inverse(goal) * forward(chain, &runs.q[6 * k]);
+            const Posed miss = inverse(goal) * forward_kinematics(chain, &runs.q[6 * k]);
             if (free_row == 5) {
                 CHECK(norm(miss.t) < 2e-9);
                 CHECK(norm(column(miss.R, 2) - Vec3d{0, 0, 1}) < 2e-9);
@@ -281,11 +283,11 @@ TEST(half_turns_and_singular_starts_are_left_again) {
     }
     chain.tip = {identity_pose().R, {0, 0, 2}};
     const double truth[6] = {0.4, 1.1, -0.7, 0.3, 0.9, -0.2};
-    Posed goal = forward(chain, truth);
+    Posed goal = forward_kinematics(chain, truth);
     const std::vector<double> zero(6, 0.0);
     CHECK(run(path_of(chain), {}, goal, zero).ends[0].ending == ik::Ending::reached);
     const Posed turned = {{{{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}}, chain.tip.t};
     const Runs runs = run(path_of(chain), {}, turned, zero);
     CHECK(runs.ends[0].ending == ik::Ending::reached);
-    CHECK(largest_difference(forward(chain, runs.q.data()), turned) < 2e-9);
+    CHECK(largest_difference(forward_kinematics(chain, runs.q.data()), turned) < 2e-9);
 }

@@ -12,7 +12,7 @@ using namespace few_joints;
 
 namespace {
 
-Vec3d tip_of(const ik::Chain& chain, const double* q) { return forward(chain, q).t; }
+Vec3d tip_of(const ik::Chain& chain, const double* q) { return forward_kinematics(chain, q).t; }
 bool lists(const ik::Chain& chain, const ik::PositionSolutions& s, const double* q, double tolerance) {
     for (int i = 0; i < s.count; ++i)
         if (apart(chain, s.q[i], q) < tolerance) return true;

@@ -35,7 +35,7 @@ TEST(what_an_arm_reaches_is_not_beyond_it) {
         double q[ik::max_joints];
         const double way = random.below(10) ? scale : 1e6 * scale;
         for (int i = 0; i < chain.n; ++i) q[i] = (chain.prismatic[i] ? way : pi) * random.uniform(-1, 1);
-        CHECK(!exceeds_reach(chain, reach, forward(chain, q)));
+        CHECK(!exceeds_reach(chain, reach, forward_kinematics(chain, q)));
     }
 }
 
@@ -49,7 +49,7 @@ TEST(the_last_of_three_axes_leans_as_far_as_the_middle_one_turns_it) {
         double low = pi, high = 0;
         for (int k = 0; k < 2000; ++k) {
             const double q[3] = {0, k * pi / 1000, 0};
-            const double angle = angle_between(chain.axis[0], forward(chain, q).R * chain.axis[2]);
+            const double angle = angle_between(chain.axis[0], forward_kinematics(chain, q).R * chain.axis[2]);
             low = min(low, angle);
             high = max(high, angle);
         }

@@ -47,11 +47,11 @@ TEST(held_joints_change_no_pose) {
             const ik::LockedArm locked = lock_joints(arm.chain, locked_joint, 2, typical, false);
             double moving[5];
             for (int k = 0; k < 5; ++k) moving[k] = q[locked.moving[k]];
-            const Posed whole = forward(arm.chain, q);
-            CHECK(pose_difference(forward(locked_chain(locked, q), moving), whole, 1) < 1e-14);
+            const Posed whole = forward_kinematics(arm.chain, q);
+            CHECK(pose_difference(forward_kinematics(locked_chain(locked, q), moving), whole, 1) < 1e-14);
             if (!locked.at_ends) continue;
             const double zero[7] = {};
-            const Posed rest = forward(locked_chain(locked, zero), moving);
+            const Posed rest = forward_kinematics(locked_chain(locked, zero), moving);
             CHECK(pose_difference(rest, goal_between_ends(locked, whole, q), 1) < 1e-14);
         }
 }
@@ -72,7 +72,7 @@ TEST(cells_and_arcs_agree) {
     for (int k = 0; k < 25; ++k) {
         double q[7];
         random_within(rng, arm, q);
-        const Posed goal = forward(arm.chain, q);
+        const Posed goal = forward_kinematics(arm.chain, q);
         CHECK(intervals_by_cells(arm, *limits, goal, *cells));
         intervals_by_arcs(arm, arm.locked, 6, *limits, goal, *trail, *arcs);
         CHECK(cells->complete && arcs->complete);
@@ -98,9 +98,9 @@ TEST(the_way_to_the_nearest_is_square_to_the_self_motion) {
         double q[7], seed[7], best[7];
         random_within(rng, arm, q);
         for (int i = 0; i < 7; ++i) seed[i] = q[i] + arms::uniform(rng, -0.3, 0.3);
-        const Posed goal = forward(arm.chain, q);
+        const Posed goal = forward_kinematics(arm.chain, q);
         CHECK(nearest_configuration(arm, goal, seed, best));
-        CHECK(pose_difference(forward(arm.chain, best), goal, 1) < 1e-9);
+        CHECK(pose_difference(forward_kinematics(arm.chain, best), goal, 1) < 1e-9);
         CHECK(distance_from_seed(arm, make_target(arm, seed, false), best) <=
               distance_from_seed(arm, make_target(arm, seed, false), q) + 1e-12);
         CurvePoint at;
@@ -209,10 +209,10 @@ TEST(what_is_proven_is_the_nearest) {
         random_within(rng, arm, q);
         const double size = trial % 3 == 0 ? 0.02 : trial % 3 == 1 ? 0.08 : 0.2;
         for (int i = 0; i < 7; ++i) seed[i] = q[i] + arms::uniform(rng, -size, size);
-        const Posed goal = forward(arm.chain, q);
+        const Posed goal = forward_kinematics(arm.chain, q);
         if (!nearest_by_proof(arm.halves, goal, arm.length, seed, found)) continue;
         ++proven;
-        CHECK(pose_difference(forward(arm.chain, found), goal, 1) < 1e-9);
+        CHECK(pose_difference(forward_kinematics(arm.chain, found), goal, 1) < 1e-9);
         const double distance = distance_from_seed(arm, make_target(arm, seed, false), found);
         CHECK(distance <= distance_from_seed(arm, make_target(arm, seed, false), q) + 1e-12);
         for (int k = 0; k < 64; ++k) values[k] = seed[6] + distance * ((k + 0.5) / 32 - 1);

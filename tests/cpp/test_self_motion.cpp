@@ -25,7 +25,7 @@ ik::Chain planar_arm() {
 TEST(three_links_on_a_point_swing_as_a_four_bar_linkage) {
     const ik::Chain chain = planar_arm();
     const double q[3] = {0.3, 0.5, 0.7};
-    const Posed goal = forward(chain, q);
+    const Posed goal = forward_kinematics(chain, q);
     const ik::TipConstraint constraint = {goal, false, 1.0};
     // The direction that leaves the tip alone: across both rows of the Jacobian.
     PoseError at;
@@ -35,7 +35,7 @@ TEST(three_links_on_a_point_swing_as_a_four_bar_linkage) {
     int steps = 0;
     const ik::CurveEnd end =
         follow_curve(chain, constraint, q, along, [&](const double* p, const double* t, double) {
-            worst = max(worst, norm(forward(chain, p).t - goal.t));
+            worst = max(worst, norm(forward_kinematics(chain, p).t - goal.t));
             CHECK_NEAR(dot_n(t, t, 3), 1.0, 1e-12);
             low = min(low, p[0]);
             high = max(high, p[0]);

@@ -37,7 +37,9 @@ Vec3d some_point(Random& random, const Vec3d& axis, int wildness) {
             return random.vector();
     }
 }
-double chord(const Turn<double>& a, const Turn<double>& b) { return std::hypot(a.c - b.c, a.s - b.s); }
+double chord_between(const Turn<double>& a, const Turn<double>& b) {
+    return std::hypot(a.c - b.c, a.s - b.s);
+}
 
 Sp5Problem random_sp5(Random& random, int wildness) {
     Sp5Problem s;
@@ -88,7 +90,7 @@ TEST(subproblem_5_returns_the_angles_it_was_made_from) {
         for (int i = 0; i < r.count; ++i) {
             CHECK_NEAR(left(s, r.theta[i]), 0, 4e-12);
             double far = 0;
-            for (int j = 0; j < 3; ++j) far = std::fmax(far, chord(r.theta[i][j], made[j]));
+            for (int j = 0; j < 3; ++j) far = std::fmax(far, chord_between(r.theta[i][j], made[j]));
             nearest = std::fmin(nearest, far);
         }
         most = r.count > most ? r.count : most;
@@ -131,7 +133,8 @@ TEST(subproblem_6_returns_the_angles_it_was_made_from) {
         double nearest = 9;
         for (int i = 0; i < r.count; ++i) {
             CHECK_NEAR(left(s, r.theta[i]), 0, 4e-12);
-            nearest = std::fmin(nearest, chord(r.theta[i][0], made[0]) + chord(r.theta[i][1], made[1]));
+            nearest = std::fmin(
+                nearest, chord_between(r.theta[i][0], made[0]) + chord_between(r.theta[i][1], made[1]));
         }
         most = r.count > most ? r.count : most;
         lost += !r.free && nearest > 1e-6;

@@ -30,7 +30,8 @@ static Answers answers() {
     navigation::GridScratch scratch;
     navigation::GridAnswer way;
     find_way(grid, {0, 0}, {2, 3}, {}, scratch, way);
-    return {ik::forward(planar_arm(), q).t.y, angle_of(ik::subproblem_1(z, x, y).theta), sigma[0], way.cost};
+    return {ik::forward_kinematics(planar_arm(), q).t.y, angle_of(ik::subproblem_1(z, x, y).theta), sigma[0],
+            way.cost};
 }
 
 Answers answers_elsewhere();  // umbrella_again.cpp

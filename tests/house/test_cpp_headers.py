@@ -78,11 +78,6 @@ MATHEMATICS = """
 """
 """Functions that one word of mathematics names."""
 ONE_WORD = {
-    "ik": """
-        across add align at balanced choose chord complete continues dot12 equation equations excess
-        exchanged finish formulation forward height holds level lever link nearest noise once passes
-        quarter range reversed scaled size times touching turned twice value values vertex weight
-    """,
     "math": """
         append carry column crossing decompose deliver direction doubled evaluate fill fill3 fill33
         lane load meets middle negated orientation polished power project reduce reflect repeat

@@ -67,7 +67,7 @@ CSPACE_INLINE Pose<V> move_joints(const Chain& chain, int n, const V* q, const V
 inline Posed move_joints(const Chain& chain, int n, const double* q) {
     return move_joints(chain, n, q, [](int, const Vec3d&, const Vec3d&) {});
 }
-inline Posed forward(const Chain& chain, const double* q) {
+inline Posed forward_kinematics(const Chain& chain, const double* q) {
     return move_joints(chain, chain.n, q) * chain.tip;
 }
 
@@ -88,8 +88,8 @@ CSPACE_INLINE void write_twist(const kinematics::Twist<V>& twist, double per_len
     out[3] = twist.w.x, out[4] = twist.w.y, out[5] = twist.w.z;
 }
 
-// The same arm from the tip to the base: reversed(chain) at (qn, …, q1) is the inverse of chain at q.
-inline Chain reversed(const Chain& chain) {
+// The same arm from the tip to the base: reverse_chain(chain) at (qn, …, q1) is the inverse of chain at q.
+inline Chain reverse_chain(const Chain& chain) {
     const Posed T_tip_base = inverse(chain.tip);
     Chain back;
     back.n = chain.n;

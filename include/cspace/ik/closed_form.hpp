@@ -72,7 +72,7 @@ inline Family recognise_family(const DhForm& f) {
 
 // Tries the six joints of `arm` in one direction; `plan.joint` must already contain their sources.
 inline bool plan_in_direction(Plan& plan, const Chain& arm, bool backwards) {
-    const Chain agreeing = with_agreeing_axes(backwards ? reversed(arm) : arm, plan.sign);
+    const Chain agreeing = with_agreeing_axes(backwards ? reverse_chain(arm) : arm, plan.sign);
     plan.form = dh_form(agreeing);
     plan.family = recognise_family(plan.form);
     if (plan.family == Family::none) return false;

@@ -63,14 +63,14 @@ inline Posed frame_at(const Vec3d& origin, const Vec3d& x, const Vec3d& z) {
 }
 
 // Rz(t) Tz(d) Tx(a) Rx(α) of joint i.
-inline Posed link(const DhForm& f, int i, const Turn<double>& t) {
+inline Posed link_pose(const DhForm& f, int i, const Turn<double>& t) {
     return {
         {{{t.c, -t.s * f.ca[i], t.s * f.sa[i]}, {t.s, t.c * f.ca[i], -t.c * f.sa[i]}, {0, f.sa[i], f.ca[i]}}},
         {f.a[i] * t.c, f.a[i] * t.s, f.d[i]}};
 }
 inline Posed dh_forward(const DhForm& f, const double* q) {
     Posed T = f.base;
-    for (int i = 0; i < 6; ++i) T = T * link(f, i, turn_by(q[i] + f.offset[i]));
+    for (int i = 0; i < 6; ++i) T = T * link_pose(f, i, turn_by(q[i] + f.offset[i]));
     return T * f.tool;
 }
 
@@ -96,7 +96,7 @@ inline double measure_deviation(const Chain& chain, const DhForm& f) {
     for (int k = 0; k < 8; ++k) {
         double q[6];
         spread_configuration(k, 6, q);
-        worst = max(worst, pose_difference(forward(chain, q), dh_forward(f, q), f.length));
+        worst = max(worst, pose_difference(forward_kinematics(chain, q), dh_forward(f, q), f.length));
     }
     return worst;
 }

@@ -63,10 +63,10 @@ inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal
                      {{0, -f.sa[3] * f.a[4] / length}, {f.sa[3] * f.sa[4], 0}}});
     for (int n = 0; n < found.count; ++n) {
         const Turn<double>&t1 = found.u[n], &t5 = found.w[n];
-        const Posed seen = inverse(link(f, 0, t1)) * goal;  // Rz(t2)…Rz(t4) · rest · Rz(t6)
-        const Posed rest = Posed{link(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * link(f, 4, t5);
+        const Posed seen = inverse(link_pose(f, 0, t1)) * goal;  // Rz(t2)…Rz(t4) · rest · Rz(t6)
+        const Posed rest = Posed{link_pose(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * link_pose(f, 4, t5);
         const Vec3d z = column(rest.R, 2), want = column(seen.R, 2);
-        const Turn<double> t234 = align(z.x, z.y, want.x, want.y, 1.0, care, care.unconstrained[3]).t;
+        const Turn<double> t234 = align_turn(z.x, z.y, want.x, want.y, 1.0, care, care.unconstrained[3]).t;
         const Posed turned = {spatial::rotation_about(Vec3d{0, 0, 1}, t234.c, t234.s), {0, 0, 0}};
         const Turn<double> t6 = turn_about_z(transpose((turned * rest).R) * seen.R);
         planar_three(f, 1, {turned.R, seen.t - turned.R * rest.t}, {t5, t6, t1}, care, out, 2 * n);
@@ -88,14 +88,14 @@ inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal,
                                           (-f.a[4] * r.y + f.d[4] * f.sa[4] * r.x) / length}}});
     for (int n = 0; n < found.count; ++n) {
         const Turn<double>&t4 = found.u[n], &t6 = found.w[n];
-        const Posed to_four = Posed{link(f, 2, {1, 0}).R, {f.a[2], 0, 0}} * link(f, 3, t4);
+        const Posed to_four = Posed{link_pose(f, 2, {1, 0}).R, {f.a[2], 0, 0}} * link_pose(f, 3, t4);
         const Vec3d k = row(to_four.R, 2);
         const double x = r.x * t6.c - r.y * t6.s, y = r.x * t6.s + r.y * t6.c;
         // (k.x, k.y) turned by −t5 is (x, y cos α5 − rz sin α5).
         const Turn<double> t5 =
-            align(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, care, care.unconstrained[4]).t;
-        const Posed rest =
-            to_four * link(f, 4, t5) * Posed{spatial::rotation_about(Vec3d{0, 0, 1}, t6.c, t6.s), {0, 0, 0}};
+            align_turn(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, care, care.unconstrained[4]).t;
+        const Posed rest = to_four * link_pose(f, 4, t5) *
+                           Posed{spatial::rotation_about(Vec3d{0, 0, 1}, t6.c, t6.s), {0, 0, 0}};
         planar_three(f, 0, goal * inverse(rest), {t4, t5, t6}, care, out, 2 * n);
     }
     return out;

@@ -107,7 +107,7 @@ CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p, cons
                                                      care, care.unconstrained[1]);
         add(lift, [&](const Turn<V>& t2) {
             const V x = t2.c * v.x - t2.s * v.y, y = g.ca1 * (t2.s * v.x + t2.c * v.y) - g.sa1 * v.z;
-            return align(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
+            return align_turn(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
         });
     });
 }
@@ -132,7 +132,7 @@ CSPACE_INLINE Triples<V> last_meet(const ThreeJoints& g, const Vec3<V>& p, const
         const Vec3<V> q = undo_joint(t1, g.ca1, g.sa1, p);
         add(elbow_angles(g, q.z - g.d2, care), [&](const Turn<V>& t3) {
             const Vec3<V> v = behind_joint_two(g, t3);
-            return align(v.x, v.y, q.x - g.a1, q.y, g.length, care, care.unconstrained[1]);
+            return align_turn(v.x, v.y, q.x - g.a1, q.y, g.length, care, care.unconstrained[1]);
         });
     });
 }
@@ -144,8 +144,8 @@ CSPACE_INLINE Triples<V> first_parallel(const ThreeJoints& g, const Vec3<V>& p, 
         const Vec3<V> v = behind_joint_two(g, t3);
         const V r = (p.x * p.x + p.y * p.y - (v.x * v.x + v.y * v.y) - g.a1 * g.a1) * (0.5 / g.a1);
         add(linear_equation<V>(v.x, -v.y, r, g.length, care, care.unconstrained[1]), [&](const Turn<V>& t2) {
-            return align(t2.c * v.x - t2.s * v.y + g.a1, t2.s * v.x + t2.c * v.y, p.x, p.y, g.length, care,
-                         care.unconstrained[0]);
+            return align_turn(t2.c * v.x - t2.s * v.y + g.a1, t2.s * v.x + t2.c * v.y, p.x, p.y, g.length,
+                              care, care.unconstrained[0]);
         });
     });
 }
@@ -165,7 +165,7 @@ inline LinearInTurn pieper_y(const ThreeJoints& g) {
     return -g.ca1 / g.sa1 * LinearInTurn{g.ca2 * g.w.z + g.d2, g.sa2 * g.w.y, g.sa2 * g.w.x};
 }
 template <class V>
-CSPACE_INLINE V at(const LinearInTurn& f, const Turn<V>& t) {
+CSPACE_INLINE V value_at(const LinearInTurn& f, const Turn<V>& t) {
     return f.k + t.c * f.c + t.s * f.s;
 }
 
@@ -215,11 +215,11 @@ CSPACE_INLINE Triples<V> any_three(const ThreeJoints& g, const Vec3<V>& p, const
     const LinearInTurn fx = pieper_x(g), fy = pieper_y(g);
     for (int i = 0; i < 4; ++i) {
         const Turn<V>& t3 = out.t[2][i];
-        const V X = at(fx, t3) + p2 * (0.5 / g.a1), Y = at(fy, t3) + p.z * (1 / g.sa1);
+        const V X = value_at(fx, t3) + p2 * (0.5 / g.a1), Y = value_at(fy, t3) + p.z * (1 / g.sa1);
         const Vec3<V> v = behind_joint_two(g, t3);
-        const Aligned<V> lift = align(v.x, v.y, X, Y, g.length, care, care.unconstrained[1]);
+        const Aligned<V> lift = align_turn(v.x, v.y, X, Y, g.length, care, care.unconstrained[1]);
         const V x = X + g.a1, y = g.ca1 * Y - g.sa1 * v.z;
-        const Aligned<V> pan = align(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
+        const Aligned<V> pan = align_turn(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
         out.ok[i] = count > double(i);
         out.t[0][i] = pan.t;
         out.t[1][i] = lift.t;

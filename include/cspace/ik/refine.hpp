@@ -50,7 +50,7 @@ inline void measure_error(const Chain& chain, const Posed& goal, double length, 
 // The size of the error of a configuration, the rotation to first order.
 inline double miss_of(const Chain& chain, const Posed& goal, double length, const double* q) {
     double e[6];
-    tip_error(forward(chain, q), goal, length, e);
+    tip_error(forward_kinematics(chain, q), goal, length, e);
     return std::sqrt(dot_n(e, e, 6));
 }
 

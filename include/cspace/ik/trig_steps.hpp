@@ -30,7 +30,7 @@ struct TwoAngles {
 namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
-CSPACE_INLINE Turn<V> choose(mask_of<V> m, const Turn<double>& yes, const Turn<V>& no) {
+CSPACE_INLINE Turn<V> choose_turn(mask_of<V> m, const Turn<double>& yes, const Turn<V>& no) {
     return {select(m, fill<V>(yes.c), no.c), select(m, fill<V>(yes.s), no.s)};
 }
 // Rᵀ v for R = Rz(t) Rx(α).
@@ -46,13 +46,13 @@ struct Aligned {
     mask_of<V> doubt;
 };
 template <class V>
-CSPACE_INLINE Aligned<V> align(V x, V y, V u, V v, double unit, const Care& care,
-                               const Turn<double>& unconstrained) {
+CSPACE_INLINE Aligned<V> align_turn(V x, V y, V u, V v, double unit, const Care& care,
+                                    const Turn<double>& unconstrained) {
     const V n2 = u * u + v * v;
     const mask_of<V> is_free = n2 <= care.free * care.free * unit * unit;
     const V scale = 1.0 / select(is_free, fill<V>(1.0), n2);
     const Turn<V> t = {(x * u + y * v) * scale, (x * v - y * u) * scale};
-    return {choose(is_free, unconstrained, t), n2 <= care.band * unit * unit};
+    return {choose_turn(is_free, unconstrained, t), n2 <= care.band * unit * unit};
 }
 // The turn about the unit axis h that takes v to u, both at one angle from h; none where they lie on it.
 template <class V>
@@ -60,7 +60,8 @@ CSPACE_INLINE Turn<V> turn_onto(const Vec3<V>& h, const Vec3<V>& v, const Vec3<V
     const Vec3<V> a = v - dot(v, h) * h, b = u - dot(u, h) * h;
     const V size2 = max(dot(a, a), fill<V>(tolerance::nonzero));
     const V inverse = 1.0 / size2;
-    return choose(size2 <= free * free, {1, 0}, Turn<V>{dot(a, b) * inverse, dot(h, cross(a, b)) * inverse});
+    return choose_turn(size2 <= free * free, {1, 0},
+                       Turn<V>{dot(a, b) * inverse, dot(h, cross(a, b)) * inverse});
 }
 // The first and the last turn of R = e^{h1 t1} e^{h2 t2} e^{h3 t3} about three axes, given the middle one.
 template <class V>
@@ -92,7 +93,7 @@ CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Car
     TwoAngles<V> out;
     out.root[0] = {(a * r - b * h) * scale, (b * r + a * h) * scale};
     out.root[1] = {(a * r + b * h) * scale, (b * r - a * h) * scale};
-    for (auto& t : out.root) t = choose(is_free, unconstrained, t);
+    for (auto& t : out.root) t = choose_turn(is_free, unconstrained, t);
     // A short lever feels an error of r more: the band is one of lengths of the arm, not of the lever.
     const V band = care.band * (n2 + unit2);
     out.ok = (room >= -band) || (is_free && (abs(r) <= tolerance::reached * unit));
@@ -132,7 +133,7 @@ CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, double unit, c
     const V scale = 1.0 / select(is_free, fill<V>(1.0), r2);
     out.first[0] = {(x * along + y * across) * scale, (y * along - x * across) * scale};
     out.first[1] = {(x * along - y * across) * scale, (y * along + x * across) * scale};
-    for (auto& t : out.first) t = choose(is_free, unconstrained, t);
+    for (auto& t : out.first) t = choose_turn(is_free, unconstrained, t);
     const V least = min(room_out, room_in);
     const double band = care.band * (size2 + unit * unit) / product;
     out.ok = least >= -band;
@@ -208,7 +209,7 @@ CSPACE_INLINE WristSide<V> wrist_side(const Wrist& w, const WristView<V>& view, 
     // z = Rz(t4) (p, q, ·) fixes t4.
     const V p = w.sa5 * s, q = -w.ca4 * w.sa5 * view.c5 - w.sa4 * w.ca5;
     const Turn<V> turned = {(z.x * p + z.y * q) * view.inverse_rho2, (z.y * p - z.x * q) * view.inverse_rho2};
-    const Turn<V> t4 = choose(view.t4_is_free, unconstrained, turned);
+    const Turn<V> t4 = choose_turn(view.t4_is_free, unconstrained, turned);
     // The first column of Rz(t4) Rx(α4) Rz(t5) Rx(α5) and the second, against x, fix t6.
     const V y1 = t4.c * x.x + t4.s * x.y, y2 = t4.c * x.y - t4.s * x.x;
     const V along = w.ca4 * y2 + w.sa4 * x.z, across = w.ca4 * x.z - w.sa4 * y2;

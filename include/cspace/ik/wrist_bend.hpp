@@ -59,7 +59,7 @@ inline double blur_of_root(double slope, double curvature, double noise) {
 }
 
 // Velocity of the wrist's centre about axis i, in lengths of the arm.
-inline Vec3d lever(const WristPlace& at, int i) {
+inline Vec3d centre_velocity(const WristPlace& at, int i) {
     return (1 / at.length) * cross(at.axis[i], at.centre - at.point[i]);
 }
 inline WristPlace place_of_wrist(const Plan& plan, const double* q, double noise) {
@@ -85,7 +85,7 @@ inline double blur_of_links(const Vec3d& h, const Vec3d& upper, const Vec3d& for
 // Axes 2 ∥ 3 ∥ 4: the height of the wrist over their plane moves joint 1. The bend of the wrist determines
 // the sum of the parallel joints, and what that leaves of the reach the elbow.
 inline Bend bend_behind_shoulder(const WristPlace& at, double sine) {
-    const Vec3d &h = at.axis[1], pan = lever(at, 0);
+    const Vec3d &h = at.axis[1], pan = centre_velocity(at, 0);
     const auto in_plane = [&](const Vec3d& v) { return (1 / at.length) * (v - dot(v, h) * h); };
     const double first = blur_of_root(dot(h, pan), dot(h, cross(at.axis[0], pan)), at.noise);
     const double blur = at.noise + first * norm(cross(at.axis[0], at.axis[3]));
@@ -98,7 +98,7 @@ inline Bend bend_behind_shoulder(const WristPlace& at, double sine) {
 
 // Axes 2 ∥ 3: the height of the wrist over their plane moves joint 1, its distance from axis 2 the elbow.
 inline Bend bend_behind_parallel(const WristPlace& at, double sine) {
-    const Vec3d &h = at.axis[1], pan = lever(at, 0);
+    const Vec3d &h = at.axis[1], pan = centre_velocity(at, 0);
     const auto in_plane = [&](const Vec3d& v) { return v - dot(v, h) * h; };
     const double first = blur_of_root(dot(h, pan), dot(h, cross(at.axis[0], pan)), at.noise);
     const Vec3d upper = (1 / at.length) * in_plane(at.point[2] - at.point[1]),
@@ -115,7 +115,7 @@ inline Bend bend_behind_three(const WristPlace& at, double sine) {
     constexpr double firm = 1e-4, unknown = 1;
     SmallSvd<3, 3> J{3, 3, {}, {}, {}};
     for (int j = 0; j < 3; ++j) {
-        const Vec3d l = lever(at, j);
+        const Vec3d l = centre_velocity(at, j);
         J.us[j][0] = l.x, J.us[j][1] = l.y, J.us[j][2] = l.z;
     }
     decompose(J);
@@ -127,7 +127,7 @@ inline Bend bend_behind_three(const WristPlace& at, double sine) {
     for (int i = 0; i < 3; ++i) {
         turn = turn + v[i] * at.axis[i];
         for (int j = 0; j < 3; ++j)
-            bent = bent + v[i] * v[j] * cross(at.axis[std::min(i, j)], lever(at, std::max(i, j)));
+            bent = bent + v[i] * v[j] * cross(at.axis[std::min(i, j)], centre_velocity(at, std::max(i, j)));
     }
     const double place = blur_of_root(J.sigma[weak], dot(cross(u(a), u(b)), bent), at.noise);
     return {sine, place, at.noise + place * norm(cross(turn, at.axis[3]))};
@@ -166,7 +166,7 @@ inline bool turns_first_joint(const Plan& plan, const double* q) {
     const Vec3d upper = in_plane(at.point[2] - at.point[1]), fore = in_plane(at.centre - at.point[2]);
     const double lift = blur_of_links(h, upper, fore, at.noise) + at.noise / norm(upper + fore);
     const double hand = dot(at.axis[0], at.axis[5]), forearm = dot(at.axis[0], at.axis[3]);
-    return norm(lever(at, 0)) < on_axis && lift < most_misplaced &&
+    return norm(centre_velocity(at, 0)) < on_axis && lift < most_misplaced &&
            std::fabs(hand * hand - forearm * forearm) > apart;
 }
 

@@ -99,7 +99,7 @@ inline PositionFirst position_first(const Chain& six) {
     for (int i = 0; i < 6; ++i) slides = slides || six.prismatic[i];
     for (const bool backwards : {false, true}) {
         out.backwards = backwards;
-        out.arm = backwards ? reversed(six) : six;
+        out.arm = backwards ? reverse_chain(six) : six;
         Vec3d centre;
         if (!slides || !wrist_centre(out.arm, centre)) continue;
         out.serves = true;

@@ -86,22 +86,22 @@ inline Invariants pulled_back(const Posed& T, const Invariants& g) {
 }
 
 // Rz(a) v = level + cos a · across + sin a · quarter.
-inline Vec3d across(const Vec3d& a) { return {a.x, a.y, 0}; }
-inline Vec3d quarter(const Vec3d& a) { return {-a.y, a.x, 0}; }
-inline Invariants across(const Invariants& v) {
-    return {across(v.l), across(v.p), across(v.m), across(v.q), 0, 0, 0};
+inline Vec3d across_part(const Vec3d& a) { return {a.x, a.y, 0}; }
+inline Vec3d quarter_part(const Vec3d& a) { return {-a.y, a.x, 0}; }
+inline Invariants across_part(const Invariants& v) {
+    return {across_part(v.l), across_part(v.p), across_part(v.m), across_part(v.q), 0, 0, 0};
 }
-inline Invariants level(const Invariants& v) { return v - across(v); }
-inline Invariants quarter(const Invariants& v) {
-    return {quarter(v.l), quarter(v.p), quarter(v.m), quarter(v.q), 0, 0, 0};
+inline Invariants level_part(const Invariants& v) { return v - across_part(v); }
+inline Invariants quarter_part(const Invariants& v) {
+    return {quarter_part(v.l), quarter_part(v.p), quarter_part(v.m), quarter_part(v.q), 0, 0, 0};
 }
 
 // Tz(d) v = v + d · once + d² · twice.
-inline Invariants once(const Invariants& v) {
+inline Invariants first_order_part(const Invariants& v) {
     const Vec3d z = {0, 0, 1};
     return {{0, 0, 0}, v.one * z, cross(z, v.l), -2.0 * cross(z, v.m) - (2 * v.pl) * z, 2 * v.p.z, v.l.z, 0};
 }
-inline Invariants twice(const Invariants& v) {
+inline Invariants second_order_part(const Invariants& v) {
     return {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {v.l.x, v.l.y, -v.l.z}, v.one, 0, 0};
 }
 
@@ -206,9 +206,10 @@ inline void right_side(const Loop& loop, Elimination& e, Invariants (&g)[6]) {
     const Posed M4 = inverse(loop.M[4]);
     // Rz(−a4): the sine counts backwards; Tz(−a4): so does the slide.
     const bool slides = loop.slides[4];
-    const Invariants part[3] = {move_invariants(M4, slides ? twice(behind) : across(behind)),
-                                move_invariants(M4, -1.0 * (slides ? once(behind) : quarter(behind))),
-                                move_invariants(M4, slides ? behind : level(behind))};
+    const Invariants part[3] = {
+        move_invariants(M4, slides ? second_order_part(behind) : across_part(behind)),
+        move_invariants(M4, -1.0 * (slides ? first_order_part(behind) : quarter_part(behind))),
+        move_invariants(M4, slides ? behind : level_part(behind))};
     Complex W[4][3];
     for (int j = 0; j < 3; ++j) {
         const Invariants& w = part[j];
@@ -247,14 +248,14 @@ inline void left_side(const Loop& loop, Invariants (&B)[9]) {
     const Posed M0 = from(0, a1_origin), M1 = from(1, a2_origin);
     const auto monomials = [](const Invariants& v, bool slides, Invariants* out) {
         if (slides) {
-            out[0] = twice(v);
-            out[1] = once(v);
+            out[0] = second_order_part(v);
+            out[1] = first_order_part(v);
             out[2] = v;
             return;
         }
-        const Invariants up = level(v), side = across(v);
+        const Invariants up = level_part(v), side = across_part(v);
         out[0] = up - side;
-        out[1] = 2.0 * quarter(v);
+        out[1] = 2.0 * quarter_part(v);
         out[2] = up + side;
     };
     Invariants by_a2[3];
@@ -331,7 +332,7 @@ inline Elimination eliminate_angles(const Loop& loop) {
 // Reflections first take E0 out of the last block column, then what is left of it; no pivoting, no branches.
 
 template <class V>
-CSPACE_INLINE V equation(const Elimination& e, int i, int monomial, V c, V s) {
+CSPACE_INLINE V coefficient_at(const Elimination& e, int i, int monomial, V c, V s) {
     return mul_add(s, fill<V>(e.quarter[monomial][i]),
                    mul_add(c, fill<V>(e.across[monomial][i]), fill<V>(e.level[monomial][i])));
 }
@@ -350,7 +351,7 @@ CSPACE_NOINLINE V determinant(const Elimination& e, V c, V s) {
     for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 3; ++j)
             for (int block = 0; block < 3; ++block)
-                A[i][3 * block + j] = equation(e, i, 3 * (2 - block) + j, c, s);
+                A[i][3 * block + j] = coefficient_at(e, i, 3 * (2 - block) + j, c, s);
     V d3[3], d6[6], factor3[3], factor6[6];
     linear::factor_qr(A, d3, factor3);  // [R0 b1 b2; 0 a1 a2]
     const V zero = fill<V>(0.0);

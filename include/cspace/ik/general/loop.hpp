@@ -89,7 +89,7 @@ inline Chain in_units_of(double length, Chain chain) {
     return chain;
 }
 
-inline Formulation formulation(int number) { return {number % 6, number >= 6}; }
+inline Formulation formulation_of(int number) { return {number % 6, number >= 6}; }
 inline int hidden_joint(Formulation form) { return form.backwards ? 5 - form.shift : form.shift; }
 
 // From axis 6 by the goal back to axis 1.

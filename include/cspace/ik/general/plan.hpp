@@ -98,7 +98,7 @@ inline void try_formulations(const GeneralPlan& plan, const Posed& goal, Solutio
     int shared = 0;
     bool shares[6] = {};
     for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete && shared < most_shared; ++k) {
-        const int joint = hidden_joint(formulation(plan.order[k]));
+        const int joint = hidden_joint(formulation_of(plan.order[k]));
         if (shares[joint]) continue;
         try_formulation(plan, goal, plan.order[k], out, tried_all);
         shares[joint] = tried_all.seen[tried_all.count - 1].shared;
@@ -123,8 +123,8 @@ inline constexpr double usual_sensitivity = 1e5, useless_sensitivity = 1e8;
 inline double pose_sensitivity(const GeneralPlan& plan, const Posed& goal, int number) {
     using V = Pack<4>;
     constexpr double slip = 1e-9;
-    const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
-    if (!is_possible(loop, formulation(number))) return useless_sensitivity;
+    const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation_of(number));
+    if (!is_possible(loop, formulation_of(number))) return useless_sensitivity;
     if (plan.slides == 2) return 0;
     const Elimination e = eliminate_angles(loop);
     Elimination slipped = e;
@@ -172,7 +172,7 @@ inline void try_formulation(const GeneralPlan& plan, const Posed* goal, int last
 inline Posed own_pose(const Chain& chain, int k) {
     double q[max_joints];
     spread_configuration(k, 6, q);
-    return forward(chain, q);
+    return forward_kinematics(chain, q);
 }
 
 // A plan without formulations.
@@ -213,7 +213,7 @@ inline void find_ghosts(const Posed* goal, int number, GeneralPlan& plan) {
     if (plan.slides == 2) return;
     HiddenAngles hidden[3];
     for (int k = 0; k < 3; ++k) {
-        const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal[k], formulation(number));
+        const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal[k], formulation_of(number));
         const Elimination e = eliminate_angles(loop);
         isolate_roots([&](auto c, auto s) { return determinant(e, c, s); }, fine, hidden[k]);
     }

@@ -34,7 +34,7 @@ CSPACE_NOINLINE void reduce_equations(const Elimination& e, V c, V s, ReducedEqu
     for (auto& row : out.A)
         for (V& entry : row) entry = fill<V>(0.0);
     for (int i = 0; i < 6; ++i)
-        for (int m = 0; m < 9; ++m) out.A[m][i] = out.A[3 + m][6 + i] = equation(e, i, m, c, s);
+        for (int m = 0; m < 9; ++m) out.A[m][i] = out.A[3 + m][6 + i] = coefficient_at(e, i, m, c, s);
     for (int k = 0; k < 12; ++k)  // the first six columns end at row nine
         linear::reduce_column(out.A, k < 6 ? 9 : 12, 12, k, out.diagonal[k], out.factor[k]);
 }
@@ -185,14 +185,14 @@ CSPACE_INLINE void joints_from(const Loop& loop, const Elimination& e, const Tur
 // solutions are distinguished inside the plane of the two weakest vectors.
 
 template <class V>
-CSPACE_INLINE V dot12(const V* a, const V* b) {
+CSPACE_INLINE V dot_12(const V* a, const V* b) {
     V sum = a[0] * b[0];
     for (int i = 1; i < 12; ++i) sum = mul_add(a[i], b[i], sum);
     return sum;
 }
 template <class V>
 CSPACE_INLINE void make_unit(V* y) {
-    const V scale = 1.0 / sqrt(max(dot12(y, y), fill<V>(tolerance::nonzero)));
+    const V scale = 1.0 / sqrt(max(dot_12(y, y), fill<V>(tolerance::nonzero)));
     for (int i = 0; i < 12; ++i) y[i] = scale * y[i];
 }
 
@@ -223,7 +223,7 @@ CSPACE_NOINLINE void weak_plane(const ReducedEquations<V>& r, V (&y)[2][12]) {
             }
             make_unit(v);
         }
-        const V along = dot12(y[0], y[1]);
+        const V along = dot_12(y[0], y[1]);
         for (int i = 0; i < 12; ++i) y[1][i] = mul_add(-along, y[0][i], y[1][i]);
         make_unit(y[1]);
     }

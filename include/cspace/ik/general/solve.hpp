@@ -293,8 +293,8 @@ inline bool is_possible(const Loop& loop, Formulation form) {
 }
 
 inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal, int number, Solutions& out) {
-    const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
-    if (!is_possible(loop, formulation(number))) return {};
+    const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation_of(number));
+    if (!is_possible(loop, formulation_of(number))) return {};
     if (plan.slides == 2) {
         const TwoSheets sheets = two_sheets(loop);
         if (!(min(sheets.square_end, sheets.square_corner) > clear_sheets)) {

@@ -77,18 +77,18 @@ inline TwoSheets two_sheets(const Loop& loop) {
 }
 
 template <class V>
-CSPACE_INLINE Vec3<V> turned(const Turn<V>& t, const Vec3<V>& v) {
+CSPACE_INLINE Vec3<V> rotate_about_z(const Turn<V>& t, const Vec3<V>& v) {
     return {t.c * v.x - t.s * v.y, t.s * v.x + t.c * v.y, v.z};
 }
 // The odd part of a turn moves the parts across z alone.
 template <class V>
-CSPACE_INLINE OnSheets<V> turned(const TurnOnSheets<V>& t, const Vec3<V>& v) {
-    Vec3<V> odd = turned(t.odd, v);
+CSPACE_INLINE OnSheets<V> rotate_about_z(const TurnOnSheets<V>& t, const Vec3<V>& v) {
+    Vec3<V> odd = rotate_about_z(t.odd, v);
     odd.z = fill<V>(0.0);
-    return {turned(t.even, v), odd};
+    return {rotate_about_z(t.even, v), odd};
 }
 template <class V>
-CSPACE_INLINE OnSheets<V> times(const Mat3<V>& R, const OnSheets<V>& v) {
+CSPACE_INLINE OnSheets<V> rotate_sheets(const Mat3<V>& R, const OnSheets<V>& v) {
     return {R * v.even, R * v.odd};
 }
 // The turn that takes w to x, both with the same part across z of squared length n2.
@@ -103,11 +103,12 @@ template <class V>
 CSPACE_INLINE OnSheets<V> from_link(const TwoSheets& s, const AtHiddenAngle<V>& at, const Mat3<V>& R0A0,
                                     int i, const Vec3d& fixed) {
     const Vec3<V> none = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)}, v = fill3<V>(fixed);
-    if (i == 0) return {turned(at.a0, v), none};
-    if (i == 1) return times(R0A0, turned(at.a1, v));
+    if (i == 0) return {rotate_about_z(at.a0, v), none};
+    if (i == 1) return rotate_sheets(R0A0, rotate_about_z(at.a1, v));
     if (i == 3) return {fill3<V>(transpose_times(s.A[3], fixed)), none};
     const TurnOnSheets<V> back = {{at.a3.even.c, -at.a3.even.s}, {at.a3.odd.c, -at.a3.odd.s}};
-    return times(fill33<V>(transpose(s.A[3])), turned(back, fill3<V>(transpose_times(s.A[2], fixed))));
+    return rotate_sheets(fill33<V>(transpose(s.A[3])),
+                         rotate_about_z(back, fill3<V>(transpose_times(s.A[2], fixed))));
 }
 
 template <class V>
@@ -116,8 +117,8 @@ CSPACE_INLINE AtHiddenAngle<V> at_hidden_angle(const TwoSheets& s, const Turn<V>
     at.a0 = a0;
     const Vec3<V> end = fill3<V>(column(s.A[1], 2));
     Mat3<V> R0A0 = fill33<V>(s.A[0]);
-    R0A0 =
-        from_columns(turned(a0, column(R0A0, 0)), turned(a0, column(R0A0, 1)), turned(a0, column(R0A0, 2)));
+    R0A0 = from_columns(rotate_about_z(a0, column(R0A0, 0)), rotate_about_z(a0, column(R0A0, 1)),
+                        rotate_about_z(a0, column(R0A0, 2)));
     const Mat3<V> B = fill33<V>(s.A[3]) * R0A0;
     const Vec3<V> row = {B.m[2][0], B.m[2][1], B.m[2][2]};
     const V a = row.x * end.x + row.y * end.y, b = row.y * end.x - row.x * end.y;
@@ -126,7 +127,7 @@ CSPACE_INLINE AtHiddenAngle<V> at_hidden_angle(const TwoSheets& s, const Turn<V>
     at.inside = at.square - k * k;
     const V scale = 1.0 / at.square;
     at.a1 = {{scale * a * k, scale * b * k}, {-scale * b, scale * a}};
-    const OnSheets<V> x = times(B, turned(at.a1, end));
+    const OnSheets<V> x = rotate_sheets(B, rotate_about_z(at.a1, end));
     // x = Rz(−a3) A2ᵀ z
     const Vec3<V> w = fill3<V>(s.end);
     at.a3 = {turn_between(x.even, w, s.square_end), turn_between(x.odd, w, s.square_end)};
@@ -166,8 +167,8 @@ inline void joints_on_sheet(const TwoSheets& s, const AtHiddenAngle<double>& at,
     const Turn<double> a1 = turn(at.a1), a3 = turn(at.a3);
     // z (A3 Rz(a0) A0 Rz(a1) A1) is Rz(a2) A2 z.
     Vec3d x = transpose_times(s.A[3], Vec3d{0, 0, 1});
-    x = transpose_times(s.A[0], turned(Turn<double>{at.a0.c, -at.a0.s}, x));
-    x = transpose_times(s.A[1], turned(Turn<double>{a1.c, -a1.s}, x));
+    x = transpose_times(s.A[0], rotate_about_z(Turn<double>{at.a0.c, -at.a0.s}, x));
+    x = transpose_times(s.A[1], rotate_about_z(Turn<double>{a1.c, -a1.s}, x));
     const Turn<double> a2 = turn_between(s.row, x, s.square_end);
     const Turn<double> all[4] = {at.a0, a1, a2, a3};
     for (int i = 0; i < 4; ++i) q[s.turn[i]] = angle_of(all[i]);

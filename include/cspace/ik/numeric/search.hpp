@@ -79,8 +79,8 @@ inline void nearest_turns(const Path& path, const Task& task, const double* want
 namespace searching {
 
 // The rows of goals begin to end. Each pass tries the next start for the goals that have failed so far.
-inline DescentResults passes(const Search& search, std::size_t begin, std::size_t end, Descend descend,
-                             std::vector<std::int32_t>& start) {
+inline DescentResults run_passes(const Search& search, std::size_t begin, std::size_t end, Descend descend,
+                                 std::vector<std::int32_t>& start) {
     const std::size_t n = std::size_t(search.path.n);
     DescentResults results(end - begin, search.path.n);
     DescentRows rows = results.rows_for(search.path, search.task);
@@ -136,8 +136,8 @@ inline DescentResults side_by_side(const Search& search, std::size_t goal, Desce
 }
 
 // The result of a goal from the row that a descent wrote.
-inline Found finish(const Search& search, std::size_t goal, const DescentResults& results, std::size_t row,
-                    std::int32_t start, double* q) {
+inline Found finish_goal(const Search& search, std::size_t goal, const DescentResults& results,
+                         std::size_t row, std::int32_t start, double* q) {
     const Path& path = search.path;
     std::copy_n(results.q.begin() + std::ptrdiff_t(row) * path.n, path.n, q);
     Found found = {results.ends[row], start};
@@ -162,15 +162,16 @@ inline void search_goals(const Search& search, std::size_t begin, std::size_t en
         for (std::size_t goal = begin; goal < end; ++goal) {
             std::size_t best;
             const DescentResults results = searching::side_by_side(search, goal, descend, best);
-            found[goal] = searching::finish(search, goal, results, best, std::int32_t(best), q + n * goal);
+            found[goal] =
+                searching::finish_goal(search, goal, results, best, std::int32_t(best), q + n * goal);
         }
         return;
     }
     std::vector<std::int32_t> start(end - begin);
-    const DescentResults results = searching::passes(search, begin, end, descend, start);
+    const DescentResults results = searching::run_passes(search, begin, end, descend, start);
     for (std::size_t goal = begin; goal < end; ++goal)
         found[goal] =
-            searching::finish(search, goal, results, goal - begin, start[goal - begin], q + n * goal);
+            searching::finish_goal(search, goal, results, goal - begin, start[goal - begin], q + n * goal);
 }
 
 // Distinct solutions among the results of many descents.

@@ -39,13 +39,13 @@ inline Curve curve_of(bool prismatic, const Vec3d& axis, const Vec3d& point, con
     const Vec3d r = x - point, turned = cross(axis, r);
     return {false, point + dot(axis, r) * axis, -cross(axis, turned), direction * turned};
 }
-inline Vec3d at(const Curve& f, double q) {
+inline Vec3d point_at(const Curve& f, double q) {
     if (f.line) return f.c + q * f.a;
     double s, c;
     sincos(q, s, c);
     return f.c + c * f.a + s * f.b;
 }
-inline OnCurve height(const Curve& f, const Vec3d& n, const Vec3d& origin) {
+inline OnCurve height_along(const Curve& f, const Vec3d& n, const Vec3d& origin) {
     return {f.line, dot(n, f.c - origin), dot(n, f.a), dot(n, f.b), 0};
 }
 inline OnCurve squared_distance(const Curve& f, const Vec3d& origin) {
@@ -56,7 +56,7 @@ inline OnCurve squared_distance(const Curve& f, const Vec3d& origin) {
 
 // Values of the first and the last of three joints that satisfy one condition on both.
 
-inline void add(PairCandidates& found, double first, double last) {
+inline void add_pair(PairCandidates& found, double first, double last) {
     if (found.count == 48 || !std::isfinite(first) || !std::isfinite(last)) return;
     found.first[found.count] = first;
     found.stage[found.count] = found.now;
@@ -83,19 +83,19 @@ inline int values_on_circle(const OnCurve& f, double target, double* q) {
     q[0] = angle_of(r.theta[0]), q[1] = angle_of(r.theta[1]);
     return r.two ? 2 : 1;
 }
-inline int values(const OnCurve& f, double target, double* q) {
+inline int values_on_curve(const OnCurve& f, double target, double* q) {
     return f.line ? values_on_line(f, target, q) : values_on_circle(f, target, q);
 }
-inline double value(const OnCurve& f, double q) {
+inline double value_at(const OnCurve& f, double q) {
     if (f.line) return f.k + q * (f.a + q * f.square);
     double s, c;
     sincos(q, s, c);
     return f.k + c * f.a + s * f.b;
 }
-inline double weight(const OnCurve& f) { return std::fabs(f.a) + std::fabs(f.b) + std::fabs(f.square); }
+inline double weight_of(const OnCurve& f) { return std::fabs(f.a) + std::fabs(f.b) + std::fabs(f.square); }
 
 // The lowest point of a parabola, or zero.
-inline double vertex(const OnCurve& f) { return f.line && f.square > 0 ? -f.a / (2 * f.square) : 0; }
+inline double vertex_of(const OnCurve& f) { return f.line && f.square > 0 ? -f.a / (2 * f.square) : 0; }
 
 }  // namespace pair
 

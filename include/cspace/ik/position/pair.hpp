@@ -30,7 +30,7 @@ struct Range {
 inline bool has_end(const OnCurve& f) {
     return (f.line ? f.square : std::hypot(f.a, f.b)) > tolerance::rounding;
 }
-inline Range range(const OnCurve& f) {
+inline Range value_range(const OnCurve& f) {
     constexpr double without_end = std::numeric_limits<double>::infinity();
     if (!f.line) {
         const double reach = std::hypot(f.a, f.b);
@@ -45,13 +45,13 @@ inline bool is_within(const Range& inner, const Range& outer) {
     constexpr double nearly = 1e-8;
     return inner.least >= outer.least - nearly && inner.most <= outer.most + nearly;
 }
-inline bool holds(const Range& r, double value) {
+inline bool holds_value(const Range& r, double value) {
     return value >= r.least - tolerance::rounding && value <= r.most + tolerance::rounding;
 }
 
 // The joint value at the extremum of its side: the maximum, or the minimum.
-inline double at_most(const OnCurve& f) { return f.line ? vertex(f) : std::atan2(f.b, f.a); }
-inline double at_least(const OnCurve& f) { return f.line ? vertex(f) : std::atan2(-f.b, -f.a); }
+inline double at_most(const OnCurve& f) { return f.line ? vertex_of(f) : std::atan2(f.b, f.a); }
+inline double at_least(const OnCurve& f) { return f.line ? vertex_of(f) : std::atan2(-f.b, -f.a); }
 
 // Whether the conditions f_i = g_i are equivalent to one; `k` is then the number of the non-trivial one.
 inline bool is_one_condition(const OnCurve f[2], const OnCurve g[2], int& k) {
@@ -69,7 +69,7 @@ inline bool is_one_condition(const OnCurve f[2], const OnCurve g[2], int& k) {
         apart += d * d;
     }
     return apart <= tolerance::rounding * tolerance::rounding &&
-           weight(f[k]) + weight(g[k]) > tolerance::rounding;
+           weight_of(f[k]) + weight_of(g[k]) > tolerance::rounding;
 }
 
 // Where an extremum of f coincides with an extremum of g, two curves cross, or one curve crosses itself. Both
@@ -77,7 +77,7 @@ inline bool is_one_condition(const OnCurve f[2], const OnCurve g[2], int& k) {
 struct Touching {
     bool most, least;
 };
-inline Touching touching(const Range& f, const Range& g) {
+inline Touching touching_ends(const Range& f, const Range& g) {
     const auto same = [](double a, double b) { return std::fabs(a - b) <= tolerance::rounding; };
     return {same(f.most, g.most), same(f.least, g.least)};
 }
@@ -98,33 +98,34 @@ inline double away_from_ends(const OnCurve& f) {
 // at π/2 from an extremum. Otherwise the first joint is at 0, or the last joint is at 0, or both sides are
 // halfway between the ends of their curve.
 inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& found) {
-    const Range of_f = range(f), of_g = range(g);
-    const Touching ends = touching(of_f, of_g);
+    const Range of_f = value_range(f), of_g = value_range(g);
+    const Touching ends = touching_ends(of_f, of_g);
     // The two slopes of a side are one curve that passes from one to the other where it crosses itself.
     const bool once = (!f.line || !g.line) && ends.most != ends.least;
     double q[2];
     if (is_within(of_f, of_g)) {
         const double first = away_from_ends(f);
-        const int n = values(g, value(f, first), q);
-        for (int i = 0; i < (once ? 1 : n); ++i) add(found, first, q[i]);
+        const int n = values_on_curve(g, value_at(f, first), q);
+        for (int i = 0; i < (once ? 1 : n); ++i) add_pair(found, first, q[i]);
     } else if (is_within(of_g, of_f)) {
         const double last = away_from_ends(g);
-        const int n = values(f, value(g, last), q);
-        for (int i = 0; i < (once ? 1 : n); ++i) add(found, q[i], last);
-    } else if (!is_near_end(f, 0) && holds(of_g, value(f, 0))) {
-        if (values(g, value(f, 0), q) > 0) add(found, 0, q[0]);
-    } else if (!is_near_end(g, 0) && holds(of_f, value(g, 0))) {
-        if (values(f, value(g, 0), q) > 0) add(found, q[0], 0);
+        const int n = values_on_curve(f, value_at(g, last), q);
+        for (int i = 0; i < (once ? 1 : n); ++i) add_pair(found, q[i], last);
+    } else if (!is_near_end(f, 0) && holds_value(of_g, value_at(f, 0))) {
+        if (values_on_curve(g, value_at(f, 0), q) > 0) add_pair(found, 0, q[0]);
+    } else if (!is_near_end(g, 0) && holds_value(of_f, value_at(g, 0))) {
+        if (values_on_curve(f, value_at(g, 0), q) > 0) add_pair(found, q[0], 0);
     } else {
         const double least = std::fmax(of_f.least, of_g.least), most = std::fmin(of_f.most, of_g.most);
         const double halfway = 0.5 * (least + most);
         double first[2], last[2];
-        if (values(f, halfway, first) > 0 && values(g, halfway, last) > 0) add(found, first[0], last[0]);
+        if (values_on_curve(f, halfway, first) > 0 && values_on_curve(g, halfway, last) > 0)
+            add_pair(found, first[0], last[0]);
     }
     // Where both sides are least, both points may lie on the axis between, whose joint is then free.
     if (!ends.least) return;
     const int next = found.count;
-    add(found, at_least(f), at_least(g));
+    add_pair(found, at_least(f), at_least(g));
     if (found.count > next) found.on_axis = next;
 }
 
@@ -133,14 +134,15 @@ inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& f
 namespace pair {
 
 inline void add_swapped(const PairCandidates& swapped, PairCandidates& found) {
-    for (int i = 0; i < swapped.count; ++i) add(found, swapped.last[i], swapped.first[i]);
+    for (int i = 0; i < swapped.count; ++i) add_pair(found, swapped.last[i], swapped.first[i]);
 }
 // For a given value of one joint, the other from each condition that depends on it.
 inline void follow_last(const OnCurve f[2], const OnCurve g[2], double first, PairCandidates& found) {
     for (int i = 0; i < 2; ++i) {
         double q[2];
-        const int n = weight(g[i]) > tolerance::rounding ? values(g[i], value(f[i], first), q) : 0;
-        for (int j = 0; j < n; ++j) add(found, first, q[j]);
+        const int n =
+            weight_of(g[i]) > tolerance::rounding ? values_on_curve(g[i], value_at(f[i], first), q) : 0;
+        for (int j = 0; j < n; ++j) add_pair(found, first, q[j]);
     }
 }
 inline void follow_first(const OnCurve f[2], const OnCurve g[2], double last, PairCandidates& found) {
@@ -157,7 +159,7 @@ inline void two_circles(const OnCurve f[2], const OnCurve g[2], PairCandidates& 
         e.gamma[i][0] = -g[i].a, e.gamma[i][1] = -g[i].b;
     }
     const TwoTurns r = solve_two_turns(e);
-    for (int i = 0; i < r.count; ++i) add(found, angle_of(r.u[i]), angle_of(r.w[i]));
+    for (int i = 0; i < r.count; ++i) add_pair(found, angle_of(r.u[i]), angle_of(r.w[i]));
 }
 
 // A circle f and a line g, conditions f_i = g_i with g_0 linear: g_0 = k + a q.
@@ -175,7 +177,7 @@ inline void circle_and_line(const OnCurve f[2], const OnCurve g[2], PairCandidat
     for (int k = 0; k < 2; ++k) {
         if (!(std::fabs(g[k].a) < tolerance::degenerate_pair) || g[k].square != 0) continue;
         double q[2];
-        const int n = weight(f[k]) > tolerance::rounding ? values(f[k], g[k].k, q) : 0;
+        const int n = weight_of(f[k]) > tolerance::rounding ? values_on_curve(f[k], g[k].k, q) : 0;
         for (int i = 0; i < n; ++i) follow_last(f, g, q[i], found);
     }
 }
@@ -186,12 +188,12 @@ inline void two_lines(const OnCurve f[2], const OnCurve g[2], PairCandidates& fo
     const double k = f[0].k - g[0].k, a = f[0].a, c = g[0].a, size2 = a * a + c * c;
     if (size2 <= tolerance::rounding * tolerance::rounding) return;
     const double foot1 = -k * a / size2, foot3 = k * c / size2;
-    OnCurve along = {true, value(f[1], foot1) - value(g[1], foot3), 0, 0, 0};
+    OnCurve along = {true, value_at(f[1], foot1) - value_at(g[1], foot3), 0, 0, 0};
     along.a = c * (f[1].a + 2 * f[1].square * foot1) - a * (g[1].a + 2 * g[1].square * foot3);
     along.square = f[1].square * c * c - g[1].square * a * a;
     double t[2] = {0, 0};
-    const int n = weight(along) > tolerance::rounding ? values_on_line(along, 0, t) : 1;
-    for (int i = 0; i < n; ++i) add(found, foot1 + t[i] * c, foot3 + t[i] * a);
+    const int n = weight_of(along) > tolerance::rounding ? values_on_line(along, 0, t) : 1;
+    for (int i = 0; i < n; ++i) add_pair(found, foot1 + t[i] * c, foot3 + t[i] * a);
 }
 
 }  // namespace pair
@@ -219,9 +221,9 @@ inline PairCandidates solve_pair(const OnCurve f[2], const OnCurve g[2]) {
     found.now = 2;
     follow_first(f, g, 0, found);
     found.now = 3;
-    follow_last(f, g, vertex(f[1]), found);
-    follow_first(f, g, vertex(g[1]), found);
-    add(found, 0, 0);
+    follow_last(f, g, vertex_of(f[1]), found);
+    follow_first(f, g, vertex_of(g[1]), found);
+    add_pair(found, 0, 0);
     return found;
 }
 

@@ -64,7 +64,8 @@ struct Search {
         for (int i = 0; i < n; ++i) scaled[i] = chain.prismatic[i] ? q[i] / size : q[i];
         if (refine_angles(gap, scaled) > gap.reached) return;
         // Half a turn away from the goal the sum of g × r vanishes too.
-        if (spatial::angle_between(forward(chain, scaled).R, goal.R) <= 1) keep_distinct(gap, scaled, found);
+        if (spatial::angle_between(forward_kinematics(chain, scaled).R, goal.R) <= 1)
+            keep_distinct(gap, scaled, found);
     }
 };
 
@@ -122,7 +123,7 @@ void find_solutions(const Chain& chain, const Posed& T, PositionSolutions& found
         if (revolute > 1 && !chain.prismatic[n - 1]) {
             by_last_axis<n>(chain, G, scale.size, false, search);
         } else if (revolute > 1) {
-            const Chain back = reversed(chain);
+            const Chain back = reverse_chain(chain);
             by_last_axis<n>(back, inverse(T) * inverse(back.tip), scale.size, true, search);
         }
     }

@@ -23,8 +23,8 @@ template <int n>
 void invariants(const TipGap<n>& g, int joint, const Curve& curve, OnCurve f[2]) {
     const Vec3d &h = g.axis[joint], &o = g.point[joint];
     const Vec3d across = any_perpendicular(h);
-    f[0] = height(curve, g.prismatic[joint] ? across : h, o);
-    f[1] = g.prismatic[joint] ? height(curve, cross(h, across), o) : squared_distance(curve, o);
+    f[0] = height_along(curve, g.prismatic[joint] ? across : h, o);
+    f[1] = g.prismatic[joint] ? height_along(curve, cross(h, across), o) : squared_distance(curve, o);
 }
 template <int n>
 Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction) {
@@ -52,7 +52,7 @@ inline void add_candidates(const TipGap<2>& g, PositionSolutions& found) {
     invariants(g, 0, curve, f);
     invariants(g, 0, goal, target);
     const auto complete = [&](double last) {
-        const Vec3d x = at(curve, last);
+        const Vec3d x = point_at(curve, last);
         const double first = joint_between(g, 0, x, g.goal);
         double q[2] = {first, last};
         keep_refined(g, q, found);
@@ -66,7 +66,8 @@ inline void add_candidates(const TipGap<2>& g, PositionSolutions& found) {
     bool unconstrained = true;
     for (int i = 0; i < 2; ++i) {
         double last[2];
-        const int n = pair::weight(f[i]) > tolerance::rounding ? pair::values(f[i], target[i].k, last) : 0;
+        const int n =
+            pair::weight_of(f[i]) > tolerance::rounding ? pair::values_on_curve(f[i], target[i].k, last) : 0;
         for (int j = 0; j < n; ++j) complete(last[j]);
         unconstrained = unconstrained && n == 0;
     }
@@ -104,7 +105,7 @@ inline void add_candidates(const TipGap<3>& g, PositionSolutions& found) {
         for (int i = 0; i < pairs.count; ++i) {
             if (pairs.stage[i] != (stage < 2 ? 0 : stage - 1)) continue;
             const double first = pairs.first[i], last = pairs.last[i];
-            const Vec3d from = at(behind, last), to = at(before, first);
+            const Vec3d from = point_at(behind, last), to = point_at(before, first);
             double q[3] = {first, joint_between(g, 1, from, to), last};
             if (i == pairs.on_axis && !free_the_middle(g, from, to, q)) continue;
             Linearised<TipGap<3>> start;

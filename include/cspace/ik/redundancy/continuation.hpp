@@ -172,7 +172,7 @@ inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slac
     int worst = -1;
     double most = slack;
     for (int i = 0; i < arm.chain.n; ++i) {
-        const double over = excess(arm, i, to.q[i]);
+        const double over = limit_excess(arm, i, to.q[i]);
         if (!(over > most)) continue;
         most = over;
         worst = i;

@@ -103,7 +103,7 @@ inline Critical bisect_change(const Redundant& arm, const Sweep& sweep, Looks& l
         cause = end_fold;
         for (int i = 0; i < arm.chain.n && there.there >> branch & 1; ++i) {
             const double q = there.q[branch][i];
-            if (i == sweep.parameter || !(excess(arm, i, q) > limit_slack)) continue;
+            if (i == sweep.parameter || !(limit_excess(arm, i, q) > limit_slack)) continue;
             cause = i;
             side = std::fabs(short_way(q - arm.upper[i])) < std::fabs(short_way(q - arm.lower[i]));
         }

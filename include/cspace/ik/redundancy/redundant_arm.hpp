@@ -100,7 +100,7 @@ inline Basis basis_of(const Chain& chain, double length) {
 }
 
 // The least distance from a value to the limits of joint i over all multiples of 2π; not positive inside.
-inline double excess(const Redundant& arm, int i, double q) {
+inline double limit_excess(const Redundant& arm, int i, double q) {
     if (!is_stopped(arm, i)) return -1;
     if (arm.chain.prismatic[i]) return max(arm.lower[i] - q, q - arm.upper[i]);
     const double middle = 0.5 * (arm.lower[i] + arm.upper[i]);
@@ -112,7 +112,7 @@ inline constexpr double limit_slack = 1e-9;  // [rad or m] what rounding may put
 // Whether all joints but one are within their limits.
 inline bool is_within(const Redundant& arm, const double* q, double slack, int except = -1) {
     for (int i = 0; i < arm.chain.n; ++i)
-        if (i != except && excess(arm, i, q[i]) > slack) return false;
+        if (i != except && limit_excess(arm, i, q[i]) > slack) return false;
     return true;
 }
 
@@ -120,7 +120,7 @@ inline bool is_within(const Redundant& arm, const double* q, double slack, int e
 // range: a tool has to point forwards.
 inline bool is_allowed(const Redundant& arm, const double* q) {
     for (int i = 0; i < arm.chain.n; ++i)
-        if (arm.weight[i] == 0 && excess(arm, i, q[i]) > limit_slack * arm.length) return false;
+        if (arm.weight[i] == 0 && limit_excess(arm, i, q[i]) > limit_slack * arm.length) return false;
     return true;
 }
 

@@ -49,7 +49,7 @@ inline void in_lengths(const Chain& chain, double length, const double* directio
 // The size of the error e at q alone, the rotation to first order.
 inline double constrained_error(const Chain& chain, const TipConstraint& constraint, const double* q,
                                 double* e) {
-    tip_error(forward(chain, q), constraint.goal, constraint.length, e);
+    tip_error(forward_kinematics(chain, q), constraint.goal, constraint.length, e);
     for (int k = 3; k < 6 && !constraint.whole_pose; ++k) e[k] = 0;
     return std::sqrt(dot_n(e, e, 6));
 }

@@ -82,7 +82,7 @@ inline bool leaves_goal(const Chain& chain, const Posed& goal, double length, co
         bool left = false;
         for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + way * J.v[weak][i];
         for (int step = 0; step < most_steps && !left; ++step) {
-            tip_error(forward(chain, moved), goal, length, e);
+            tip_error(forward_kinematics(chain, moved), goal, length, e);
             const double along = dot_n(J.us[weak], e, 6) / J.sigma[weak];
             left = std::fabs(along) > most && dot_n(e, e, 6) < all_along * along * along;
             least_norm_step(J, e, 0, 0, weak, dq);

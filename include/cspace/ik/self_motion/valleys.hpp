@@ -56,7 +56,7 @@ inline Valley search_valley(const Chain& chain, const Posed& goal, double length
     };
     const auto visit = [&](int way, const double* at, const double*, double margin) {
         double e[6];
-        tip_error(forward(chain, at), goal, length, e);
+        tip_error(forward_kinematics(chain, at), goal, length, e);
         const double here = std::sqrt(dot_n(e, e, 6));
         const bool goes_on = way == last_way;
         if (goes_on && dot_n(e, error, 6) < 0)

@@ -53,7 +53,7 @@ struct Gap {
     }
 };
 
-inline TwoTurnEquations equations(const Sp5Problem& s) {
+inline TwoTurnEquations two_turn_equations(const Sp5Problem& s) {
     const Vec3d x = s.p0 - s.p2;
     // cᵀ Rot(k, θ) p adds its constant, cosine and sine to a row.
     const auto add = [](const Vec3d& c, const Vec3d& k, const Vec3d& p, double factor, double& alpha,
@@ -74,8 +74,8 @@ inline TwoTurnEquations equations(const Sp5Problem& s) {
 }
 
 // Writes θ1 and θ3, with the best θ2 between them.
-inline Sp1<double> complete(const Sp5Problem& s, const Turn<double>& first, const Turn<double>& third,
-                            Turn<double>* theta) {
+inline Sp1<double> complete_turns(const Sp5Problem& s, const Turn<double>& first, const Turn<double>& third,
+                                  Turn<double>* theta) {
     const Sp1<double> second =
         subproblem_1(s.k2, s.p3 + rotate(s.k3, third, s.p4), s.p0 - s.p2 + rotate(s.k1, first, s.p1));
     theta[0] = first, theta[1] = second.theta, theta[2] = third;
@@ -83,23 +83,23 @@ inline Sp1<double> complete(const Sp5Problem& s, const Turn<double>& first, cons
 }
 
 // Divides all lengths by their sum, which is one afterwards.
-inline Sp5Problem scaled(const Sp5Problem& s, double size) {
+inline Sp5Problem scale_problem(const Sp5Problem& s, double size) {
     const double f = 1 / size;
     return {f * s.p0, f * s.p1, f * s.p2, f * s.p3, f * s.p4, s.k1, s.k2, s.k3};
 }
 
 // The least-squares solution. What the best θ2 leaves is the distance in the half plane of k2.
-inline Sp5 nearest(const Sp5Problem& s, double size) {
+inline Sp5 nearest_solution(const Sp5Problem& s, double size) {
     const SweepTurns turns;
     const auto start = [&](int i, int j, Turn<double>* t) {
-        return complete(s, turns.at[i], turns.at[j], t).error;
+        return complete_turns(s, turns.at[i], turns.at[j], t).error;
     };
     Sp5 r;
     r.count = 1;
     r.error = size * minimise_from_sweep<6>(Gap{s}, sweep_steps, sweep_steps, start, r.theta[0]);
     r.exact = r.error <= tolerance::exact * size;
     Turn<double> again[3];
-    r.free = complete(s, r.theta[0][0], r.theta[0][2], again).free;
+    r.free = complete_turns(s, r.theta[0][0], r.theta[0][2], again).free;
     return r;
 }
 
@@ -114,12 +114,12 @@ inline Sp5 subproblem_5(const Sp5Problem& given) {
         r.exact = r.free = true;
         return r;
     }
-    const Sp5Problem s = sp5::scaled(given, size);
-    const TwoTurns found = solve_two_turns(sp5::equations(s));
+    const Sp5Problem s = sp5::scale_problem(given, size);
+    const TwoTurns found = solve_two_turns(sp5::two_turn_equations(s));
     r.free = found.free;
     for (int i = 0; i < found.count; ++i) {
         Turn<double>* const theta = r.theta[r.count];
-        const bool is_free = sp5::complete(s, found.u[i], found.w[i], theta).free;
+        const bool is_free = sp5::complete_turns(s, found.u[i], found.w[i], theta).free;
         const double left = refine_angles(sp5::Gap{s}, theta, 100);
         r.free = r.free || is_free;
         if (left > tolerance::exact) continue;
@@ -128,7 +128,7 @@ inline Sp5 subproblem_5(const Sp5Problem& given) {
     }
     r.exact = r.count > 0;
     if (r.exact) return r;
-    return sp5::nearest(s, size);
+    return sp5::nearest_solution(s, size);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

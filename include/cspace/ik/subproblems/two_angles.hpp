@@ -35,7 +35,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 namespace two_turns {
 
-inline double times(const double row[2], const Turn<double>& t) { return row[0] * t.c + row[1] * t.s; }
+inline double apply_row(const double row[2], const Turn<double>& t) { return row[0] * t.c + row[1] * t.s; }
 inline Turn<double> quarter_turn(const Turn<double>& t) { return {-t.s, t.c}; }
 
 struct Residual {
@@ -45,29 +45,29 @@ struct Residual {
     void operator()(const Turn<double>* t, double* value, double (*slope)[2]) const {
         const Turn<double> du = quarter_turn(t[0]), dw = quarter_turn(t[1]);
         for (int i = 0; i < 2; ++i) {
-            value[i] = factor[i] * (e.alpha[i] + times(e.beta[i], t[0]) + times(e.gamma[i], t[1]));
-            slope[i][0] = factor[i] * times(e.beta[i], du);
-            slope[i][1] = factor[i] * times(e.gamma[i], dw);
+            value[i] = factor[i] * (e.alpha[i] + apply_row(e.beta[i], t[0]) + apply_row(e.gamma[i], t[1]));
+            slope[i][0] = factor[i] * apply_row(e.beta[i], du);
+            slope[i][1] = factor[i] * apply_row(e.gamma[i], dw);
         }
     }
 };
 
 // Bound of the rounding error in the coefficients of normalised rows.
-inline double noise(const TwoTurnEquations& e) {
+inline double noise_bound(const TwoTurnEquations& e) {
     return tolerance::rounding / std::fmin(e.weight[0], e.weight[1]);
 }
 
 inline double determinant(const double m[2][2]) { return m[0][0] * m[1][1] - m[0][1] * m[1][0]; }
-inline double size(const double m[2][2]) {
+inline double frobenius_norm(const double m[2][2]) {
     return std::sqrt(m[0][0] * m[0][0] + m[0][1] * m[0][1] + m[1][0] * m[1][0] + m[1][1] * m[1][1]);
 }
 inline double smallest_singular_value(const double m[2][2]) {
-    const double largest = size(m);
+    const double largest = frobenius_norm(m);
     return largest > 0 ? std::fabs(determinant(m)) / largest : 0;
 }
 // Coefficients within rounding become zero, so that degenerate cases are exactly degenerate. The other rows
 // are normalised, so that a short row has the same weight as a long one.
-inline TwoTurnEquations balanced(TwoTurnEquations e) {
+inline TwoTurnEquations balance_equations(TwoTurnEquations e) {
     for (int i = 0; i < 2; ++i) {
         double largest = 0;
         double* row[5] = {&e.alpha[i], &e.beta[i][0], &e.beta[i][1], &e.gamma[i][0], &e.gamma[i][1]};
@@ -81,22 +81,23 @@ inline TwoTurnEquations balanced(TwoTurnEquations e) {
     }
     return e;
 }
-inline TwoTurnEquations exchanged(const TwoTurnEquations& e) {
+inline TwoTurnEquations exchange_angles(const TwoTurnEquations& e) {
     TwoTurnEquations r = e;
     for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j) r.beta[i][j] = e.gamma[i][j], r.gamma[i][j] = e.beta[i][j];
     return r;
 }
 
-inline double chord(const Turn<double>& a, const Turn<double>& b) {
+inline double chord_between(const Turn<double>& a, const Turn<double>& b) {
     return std::fabs(a.c - b.c) + std::fabs(a.s - b.s);
 }
 // Whether the solution belongs to a one-parameter set.
-inline bool continues(const TwoTurnEquations& e, const Turn<double>* t) {
+inline bool belongs_to_curve(const TwoTurnEquations& e, const Turn<double>* t) {
     const Residual system{e};
     Linearised<Residual> at;
     linearise(system, t, at);
-    const double largest = size(at.slope), zero = tolerance::exact / tolerance::rounding * noise(e);
+    const double largest = frobenius_norm(at.slope),
+                 zero = tolerance::exact / tolerance::rounding * noise_bound(e);
     if (largest <= tolerance::degenerate_pair) {
         const double first[2] = {1, 0}, second[2] = {0, 1};
         return continues_along(system, t, first, zero) || continues_along(system, t, second, zero);
@@ -117,8 +118,8 @@ inline void propose_candidates(const TwoTurnEquations& e, const Turn<double>& u,
     if (refine_angles(Residual{e, {e.weight[0], e.weight[1]}}, t) > tolerance::exact || found.count == 4)
         return;
     for (int i = 0; i < found.count; ++i)
-        if (chord(t[0], found.u[i]) + chord(t[1], found.w[i]) < tolerance::same_turns) return;
-    found.free = found.free || continues(e, t);
+        if (chord_between(t[0], found.u[i]) + chord_between(t[1], found.w[i]) < tolerance::same_turns) return;
+    found.free = found.free || belongs_to_curve(e, t);
     found.u[found.count] = t[0];
     found.w[found.count++] = t[1];
 }
@@ -127,7 +128,7 @@ inline void propose_with(const TwoTurnEquations& e, const Turn<double>& u, TwoTu
     const auto length = [&](int i) { return std::hypot(e.gamma[i][0], e.gamma[i][1]); };
     const int i = length(1) > length(0);
     const CosSinRoots<double> w =
-        cos_sin_roots(e.gamma[i][0], e.gamma[i][1], -e.alpha[i] - times(e.beta[i], u), 1.0);
+        cos_sin_roots(e.gamma[i][0], e.gamma[i][1], -e.alpha[i] - apply_row(e.beta[i], u), 1.0);
     propose_candidates(e, u, w.theta[0], found);
     if (w.two) propose_candidates(e, u, w.theta[1], found);
 }
@@ -144,7 +145,8 @@ inline void by_quartic(const TwoTurnEquations& e, TwoTurns& found) {
     const LinearInTurn first = {e.alpha[0], e.beta[0][0], e.beta[0][1]},
                        second = {e.alpha[1], e.beta[1][0], e.beta[1][1]};
     const LinearInTurn f = g[1][1] * first + -g[0][1] * second, h = g[0][0] * second + -g[1][0] * first;
-    const double d = determinant(g), scale = size(g) * size(g) * noise(e) / tolerance::rounding;
+    const double d = determinant(g),
+                 scale = frobenius_norm(g) * frobenius_norm(g) * noise_bound(e) / tolerance::rounding;
     TrigPolynomial norm = product(f, f) + product(h, h);
     norm.a0 -= d * d;
     const TrigRoots u = trig_roots(norm, scale);
@@ -172,7 +174,7 @@ inline void by_lines(const TwoTurnEquations& e, bool singular, TwoTurns& found) 
     range_of(e.gamma, g);
     const double crossing = b[0] * g[1] - b[1] * g[0], length_b = std::hypot(b[0], b[1]),
                  length_g = std::hypot(g[0], g[1]);
-    if (std::fabs(crossing) <= noise(e) * length_b * length_g) {
+    if (std::fabs(crossing) <= noise_bound(e) * length_b * length_g) {
         if (singular) by_one_equation(e, found);
         return;
     }
@@ -193,13 +195,13 @@ inline void by_lines(const TwoTurnEquations& e, bool singular, TwoTurns& found) 
 
 inline TwoTurns solve_two_turns(const TwoTurnEquations& given) {
     using namespace two_turns;
-    const TwoTurnEquations e = balanced(given);
+    const TwoTurnEquations e = balance_equations(given);
     const double b = smallest_singular_value(e.beta), g = smallest_singular_value(e.gamma);
     const bool exchange = b > g;
-    const TwoTurnEquations used = exchange ? exchanged(e) : e;
+    const TwoTurnEquations used = exchange ? exchange_angles(e) : e;
     TwoTurns found;
     const double regular = std::fmax(b, g);
-    const bool singular = regular <= noise(e);
+    const bool singular = regular <= noise_bound(e);
     if (!singular) by_quartic(used, found);
     if (regular < tolerance::degenerate_pair) by_lines(used, singular, found);
     if (exchange)
