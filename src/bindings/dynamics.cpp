@@ -209,7 +209,7 @@ bool is_pose(const double* T) {
         for (int j = 0; j < 3; ++j) error = std::max(error, std::fabs(square.m[i][j] - (i == j)));
     return error <= tolerance::rotation_error && norm(pose.t) < HUGE_VAL && T[12] == 0.0 && T[13] == 0.0 &&
            T[14] == 0.0 && T[15] == 1.0 &&
-           dot(column(pose.R, 0), cross(column(pose.R, 1), column(pose.R, 2))) > 0.0;
+           dot(matrix_column(pose.R, 0), cross(matrix_column(pose.R, 1), matrix_column(pose.R, 2))) > 0.0;
 }
 
 // A call with as many configurations, velocities and forces as `count`, all of one row, and at most

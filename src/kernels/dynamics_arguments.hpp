@@ -44,7 +44,7 @@ CSPACE_INLINE bool finite_rows(const V* values, int width, bool angles = false) 
     if constexpr (std::is_same_v<scalar_of<V>, double>) {
         return kinematics::all_finite(values, width);
     } else {
-        mask_of<V> fits = fill<V>(0.0) == 0.0f;
+        mask_of<V> fits = fill_lanes<V>(0.0) == 0.0f;
         for (int i = 0; i < width; ++i)
             fits = fits && (angles ? and_bits(values[i], 0x7fffffffu) < largest_float_angle
                                    : values[i] * 0.0f == 0.0f);
@@ -80,8 +80,8 @@ CSPACE_INLINE AppliedWrenches<V> read_wrenches(const BasicRows<scalar_of<V>>& ro
         V numbers[6];
         load_rows(push.values + i * push.stride, push.stride, count, 6, numbers);
         Vec3<V> f = vector_at(numbers), n = vector_at(numbers + 3);
-        const Mat3<V> axes = push.in_frame_axes ? fill33<V>(push.axes) : transpose(R);
-        list[k] = {push.path, push.depth, push.in_frame_axes, fill3<V>(push.point), {axes * f, axes * n}};
+        const Mat3<V> axes = push.in_frame_axes ? fill_mat3<V>(push.axes) : transpose(R);
+        list[k] = {push.path, push.depth, push.in_frame_axes, fill_vec3<V>(push.point), {axes * f, axes * n}};
     }
     return {list, rows.n_wrenches};
 }
@@ -117,9 +117,9 @@ CSPACE_INLINE void write_result(const BasicRows<scalar_of<V>>& rows, const Argum
 template <class V>
 CSPACE_INLINE Motion<V> base_motion(const BasicRows<scalar_of<V>>& rows, const Arguments<V>& given,
                                     const V* acceleration) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Vec3<V> rest = {zero, zero, zero};
-    Motion<V> base = {rest, rest, -fill3<V>(rows.gravity)};
+    Motion<V> base = {rest, rest, -fill_vec3<V>(rows.gravity)};
     if (given.first && given.qd) base.w = transpose_times(given.R, vector_at(given.qd + 3));
     if (given.first && acceleration) {
         base.a = base.a + vector_at(acceleration);
@@ -134,7 +134,7 @@ template <class V>
 CSPACE_INLINE const V* joint_rates(const Arguments<V>& given, Scratch& scratch) {
     if (given.qd) return given.qd + given.first;
     V* rest = take_array<V>(scratch, given.n);
-    for (int j = 0; j < given.n; ++j) rest[j] = fill<V>(0.0);
+    for (int j = 0; j < given.n; ++j) rest[j] = fill_lanes<V>(0.0);
     return rest;
 }
 

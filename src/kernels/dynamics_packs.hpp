@@ -81,7 +81,7 @@ CSPACE_INLINE bool give_way_to_torques(const BasicRows<scalar_of<V>>& rows, cons
         solve_ldl(inertia, 6, x);
         base.a = vector_at(x);
         base.wd = vector_at(x + 3);
-        set_vector(qdd, given.R * base.a + fill3<V>(rows.gravity));
+        set_vector(qdd, given.R * base.a + fill_vec3<V>(rows.gravity));
         set_vector(qdd + 3, given.R * base.wd);
     }
     find_accelerations(rows.bodies, base.a, base.wd, links, qdd + given.first);

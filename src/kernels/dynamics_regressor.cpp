@@ -26,7 +26,7 @@ struct RegressorWriter {
 template <class V>
 CSPACE_INLINE void write_body(const Multibody& bodies, const MovingBody<V>& body, int k, int column,
                               int first, const MovingFrame<V>* links, const RegressorWriter<V>& to) {
-    const V zero = fill<V>(0.0), one = fill<V>(1.0);
+    const V zero = fill_lanes<V>(0.0), one = fill_lanes<V>(1.0);
     const Vec3<V> none = {zero, zero, zero},
                   unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
     for (int i = 0; i < first; ++i) {
@@ -59,7 +59,7 @@ template <class V>
 CSPACE_INLINE void write_resistances(const Multibody& bodies, bool rubs, const V* qd, const V* qdd,
                                      int column, int first, const RegressorWriter<V>& to) {
     const int n = bodies.n_links;
-    const V zero = fill<V>(0.0), one = fill<V>(1.0);
+    const V zero = fill_lanes<V>(0.0), one = fill_lanes<V>(1.0);
     for (int k = 0; k < n; ++k) {
         const Link& link = bodies.links[k];
         const int row = first + link.coordinate;
@@ -67,7 +67,7 @@ CSPACE_INLINE void write_resistances(const Multibody& bodies, bool rubs, const V
         to.write(row, column + k, &inertial, 1);
         if (!rubs) continue;
         const V rate = link.ratio * qd[link.coordinate], viscous = link.ratio * rate;
-        const V dry = link.ratio * select(rate > zero, one, select(rate < zero, -one, zero));
+        const V dry = link.ratio * select_lanes(rate > zero, one, select_lanes(rate < zero, -one, zero));
         to.write(row, column + n + k, &viscous, 1);
         to.write(row, column + 2 * n + k, &dry, 1);
     }
@@ -84,11 +84,12 @@ bool regressor_pack(const RegressorRows& task, void* memory, std::size_t i, int 
     const RegressorWriter<V> writer = {rows.result + i * size, given.dof, task.columns, count};
     std::memset(writer.result, 0, sizeof(double) * size * std::size_t(count));
     auto* links = take_array<MovingFrame<V>>(scratch, bodies.n_links);
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Vec3<V> none = {zero, zero, zero};
-    MovingFrame<V> root = {{},
-                           {column(given.R, 0), column(given.R, 1), column(given.R, 2), none},
-                           {none, none, -fill3<V>(rows.gravity)}};
+    MovingFrame<V> root = {
+        {},
+        {matrix_column(given.R, 0), matrix_column(given.R, 1), matrix_column(given.R, 2), none},
+        {none, none, -fill_vec3<V>(rows.gravity)}};
     if (given.first) {
         root.motion.w = vector_at(given.qd + 3);
         root.motion.wd = vector_at(given.force + 3);

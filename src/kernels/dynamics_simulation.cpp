@@ -35,7 +35,7 @@ RollOutMemory<V> make_memory(const RollOut& task, void* bytes) {
     memory.stages = {take(15 * dof), take(7 * dof), take(dof), take(dof), take_state()};
     memory.variational = {take(dof), take(dof),       take(dof), take(dof),   take(dof),
                           take(dof), take(dof * dof), take(dof), take_state()};
-    for (int j = 0; j < dof; ++j) memory.variational.zero[j] = fill<V>(0.0);
+    for (int j = 0; j < dof; ++j) memory.variational.zero[j] = fill_lanes<V>(0.0);
     if (task.mechanics.loops) memory.work.loops = make_loop_memory(*task.mechanics.loops, scratch.next);
     return memory;
 }

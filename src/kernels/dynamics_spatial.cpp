@@ -35,9 +35,9 @@ CSPACE_INLINE bool respond(V* slopes, int n, Scratch scratch) {
         V* M = slopes + i * stride + 2 * n;
         for (int j = 0; j < n; ++j) {
             L[i * n + j] = M[j];
-            M[j] = fill<V>(i == j ? -1.0 : 0.0);
+            M[j] = fill_lanes<V>(i == j ? -1.0 : 0.0);
         }
-        for (int j = n; j < stride - 2 * n; ++j) M[j] = fill<V>(0.0);
+        for (int j = n; j < stride - 2 * n; ++j) M[j] = fill_lanes<V>(0.0);
     }
     const SparseFactor<V> factor = {n,
                                     L,
@@ -80,8 +80,8 @@ bool spatial_pack(const Rows& rows, void* memory, std::size_t i, int count) {
     const int size = sizes[int(rows.what)];
     if (!read_arguments(rows, scratch, i, count, size, given)) return false;
     auto* links = take_array<SpatialLink<V>>(scratch, rows.bodies.n_links);
-    const V zero = fill<V>(0.0);
-    Twist<V> base = {{zero, zero, zero}, {zero, zero, zero}}, change = {-fill3<V>(rows.gravity), base.w};
+    const V zero = fill_lanes<V>(0.0);
+    Twist<V> base = {{zero, zero, zero}, {zero, zero, zero}}, change = {-fill_vec3<V>(rows.gravity), base.w};
     if (given.first && given.qd) base = {vector_at(given.qd), vector_at(given.qd + 3)};
     if (given.first && given.force) {
         change.v = change.v + vector_at(given.force);
@@ -124,7 +124,7 @@ bool spatial_pack(const Rows& rows, void* memory, std::size_t i, int count) {
             *result = kinetic_energy(rows.bodies, base, qd, links, whole);
             break;
         case What::potential:
-            *result = potential_energy(rows.bodies, fill3<V>(rows.gravity), given.T.t, whole);
+            *result = potential_energy(rows.bodies, fill_vec3<V>(rows.gravity), given.T.t, whole);
     }
     write_result(rows, given, i, count, size);
     return true;

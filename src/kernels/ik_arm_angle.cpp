@@ -12,10 +12,11 @@ void swivel_solutions(const SwivelArm& arm, const Posed& goal, const double* swi
     for (int first = 0; first < n; first += 4) {
         const int lanes = n - first < 4 ? n - first : 4;
         SwivelSolutions<V> found;
-        solve_swivel(arm, goal, load<V>(swivels + first, lanes), found);
+        solve_swivel(arm, goal, load_lanes<V>(swivels + first, lanes), found);
         for (int b = 0; b < swivel_branches; ++b) {
             for (V& angle : found.q[b])
-                angle = select(found.ok[b], angle, fill<V>(std::numeric_limits<double>::quiet_NaN()));
+                angle =
+                    select_lanes(found.ok[b], angle, fill_lanes<V>(std::numeric_limits<double>::quiet_NaN()));
             store_rows(found.q[b], 7, q + row * first + 7 * b, row, lanes);
         }
     }

@@ -26,7 +26,7 @@ CSPACE_INLINE int compact_rows(unsigned ok, double* rows, int room) {
 
 CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
     unsigned bits = 0;
-    for (int k = 0; k < max_branches; ++k) bits |= unsigned(lane(ok[k], l)) << k;
+    for (int k = 0; k < max_branches; ++k) bits |= unsigned(get_lane(ok[k], l)) << k;
     return bits;
 }
 
@@ -61,9 +61,9 @@ void ik_many(const Arm& arm, const double* T, std::size_t n, std::size_t batch, 
         }
         for (int l = 0; l < lanes; ++l) {
             count[first + l] = compact_rows(branches_of_lane(b.ok, l), stage + row * l, room);
-            quick[first + l] = !lane(goal.is_pose, l) ? FastPath::refused
-                               : lane(b.doubt, l)     ? FastPath::doubtful
-                                                      : FastPath::settled;
+            quick[first + l] = !get_lane(goal.is_pose, l) ? FastPath::refused
+                               : get_lane(b.doubt, l)     ? FastPath::doubtful
+                                                          : FastPath::settled;
         }
         write_out(q + row * first, stage, row * std::size_t(lanes), past_cache);
     }

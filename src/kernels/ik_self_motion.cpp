@@ -2,7 +2,7 @@
 #include "once.hpp"
 
 namespace cspace::inline CSPACE_ISA {
-template void decompose(SmallSvd<6, ik::max_joints>&, bool);
+template void decompose_matrix(SmallSvd<6, ik::max_joints>&, bool);
 }
 
 namespace cspace::ik::inline CSPACE_ISA {

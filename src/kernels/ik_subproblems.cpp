@@ -39,8 +39,8 @@ template <class Answer>
 void write_pair(const SubproblemAnswers& out, std::size_t first, int lanes, const Answer& r) {
     const V theta[2] = {angle_of(r.theta[0]), angle_of(r.theta[1])};
     for (int k = 0; k < lanes; ++k)
-        write_answer<2, 1>(out, first + k, 1 + lane(r.two, k), lane(r.error, k), lane(r.exact, k),
-                           lane(r.free, k), [&](int j, int) { return lane(theta[j], k); });
+        write_answer<2, 1>(out, first + k, 1 + get_lane(r.two, k), get_lane(r.error, k), get_lane(r.exact, k),
+                           get_lane(r.free, k), [&](int j, int) { return get_lane(theta[j], k); });
 }
 
 }  // namespace
@@ -52,8 +52,8 @@ void subproblem_1_n(const double* k, const double* p1, const double* p2, std::si
             subproblem_1(load_vectors(k, i, lanes), load_vectors(p1, i, lanes), load_vectors(p2, i, lanes));
         const V theta = angle_of(r.theta);
         for (int l = 0; l < lanes; ++l)
-            write_answer<1, 1>(out, i + l, 1, lane(r.error, l), lane(r.exact, l), lane(r.free, l),
-                               [&](int, int) { return lane(theta, l); });
+            write_answer<1, 1>(out, i + l, 1, get_lane(r.error, l), get_lane(r.exact, l), get_lane(r.free, l),
+                               [&](int, int) { return get_lane(theta, l); });
     });
 }
 
@@ -66,8 +66,8 @@ void subproblem_2_n(const double* k1, const double* k2, const double* p1, const 
         const V theta[2][2] = {{angle_of(r.theta1[0]), angle_of(r.theta2[0])},
                                {angle_of(r.theta1[1]), angle_of(r.theta2[1])}};
         for (int l = 0; l < lanes; ++l)
-            write_answer<2, 2>(out, i + l, 1 + lane(r.two, l), lane(r.error, l), lane(r.exact, l),
-                               lane(free, l), [&](int j, int m) { return lane(theta[j][m], l); });
+            write_answer<2, 2>(out, i + l, 1 + get_lane(r.two, l), get_lane(r.error, l), get_lane(r.exact, l),
+                               get_lane(free, l), [&](int j, int m) { return get_lane(theta[j][m], l); });
     });
 }
 
@@ -76,7 +76,7 @@ void subproblem_3_n(const double* k, const double* p1, const double* p2, const d
     over_packs<native_width>(n, [=](std::size_t i, int lanes) {
         write_pair(out, i, lanes,
                    subproblem_3(load_vectors(k, i, lanes), load_vectors(p1, i, lanes),
-                                load_vectors(p2, i, lanes), load<V>(d + i, lanes)));
+                                load_vectors(p2, i, lanes), load_lanes<V>(d + i, lanes)));
     });
 }
 
@@ -85,7 +85,7 @@ void subproblem_4_n(const double* h, const double* k, const double* p, const dou
     over_packs<native_width>(n, [=](std::size_t i, int lanes) {
         write_pair(out, i, lanes,
                    subproblem_4(load_vectors(h, i, lanes), load_vectors(k, i, lanes),
-                                load_vectors(p, i, lanes), load<V>(d + i, lanes)));
+                                load_vectors(p, i, lanes), load_lanes<V>(d + i, lanes)));
     });
 }
 

@@ -54,7 +54,7 @@ template <class V>
 void jacobian_rate(const ChainRows& rows, const ChainWork<V>& w, const Pose<V>& T, const Vec3<V>& p,
                    const Pose<V>& T_world_base, std::size_t i, int count) {
     load_rows(rows.qd + i * w.dof, w.dof, count, w.dof, w.qd);
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     Twist<V> base{{zero, zero, zero}, {zero, zero, zero}};
     if (rows.floating) base = {{w.qd[0], w.qd[1], w.qd[2]}, {w.qd[3], w.qd[4], w.qd[5]}};
     const Twist<V> end = axis_rates(rows.chain, w.axes, p, w.qd + w.first, base, T_world_base.t, w.rates);
@@ -83,7 +83,7 @@ void chosen_singular_values(const ChainRows& rows, const ChainWork<V>& w, std::s
 // keeps its digits for small angles.
 template <class V>
 void measure_miss(const ChainRows& rows, const Pose<V>& T, std::size_t i, int count) {
-    V at[16], goal[16], distance = fill<V>(0.0), gap = distance;
+    V at[16], goal[16], distance = fill_lanes<V>(0.0), gap = distance;
     write_matrix(T, at);
     for (int l = 0; l < Lanes<V>::count; ++l) {
         const std::size_t row = i + std::size_t(l < count ? l : count - 1);
@@ -99,9 +99,9 @@ void measure_miss(const ChainRows& rows, const Pose<V>& T, std::size_t i, int co
         const V d = at[4 * r + 3] - goal[is_pose ? 4 * r + 3 : r];
         distance = mul_add(d, d, distance);
     }
-    const V angle = 2.0 * asin(min(sqrt(0.125 * gap), fill<V>(1.0)));
+    const V angle = 2.0 * asin(min(sqrt(0.125 * gap), fill_lanes<V>(1.0)));
     distance = sqrt(distance);
-    store(rows.miss + i, select(angle > distance, angle, distance), count);
+    store_lanes(rows.miss + i, select_lanes(angle > distance, angle, distance), count);
 }
 
 // One pack of configurations, from row i on.

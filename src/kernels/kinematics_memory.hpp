@@ -22,7 +22,7 @@ CSPACE_INLINE T* take_array(Scratch& scratch, int n) {
 template <class V>
 CSPACE_INLINE bool all_finite(const V* values, int n) {
     constexpr double headroom = 1e208;  // 1e100 times that is just below the largest double
-    V sum = fill<V>(0.0);
+    V sum = fill_lanes<V>(0.0);
     for (int i = 0; i < n; ++i) sum = sum + headroom * values[i];
     return all(0.0 * sum == 0.0);
 }

@@ -5,7 +5,7 @@
 #include "cspace/ik/redundancy/turning_points.hpp"
 
 namespace cspace::inline CSPACE_ISA {
-extern template void decompose(SmallSvd<6, ik::max_joints>&, bool);  // ik_self_motion.cpp
+extern template void decompose_matrix(SmallSvd<6, ik::max_joints>&, bool);  // ik_self_motion.cpp
 }
 
 namespace cspace::ik::inline CSPACE_ISA {

@@ -48,7 +48,7 @@ bool rotvec_matrices_n(const double* w, double* R, std::size_t n) {
 bool axis_angle_matrices_n(const double* axis, const double* angle, double* R, std::size_t n) {
     return all_packs(n, [=](std::size_t i, int count) {
         const Vec3<V> v = load_vector(axis + 3 * i, count);
-        const V square = dot(v, v), turned = load<V>(angle + i, count);
+        const V square = dot(v, v), turned = load_lanes<V>(angle + i, count);
         store_matrix(rotation_of_axis_angle(v, turned, square), R + 9 * i, count);
         return safe_square(square) && abs(turned) < HUGE_VAL;
     });

@@ -56,7 +56,7 @@ class PlacedParts {
         for (int b = robot_.view().links[link].body; b > 0; b = joints[std::size_t(b - 1)].parent + 1) {
             const model::Joint& joint = joints[std::size_t(b - 1)];
             const Posed& frame = bodies_[std::size_t(b)];
-            const Vec3d z = column(frame.R, 2);
+            const Vec3d z = matrix_column(frame.R, 2);
             const Vec3d rate = kinematics::joint_twist(joint.prismatic, z, frame.t, at).v;
             gradient[std::size_t(joint.coordinate)] += sign * joint.ratio * dot(normal, rate);
         }

@@ -25,7 +25,7 @@ void SolidPacker::add_sphere(int owner, const Posed& T_world_sphere, double radi
 }
 void SolidPacker::add_capsule(int owner, const Posed& T_world_capsule, double radius, double length) {
     const auto [R, p] = T_base_world_ * T_world_capsule;
-    const Vec3d half = (length / 2) * column(R, 2), a = p - half, b = p + half;
+    const Vec3d half = (length / 2) * matrix_column(R, 2), a = p - half, b = p + half;
     append(capsules, owner, {a.x, a.y, a.z, b.x, b.y, b.z, radius});
 }
 void SolidPacker::add_cylinder(int owner, const Posed& T_world_cylinder, double radius, double length) {

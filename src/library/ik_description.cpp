@@ -161,7 +161,9 @@ double hidden_determinant(const BuiltArm& built, const double* goal, int number,
     T.t = (1 / plan.length) * T.t;
     const Loop loop = make_loop(plan.frames, plan.chain.prismatic, T, formulation_of(number));
     if (plan.slides < 2) return determinant(eliminate_angles(loop), std::cos(a0), std::sin(a0));
-    return lane(lack_on_both(two_sheets(loop), fill<Pack<4>>(std::cos(a0)), fill<Pack<4>>(std::sin(a0))), 0);
+    return get_lane(
+        lack_on_both(two_sheets(loop), fill_lanes<Pack<4>>(std::cos(a0)), fill_lanes<Pack<4>>(std::sin(a0))),
+        0);
 }
 
 }  // namespace cspace::ik

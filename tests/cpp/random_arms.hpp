@@ -77,7 +77,7 @@ inline ik::Chain from_rows(const Row* rows, int n, const Posed& base, const Pose
     chain.n = n;
     Posed T = base;
     for (int i = 0; i < n; ++i) {
-        chain.axis[i] = column(T.R, 2);
+        chain.axis[i] = matrix_column(T.R, 2);
         chain.point[i] = T.t + uniform(rng, -0.3, 0.3) * chain.axis[i];
         const double theta = uniform(rng, -pi, pi), c = std::cos(rows[i].alpha), s = std::sin(rows[i].alpha);
         const Posed turn = {spatial::rotation_about(Vec3d{0, 0, 1}, std::cos(theta), std::sin(theta)),

@@ -132,7 +132,7 @@ inline RandomCell random_cell(Random& random, int n, double margin = 0, bool has
     for (int k = random.below(6) + many; k > 0; --k) {
         const Mat3d R = random_rotation(random);
         add(cell.boxes, place());
-        for (int r = 0; r < 3; ++r) add(cell.boxes, row(R, r));
+        for (int r = 0; r < 3; ++r) add(cell.boxes, matrix_row(R, r));
         const double most = many ? 0.06 : 0.3;
         add(cell.boxes,
             {random.uniform(0.02, most), random.uniform(0.02, most), random.uniform(0.001, most)});

@@ -96,7 +96,7 @@ TEST(points_agree_with_closed_forms) {
         };
         compare(make_box(pose, half), distance_from_box(point, pose.t, pose.R, half));
         compare(make_cylinder(pose, half.x, half.z),
-                distance_from_cylinder(point, pose.t, column(pose.R, 2), half.z, half.x));
+                distance_from_cylinder(point, pose.t, matrix_column(pose.R, 2), half.z, half.x));
         const Vec3d ends[] = {pose.t, pose * Vec3d{0, 0, half.z}};
         compare(make_points(ends, 2, half.x), distance_from_capsule(point, ends[0], ends[1], half.x));
     }

@@ -42,7 +42,9 @@ TEST(a_pose_off_the_arm_has_no_answer) {
             const ik::Solutions s = solve_few_joint_pose(chain, T);
             for (int i = 0; i < s.count; ++i) {  // a planar displacement may happen to fit a planar arm
                 CHECK_NEAR(norm(forward_kinematics(chain, s.q[i]).t - T.t), 0, 1e-11);
-                CHECK_NEAR(norm(column(forward_kinematics(chain, s.q[i]).R, 0) - column(T.R, 0)), 0, 1e-11);
+                CHECK_NEAR(
+                    norm(matrix_column(forward_kinematics(chain, s.q[i]).R, 0) - matrix_column(T.R, 0)), 0,
+                    1e-11);
             }
             CHECK(s.count == 0 || chain.n == 3);
         }

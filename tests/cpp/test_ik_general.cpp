@@ -89,7 +89,7 @@ static ik::Chain grid_arm(int n, int slides, arms::Rng& rng) {
 static double smallest_singular_value(const ik::Chain& chain, const Posed& goal, const double* q) {
     PoseError error;
     measure_error(chain, goal, 1, q, error);
-    decompose(error.jacobian);
+    decompose_matrix(error.jacobian);
     double least = 10;
     for (int i = 0; i < chain.n; ++i) least = min(least, error.jacobian.sigma[i]);
     return least;

@@ -47,7 +47,7 @@ std::vector<double> random_q(int count, arms::Rng& rng, double reach = pi) {
 }
 double largest_difference(const Posed& A, const Posed& B) {
     double worst = norm(A.t - B.t);
-    for (int i = 0; i < 3; ++i) worst = std::fmax(worst, norm(column(A.R, i) - column(B.R, i)));
+    for (int i = 0; i < 3; ++i) worst = std::fmax(worst, norm(matrix_column(A.R, i) - matrix_column(B.R, i)));
     return worst;
 }
 
@@ -263,10 +263,10 @@ TEST(rows_without_weight_are_free) {
             const Posed miss = inverse(goal) * forward_kinematics(chain, &runs.q[6 * k]);
             if (free_row == 5) {
                 CHECK(norm(miss.t) < 2e-9);
-                CHECK(norm(column(miss.R, 2) - Vec3d{0, 0, 1}) < 2e-9);
+                CHECK(norm(matrix_column(miss.R, 2) - Vec3d{0, 0, 1}) < 2e-9);
             } else {
                 CHECK(std::hypot(miss.t.x, miss.t.y) < 2e-9);
-                CHECK(norm(column(miss.R, 0) - Vec3d{1, 0, 0}) < 2e-9);
+                CHECK(norm(matrix_column(miss.R, 0) - Vec3d{1, 0, 0}) < 2e-9);
             }
         }
         CHECK(reached > 4);

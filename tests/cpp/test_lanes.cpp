@@ -42,7 +42,7 @@ void over_widths(F f) {
 template <class A, class F>
 void check_lanes(A a, A b, F f) {
     const auto r = f(a, b);
-    for (int k = 0; k < Lanes<A>::count; ++k) CHECK(same(lane(r, k), f(lane(a, k), lane(b, k))));
+    for (int k = 0; k < Lanes<A>::count; ++k) CHECK(same(get_lane(r, k), f(get_lane(a, k), get_lane(b, k))));
 }
 
 }  // namespace
@@ -78,13 +78,14 @@ TEST(comparison_and_logic) {
 
 TEST(choice) {
     over_widths([](auto a, auto b) {
-        check_lanes(a, b, [](auto x, auto y) { return cspace::select(x < y, x, y); });
-        check_lanes(a, b, [](auto x, auto y) { return cspace::select(!(x < y) && y > -1.0, 2.0, y); });
+        check_lanes(a, b, [](auto x, auto y) { return cspace::select_lanes(x < y, x, y); });
+        check_lanes(a, b, [](auto x, auto y) { return cspace::select_lanes(!(x < y) && y > -1.0, 2.0, y); });
         check_lanes(a, b, [](auto x, auto y) { return cspace::min(x, y); });
         check_lanes(a, b, [](auto x, auto y) { return cspace::max(x, y); });
-        check_lanes(a, b, [](auto x, auto y) { return where(x < y, y); });
+        check_lanes(a, b, [](auto x, auto y) { return keep_lanes(x < y, y); });
         unsigned bits = 0;
-        for (int k = 0; k < Lanes<decltype(a)>::count; ++k) bits |= unsigned(lane(a, k) < lane(b, k)) << k;
+        for (int k = 0; k < Lanes<decltype(a)>::count; ++k)
+            bits |= unsigned(get_lane(a, k) < get_lane(b, k)) << k;
         CHECK(bits_of(a < b) == bits);
         CHECK(any(a < b) == (bits != 0));
         CHECK(all(a < b) == (bits == (1u << Lanes<decltype(a)>::count) - 1));
@@ -95,12 +96,12 @@ TEST(choice) {
 TEST(signs_and_roots) {
     over_widths([](auto a, auto b) {
         for (int k = 0; k < Lanes<decltype(a)>::count; ++k) {
-            const double x = lane(a, k), y = lane(b, k);
-            CHECK(same(lane(cspace::abs(a), k), std::fabs(x)));
-            CHECK(same(lane(cspace::copysign(a, b), k), std::copysign(x, y)));
-            CHECK(same(lane(sign_bit(a), k), std::copysign(0.0, x)));
-            CHECK(same(lane(cspace::sqrt(a), k), std::sqrt(x)));
-            CHECK(same(lane(cspace::round(a), k), std::nearbyint(x)));
+            const double x = get_lane(a, k), y = get_lane(b, k);
+            CHECK(same(get_lane(cspace::abs(a), k), std::fabs(x)));
+            CHECK(same(get_lane(cspace::copysign(a, b), k), std::copysign(x, y)));
+            CHECK(same(get_lane(sign_bit(a), k), std::copysign(0.0, x)));
+            CHECK(same(get_lane(cspace::sqrt(a), k), std::sqrt(x)));
+            CHECK(same(get_lane(cspace::round(a), k), std::nearbyint(x)));
             CHECK(same(cspace::round(x), std::nearbyint(x)));
             CHECK(same(cspace::abs(x), std::fabs(x)));
             CHECK(same(cspace::copysign(x, y), std::copysign(x, y)));
@@ -121,7 +122,7 @@ TEST(bits) {
 
 template <int s, int N>
 void check_swapped(Pack<N> a) {
-    for (int k = 0; k < N; ++k) CHECK(same(lane(swap_lanes<s>(a), k), lane(a, k ^ s)));
+    for (int k = 0; k < N; ++k) CHECK(same(get_lane(swap_lanes<s>(a), k), get_lane(a, k ^ s)));
 }
 template <int N, int... distances>
 void check_all_swapped(Pack<N> a, std::integer_sequence<int, distances...>) {
@@ -144,7 +145,7 @@ void check_rows() {
             load_rows(from, stride, count, width, values);
             for (int j = 0; j < width; ++j) {
                 for (int k = 0; k < lanes; ++k) {
-                    CHECK(lane(values[j], k) == from[(k < count ? k : count - 1) * stride + j]);
+                    CHECK(get_lane(values[j], k) == from[(k < count ? k : count - 1) * stride + j]);
                 }
             }
             std::memset(to, 0, sizeof to);
@@ -156,7 +157,7 @@ void check_rows() {
     }
     for (int count = 1; count <= lanes; ++count) {
         std::memset(to, 0, sizeof to);
-        store(to + 1, load<V>(from + 1, count), count);
+        store_lanes(to + 1, load_lanes<V>(from + 1, count), count);
         for (int i = 0; i < rows * stride; ++i) CHECK(to[i] == (i >= 1 && i < 1 + count ? from[i] : 0.0));
     }
 }

@@ -34,22 +34,22 @@ void check_damped_steps() {
         const int m = 1 + random.below(rows), n = 1 + random.below(columns);
         V J[rows][columns] = {}, e[rows] = {}, loose[columns], dx[columns];
         fill_random(random, m, n, round % 3 == 0, J, e);
-        for (int j = 0; j < n; ++j) loose[j] = fill<V>(random.below(4) > 0);
+        for (int j = 0; j < n; ++j) loose[j] = fill_lanes<V>(random.below(4) > 0);
         const double damping = std::ldexp(1.0, -random.below(12));
-        damped_step(m, n, J, e, loose, fill<V>(damping), dx);
+        damped_step(m, n, J, e, loose, fill_lanes<V>(damping), dx);
         for (int k = 0; k < Lanes<V>::count; ++k) {
             double left[rows];
             for (int r = 0; r < m; ++r) {
-                left[r] = lane(e[r], k);
-                for (int j = 0; j < n; ++j) left[r] -= lane(J[r][j], k) * lane(dx[j], k);
+                left[r] = get_lane(e[r], k);
+                for (int j = 0; j < n; ++j) left[r] -= get_lane(J[r][j], k) * get_lane(dx[j], k);
             }
             for (int j = 0; j < n; ++j) {
-                if (lane(loose[j], k) == 0) {
-                    CHECK(lane(dx[j], k) == 0);
+                if (get_lane(loose[j], k) == 0) {
+                    CHECK(get_lane(dx[j], k) == 0);
                     continue;
                 }
-                double gradient = -damping * lane(dx[j], k);  // of ½ |e − J dx|² + ½ λ |dx|²
-                for (int r = 0; r < m; ++r) gradient += lane(J[r][j], k) * left[r];
+                double gradient = -damping * get_lane(dx[j], k);  // of ½ |e − J dx|² + ½ λ |dx|²
+                for (int r = 0; r < m; ++r) gradient += get_lane(J[r][j], k) * left[r];
                 CHECK_NEAR(gradient, 0.0, 1e-13 * (1 + 1 / damping));
             }
         }
@@ -115,8 +115,8 @@ TEST(a_damped_step_solves_the_normal_equations) {
 TEST(a_step_is_shortened_to_its_stride_alone) {
     const double step[3] = {0.5, -2, 1};
     CHECK_NEAR(largest_of(step, 3), 2.0, 0.0);
-    CHECK_NEAR(shortening(largest_of(step, 3), 0.5), 0.25, 0.0);
-    CHECK_NEAR(shortening(largest_of(step, 3), 3.0), 1.0, 0.0);
+    CHECK_NEAR(shortening_factor(largest_of(step, 3), 0.5), 0.25, 0.0);
+    CHECK_NEAR(shortening_factor(largest_of(step, 3), 3.0), 1.0, 0.0);
 }
 
 TEST(a_descent_reaches_a_zero_whatever_the_rank) {
@@ -180,7 +180,7 @@ TEST(a_decomposition_is_orthogonal_and_gives_the_matrix_back) {
                 largest = std::fmax(largest, std::fabs(A[j][r]));
             }
         }
-        decompose(svd);
+        decompose_matrix(svd);
         for (int j = 0; j < n; ++j) {
             CHECK_NEAR(std::sqrt(dot_n(svd.us[j], svd.us[j], m)), svd.sigma[j], 1e-14 * largest);
             for (int i = 0; i <= j; ++i) {
@@ -205,7 +205,7 @@ TEST(a_least_norm_step_stays_in_the_row_space) {
         SmallSvd<rows, columns> svd{rows, n, {}, {}, {}};
         for (int j = 0; j < n; ++j)
             for (int r = 0; r < rows; ++r) svd.us[j][r] = J[r][j];
-        decompose(svd);
+        decompose_matrix(svd);
         least_norm_step(svd, e, 0, 1e-10, -1, x);
         double left[rows];
         for (int r = 0; r < rows; ++r) left[r] = e[r] - dot_n(J[r], x, n);

@@ -19,7 +19,7 @@ cspace::mask_of<V> least_squares(V (&A)[m][n], V (&b)[m], V (&x)[n]) {
     if constexpr (m >= n) {
         V diagonal[n], factor[n];
         cspace::linear::factor_qr(A, diagonal, factor);
-        for (int k = 0; k < n; ++k) cspace::linear::reflect(A, m, k, factor[k], b);
+        for (int k = 0; k < n; ++k) cspace::linear::reflect_vector(A, m, k, factor[k], b);
         for (int k = n - 1; k >= 0; --k) {
             x[k] = b[k];
             for (int j = k + 1; j < n; ++j) x[k] = cspace::mul_add(-A[k][j], x[j], x[k]);
@@ -33,13 +33,13 @@ cspace::mask_of<V> least_squares(V (&A)[m][n], V (&b)[m], V (&x)[n]) {
             for (int j = 0; j < m; ++j) transposed[i][j] = A[j][i];
         }
         cspace::linear::factor_qr(transposed, diagonal, factor);
-        for (int i = 0; i < n; ++i) x[i] = cspace::fill<V>(0.0);
+        for (int i = 0; i < n; ++i) x[i] = cspace::fill_lanes<V>(0.0);
         for (int k = 0; k < m; ++k) {
             x[k] = b[k];
             for (int j = 0; j < k; ++j) x[k] = cspace::mul_add(-transposed[j][k], x[j], x[k]);
             x[k] = x[k] * cspace::linear::safe_inverse(diagonal[k]);
         }
-        for (int k = m - 1; k >= 0; --k) cspace::linear::reflect(transposed, n, k, factor[k], x);
+        for (int k = m - 1; k >= 0; --k) cspace::linear::reflect_vector(transposed, n, k, factor[k], x);
         return cspace::linear::full_rank(diagonal);
     }
 }
@@ -64,10 +64,10 @@ System<m, n, V> random_system(check::Random& random) {
 // row i of A times x, less b; and the sum of the sizes that went into it
 template <int m, int n, class V>
 double residual(const System<m, n, V>& s, const V (&x)[n], int i, int k, double& size) {
-    double r = -cspace::lane(s.b[i], k);
+    double r = -cspace::get_lane(s.b[i], k);
     size = std::fabs(r);
     for (int j = 0; j < n; ++j) {
-        const double term = cspace::lane(s.A[i][j], k) * cspace::lane(x[j], k);
+        const double term = cspace::get_lane(s.A[i][j], k) * cspace::get_lane(x[j], k);
         r += term;
         size += std::fabs(term);
     }
@@ -92,7 +92,7 @@ void check_solve() {
         auto used = s;
         const auto regular = cspace::solve_linear(used.A, used.b);
         for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
-            if (!cspace::lane(regular, k)) continue;
+            if (!cspace::get_lane(regular, k)) continue;
             ++told_regular;
             const double largest = largest_size(s, used.b, k);
             for (int i = 0; i < n; ++i) {
@@ -114,7 +114,7 @@ void check_positive() {
         System<n, n, V> square{};
         for (int i = 0; i < n; ++i) {
             for (int j = 0; j < n; ++j) {
-                square.A[i][j] = cspace::fill<V>(i == j ? 1e-3 : 0.0);
+                square.A[i][j] = cspace::fill_lanes<V>(i == j ? 1e-3 : 0.0);
                 for (int k = 0; k < n; ++k) square.A[i][j] = square.A[i][j] + s.A[i][k] * s.A[j][k];
             }
             square.b[i] = s.b[i];
@@ -123,15 +123,15 @@ void check_positive() {
         for (int k = 1; k < cspace::Lanes<V>::count; k += 2) cspace::set_lane(square.A[bad][bad], k, -1.0);
         auto used = square;
         for (int i = 0; i < n; ++i)
-            for (int j = 0; j < i; ++j) used.A[i][j] = cspace::fill<V>(std::nan(""));  // is not read
+            for (int j = 0; j < i; ++j) used.A[i][j] = cspace::fill_lanes<V>(std::nan(""));  // is not read
         const auto definite = cspace::solve_positive(used.A, n, used.b);
         for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
-            CHECK(cspace::lane(definite, k) == (k % 2 == 0));
+            CHECK(cspace::get_lane(definite, k) == (k % 2 == 0));
             const double largest = largest_size(square, used.b, k);
             double size;
             for (int i = 0; i < n && k % 2 == 0; ++i)
                 CHECK_NEAR(residual(square, used.b, i, k, size), 0.0, 1e-12 * largest);
-            CHECK(k % 2 == 0 || cspace::lane(used.b[bad], k) == 0.0);
+            CHECK(k % 2 == 0 || cspace::get_lane(used.b[bad], k) == 0.0);
         }
     }
 }
@@ -146,13 +146,13 @@ void check_least_squares() {
         V x[n];
         const auto full = least_squares(used.A, used.b, x);
         for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
-            if (!cspace::lane(full, k)) continue;
+            if (!cspace::get_lane(full, k)) continue;
             const double largest = largest_size(s, x, k);
             double size;
             for (int j = 0; j < n; ++j) {
                 double along = 0, length = 0;
                 for (int i = 0; i < m; ++i) {
-                    const double a = cspace::lane(s.A[i][j], k);
+                    const double a = cspace::get_lane(s.A[i][j], k);
                     along += a * residual(s, x, i, k, size);
                     length += std::fabs(a);
                 }
@@ -163,20 +163,20 @@ void check_least_squares() {
             // A vector of the null space: a random one less the least vector with the same image.
             System<m, n, V> image = s;
             V w[n], same_image[n];
-            for (int j = 0; j < n; ++j) w[j] = cspace::fill<V>(random.uniform(-1, 1));
+            for (int j = 0; j < n; ++j) w[j] = cspace::fill_lanes<V>(random.uniform(-1, 1));
             for (int i = 0; i < m; ++i) {
-                image.b[i] = cspace::fill<V>(0.0);
+                image.b[i] = cspace::fill_lanes<V>(0.0);
                 for (int j = 0; j < n; ++j) image.b[i] = image.b[i] + s.A[i][j] * w[j];
             }
             const auto full_too = least_squares(image.A, image.b, same_image);
             for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
-                if (!cspace::lane(full_too, k)) continue;
+                if (!cspace::get_lane(full_too, k)) continue;
                 double inner = 0, length = 0, x_length = 0;
                 for (int j = 0; j < n; ++j) {
-                    const double z = cspace::lane(w[j], k) - cspace::lane(same_image[j], k);
-                    inner += z * cspace::lane(x[j], k);
+                    const double z = cspace::get_lane(w[j], k) - cspace::get_lane(same_image[j], k);
+                    inner += z * cspace::get_lane(x[j], k);
                     length = std::max(length, std::fabs(z));
-                    x_length = std::max(x_length, std::fabs(cspace::lane(x[j], k)));
+                    x_length = std::max(x_length, std::fabs(cspace::get_lane(x[j], k)));
                 }
                 CHECK_NEAR(inner, 0.0, 1e-10 * length * x_length);
             }
@@ -230,23 +230,23 @@ TEST(a_singular_lane_is_told_and_harms_no_other) {
     check::Random random{5};
     for (int round = 0; round < 100; ++round) {
         auto s = random_system<6, 6, cspace::Pack<4>>(random);
-        for (int j = 0; j < 6; ++j) cspace::set_lane(s.A[3][j], 2, 2 * cspace::lane(s.A[5][j], 2));
+        for (int j = 0; j < 6; ++j) cspace::set_lane(s.A[3][j], 2, 2 * cspace::get_lane(s.A[5][j], 2));
         auto eliminated = s, reflected = s;
         cspace::Pack<4> x[6];
         const auto regular = cspace::solve_linear(eliminated.A, eliminated.b);
         const auto full = least_squares(reflected.A, reflected.b, x);
-        CHECK(!cspace::lane(regular, 2) && !cspace::lane(full, 2));
+        CHECK(!cspace::get_lane(regular, 2) && !cspace::get_lane(full, 2));
         for (int k : {0, 1, 3}) {
             double A[6][6], b[6];
             for (int i = 0; i < 6; ++i) {
-                for (int j = 0; j < 6; ++j) A[i][j] = cspace::lane(s.A[i][j], k);
-                b[i] = cspace::lane(s.b[i], k);
+                for (int j = 0; j < 6; ++j) A[i][j] = cspace::get_lane(s.A[i][j], k);
+                b[i] = cspace::get_lane(s.b[i], k);
             }
-            CHECK(cspace::solve_linear(A, b) == cspace::lane(regular, k));
+            CHECK(cspace::solve_linear(A, b) == cspace::get_lane(regular, k));
             for (int i = 0; i < 6; ++i) {
-                CHECK_NEAR(b[i], cspace::lane(eliminated.b[i], k), 1e-8 * (1 + std::fabs(b[i])));
-                CHECK(std::isfinite(cspace::lane(x[i], 2)) &&
-                      std::isfinite(cspace::lane(eliminated.b[i], 2)));
+                CHECK_NEAR(b[i], cspace::get_lane(eliminated.b[i], k), 1e-8 * (1 + std::fabs(b[i])));
+                CHECK(std::isfinite(cspace::get_lane(x[i], 2)) &&
+                      std::isfinite(cspace::get_lane(eliminated.b[i], 2)));
             }
         }
     }

@@ -39,7 +39,7 @@ RealRoots real_roots(const double* a, double unit = 0.0) {
         if (k > 1000) return real_roots<n - 1>(a, unit);
         RealRoots roots;
         if (k < -1000) {
-            polynomial::append(roots, 0.0, n);
+            polynomial::append_root(roots, 0.0, n);
             return roots;
         }
         polynomial::Uncertain<n> p;
@@ -206,11 +206,12 @@ TEST(quadratics_on_a_pack_agree_with_one_lane) {
         }
         const auto r = quadratic_roots(a, b, c);
         for (int i = 0; i < 4; ++i) {
-            const auto one = quadratic_roots(lane(a, i), lane(b, i), lane(c, i));
-            CHECK(lane(r.real, i) == one.real && lane(r.two, i) == one.two);
+            const auto one = quadratic_roots(get_lane(a, i), get_lane(b, i), get_lane(c, i));
+            CHECK(get_lane(r.real, i) == one.real && get_lane(r.two, i) == one.two);
             for (int j = 0; j < 2; ++j) {
-                CHECK_NEAR(lane(r.x[j], i), one.x[j], 1e-15 * std::fabs(one.x[j]));
-                const double x = one.x[j], A = lane(a, i) * x * x, B = lane(b, i) * x, C = lane(c, i);
+                CHECK_NEAR(get_lane(r.x[j], i), one.x[j], 1e-15 * std::fabs(one.x[j]));
+                const double x = one.x[j], A = get_lane(a, i) * x * x, B = get_lane(b, i) * x,
+                             C = get_lane(c, i);
                 if (one.real) CHECK_NEAR(A + B + C, 0, 4e-16 * (std::fabs(A) + std::fabs(B) + std::fabs(C)));
             }
         }
@@ -228,13 +229,14 @@ TEST(trigonometric_roots_are_all_found) {
         const TrigRoots r = trig_roots(f);
         int roots = 0, crossings = 0;
         for (int i = 0; i < r.count; ++i) {
-            CHECK_NEAR(evaluate(f, r.theta[i]) / factor, 0, r.multiplicity[i] == 1 ? 3e-15 : 1e-13);
+            CHECK_NEAR(evaluate_polynomial(f, r.theta[i]) / factor, 0,
+                       r.multiplicity[i] == 1 ? 3e-15 : 1e-13);
             CHECK_NEAR(std::hypot(r.theta[i].c, r.theta[i].s), 1, 1e-15);
             roots += r.multiplicity[i];
         }
-        double before = evaluate(f, turn_by(1e-3));
+        double before = evaluate_polynomial(f, turn_by(1e-3));
         for (int j = 1; j <= 400; ++j) {
-            const double after = evaluate(f, turn_by(1e-3 + 2 * pi * j / 400));
+            const double after = evaluate_polynomial(f, turn_by(1e-3 + 2 * pi * j / 400));
             crossings += before * after < 0;
             before = after;
         }

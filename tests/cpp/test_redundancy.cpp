@@ -24,7 +24,7 @@ static ik::Redundant shoulder_arm() {
         const Mat3d R = spatial::rotation_about(Vec3d{1, 0, 0}, i == 0 ? 1.0 : 0.0, turn[i]);
         T = T * Posed{R, {a[i], 0, 0}};
         T = T * Posed{identity_pose().R, {0, 0, d[i]}};
-        chain.axis[i] = column(T.R, 2);
+        chain.axis[i] = matrix_column(T.R, 2);
         chain.point[i] = T.t;
     }
     chain.tip = T * Posed{identity_pose().R, {0, 0, 0.107}};
@@ -119,7 +119,7 @@ static ik::Chain random_chain(arms::Rng& rng, int k) {
     chain.n = 7 + k % 2;
     for (int i = 0; i < chain.n; ++i) {
         const Posed at = arms::random_pose(rng);
-        chain.axis[i] = column(at.R, 2);
+        chain.axis[i] = matrix_column(at.R, 2);
         chain.point[i] = size * at.t;
         chain.prismatic[i] = k % 4 == 3 && i % 4 == k % 5;
     }
@@ -182,7 +182,7 @@ TEST(derivatives_of_the_halves) {
         for (int half = 0; half < 2; ++half) {
             for (int a = 0; a < 4; ++a)
                 for (int b = 0; b < 4; ++b)
-                    by_formula -= x[a][half] * x[b][half] * lane(a < b ? bent[a][b] : bent[b][a], half);
+                    by_formula -= x[a][half] * x[b][half] * get_lane(a < b ? bent[a][b] : bent[b][a], half);
             by_difference += dot(force, after.linear[half] - before.linear[half]) / (2 * h) +
                              dot(moment, after.angular[half] - before.angular[half]) / (2 * h);
             const Vec3d v2 =

@@ -104,7 +104,7 @@ TEST(exponentials_are_those_of_the_library) {
         CHECK_NEAR(cspace::expm1(x), e, 4e-16 * (1.0 + std::fabs(e)) * 2.0);
         CHECK_NEAR(cspace::expm1(x), e, 1e-15 * std::fabs(e));
         CHECK_NEAR(cspace::tanh(x), t, 1e-15 * std::fabs(t));
-        CHECK_NEAR(lane(cspace::expm1(fill<Pack<4>>(x)), 2), e, 1e-15 * std::fabs(e));
+        CHECK_NEAR(get_lane(cspace::expm1(fill_lanes<Pack<4>>(x)), 2), e, 1e-15 * std::fabs(e));
     }
     CHECK(cspace::expm1(0.0) == 0.0);
     CHECK(cspace::tanh(-std::numeric_limits<double>::infinity()) == -1.0);

@@ -36,7 +36,7 @@ Vec3d some_point(Random& random, const Vec3d& axis, const Vec3d& other) {
         case 2:
             return other;
         case 3:
-            return rotate(axis, turn_by(random.uniform(-3, 3)), other);
+            return rotate_about(axis, turn_by(random.uniform(-3, 3)), other);
         default:
             return random.vector();
     }
@@ -59,7 +59,7 @@ TEST(subproblem_1_finds_the_smallest_error) {
     Random random{1};
     for (int i = 0; i < 2000; ++i) {
         const Vec3d k = random.axis(), p1 = some_point(random, k, k), p2 = some_point(random, k, p1);
-        const auto f = [&](Turn<double> t) { return norm(rotate(k, t, p1) - p2); };
+        const auto f = [&](Turn<double> t) { return norm(rotate_about(k, t, p1) - p2); };
         const auto r = subproblem_1(k, p1, p2);
         check_answer(f(r.theta), r.error, r.exact, lowest(200, f));
         if (r.free)
@@ -75,7 +75,7 @@ TEST(subproblem_2_finds_the_smallest_error) {
         const Vec3d k1 = random.axis(), k2 = some_axis(random, k1);
         const Vec3d p1 = some_point(random, k1, k1), p2 = some_point(random, k2, p1);
         const auto f = [&](Turn<double> a, Turn<double> b) {
-            return norm(rotate(k1, a, p1) - rotate(k2, b, p2));
+            return norm(rotate_about(k1, a, p1) - rotate_about(k2, b, p2));
         };
         const auto r = subproblem_2(k1, k2, p1, p2);
         const double swept =
@@ -96,7 +96,7 @@ TEST(subproblem_3_finds_the_smallest_error) {
     for (int i = 0; i < 2000; ++i) {
         const Vec3d k = random.axis(), p1 = some_point(random, k, k), p2 = some_point(random, k, p1);
         const double d = random.below(5) ? random.uniform(0, 2.5) : norm(p1 - p2);
-        const auto f = [&](Turn<double> t) { return std::fabs(norm(rotate(k, t, p1) - p2) - d); };
+        const auto f = [&](Turn<double> t) { return std::fabs(norm(rotate_about(k, t, p1) - p2) - d); };
         const auto r = subproblem_3(k, p1, p2, d);
         check_answer(f(r.theta[0]), r.error, r.exact, lowest(200, f));
         CHECK_NEAR(f(r.theta[1]), r.error, 3e-14);
@@ -108,7 +108,7 @@ TEST(subproblem_3_stays_exact_at_small_distances) {
     for (double d = 1e-3; d > 1e-11; d *= 0.1) {
         const auto r = subproblem_3(k, p, p, d);
         CHECK(r.two && r.exact);
-        CHECK_NEAR(norm(rotate(k, r.theta[0], p) - p), d, 1e-15 * d + 1e-18);
+        CHECK_NEAR(norm(rotate_about(k, r.theta[0], p) - p), d, 1e-15 * d + 1e-18);
     }
 }
 
@@ -117,7 +117,7 @@ TEST(subproblem_4_finds_the_smallest_error) {
     for (int i = 0; i < 2000; ++i) {
         const Vec3d k = random.axis(), h = some_axis(random, k), p = some_point(random, k, h);
         const double d = random.uniform(-1, 1);
-        const auto f = [&](Turn<double> t) { return std::fabs(dot(h, rotate(k, t, p)) - d); };
+        const auto f = [&](Turn<double> t) { return std::fabs(dot(h, rotate_about(k, t, p)) - d); };
         const auto r = subproblem_4(h, k, p, d);
         check_answer(f(r.theta[0]), r.error, r.exact, lowest(200, f));
         CHECK_NEAR(f(r.theta[1]), r.error, 3e-14);
@@ -130,8 +130,8 @@ TEST(all_crossings_of_zero_are_found) {
         const Vec3d k = random.axis(), h = random.axis(), p = random.vector(), q = random.vector();
         const double d = random.uniform(0, 1);
         int crossings3 = 0, crossings4 = 0;
-        const auto f3 = [&](double t) { return norm(rotate(k, turn_by(t), p) - q) - d; };
-        const auto f4 = [&](double t) { return dot(h, rotate(k, turn_by(t), p)) - d; };
+        const auto f3 = [&](double t) { return norm(rotate_about(k, turn_by(t), p) - q) - d; };
+        const auto f4 = [&](double t) { return dot(h, rotate_about(k, turn_by(t), p)) - d; };
         for (int j = 0; j < 720; ++j) {
             const double a = 2 * pi * j / 720, b = 2 * pi * (j + 1) / 720;
             crossings3 += f3(a) * f3(b) < 0;
@@ -151,8 +151,8 @@ TEST(a_pack_answers_like_one_lane) {
         set_lane(into.x, i, v.x), set_lane(into.y, i, v.y), set_lane(into.z, i, v.z);
     };
     const auto same = [](const Turn<V>& t, int i, const Turn<double>& one) {
-        CHECK_NEAR(lane(t.c, i), one.c, 1e-12);
-        CHECK_NEAR(lane(t.s, i), one.s, 1e-12);
+        CHECK_NEAR(get_lane(t.c, i), one.c, 1e-12);
+        CHECK_NEAR(get_lane(t.s, i), one.s, 1e-12);
     };
     for (int repeat = 0; repeat < 200; ++repeat) {
         Vec3d k1[4], k2[4], p1[4], p2[4];
@@ -176,10 +176,10 @@ TEST(a_pack_answers_like_one_lane) {
             const auto s3 = subproblem_3(k1[i], p1[i], p2[i], d[i]);
             const auto s4 = subproblem_4(k2[i], k1[i], p1[i], d[i]);
             same(r1.theta, i, s1.theta);
-            CHECK(lane(r1.exact, i) == s1.exact && lane(r1.free, i) == s1.free);
-            CHECK(lane(r2.two, i) == s2.two && lane(r2.parallel, i) == s2.parallel);
-            CHECK(lane(r2.free1, i) == s2.free1 && lane(r2.free2, i) == s2.free2);
-            CHECK(lane(r3.two, i) == s3.two && lane(r4.two, i) == s4.two);
+            CHECK(get_lane(r1.exact, i) == s1.exact && get_lane(r1.free, i) == s1.free);
+            CHECK(get_lane(r2.two, i) == s2.two && get_lane(r2.parallel, i) == s2.parallel);
+            CHECK(get_lane(r2.free1, i) == s2.free1 && get_lane(r2.free2, i) == s2.free2);
+            CHECK(get_lane(r3.two, i) == s3.two && get_lane(r4.two, i) == s4.two);
             for (int j = 0; j < 2; ++j) {
                 same(r2.theta1[j], i, s2.theta1[j]);
                 same(r2.theta2[j], i, s2.theta2[j]);

@@ -54,7 +54,8 @@ Sp5Problem random_sp5(Random& random, int wildness) {
     return s;
 }
 double left(const Sp5Problem& s, const Turn<double> t[3]) {
-    return norm(s.p0 + rotate(s.k1, t[0], s.p1) - s.p2 - rotate(s.k2, t[1], s.p3 + rotate(s.k3, t[2], s.p4)));
+    return norm(s.p0 + rotate_about(s.k1, t[0], s.p1) - s.p2 -
+                rotate_about(s.k2, t[1], s.p3 + rotate_about(s.k3, t[2], s.p4)));
 }
 Sp6Problem random_sp6(Random& random, int wildness) {
     Sp6Problem s;
@@ -67,8 +68,8 @@ Sp6Problem random_sp6(Random& random, int wildness) {
     return s;
 }
 double side(const Sp6Problem& s, int i, const Turn<double>& t1, const Turn<double>& t2) {
-    return dot(s.h[2 * i], rotate(s.k[2 * i], t1, s.p[2 * i])) +
-           dot(s.h[2 * i + 1], rotate(s.k[2 * i + 1], t2, s.p[2 * i + 1]));
+    return dot(s.h[2 * i], rotate_about(s.k[2 * i], t1, s.p[2 * i])) +
+           dot(s.h[2 * i + 1], rotate_about(s.k[2 * i + 1], t2, s.p[2 * i + 1]));
 }
 double left(const Sp6Problem& s, const Turn<double> t[2]) {
     return std::hypot(side(s, 0, t[0], t[1]) - s.d[0], side(s, 1, t[0], t[1]) - s.d[1]);
@@ -83,7 +84,8 @@ TEST(subproblem_5_returns_the_angles_it_was_made_from) {
         Sp5Problem s = random_sp5(random, repeat % 2 ? 1000 : 6);
         Turn<double> made[3];
         for (auto& t : made) t = turn_by(random.uniform(-3.1, 3.1));
-        s.p0 = s.p2 + rotate(s.k2, made[1], s.p3 + rotate(s.k3, made[2], s.p4)) - rotate(s.k1, made[0], s.p1);
+        s.p0 = s.p2 + rotate_about(s.k2, made[1], s.p3 + rotate_about(s.k3, made[2], s.p4)) -
+               rotate_about(s.k1, made[0], s.p1);
         const Sp5 r = subproblem_5(s);
         CHECK(r.exact && r.count >= 1 && r.count <= 4);
         double nearest = 9;

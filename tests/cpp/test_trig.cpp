@@ -24,7 +24,7 @@ double draw(std::mt19937_64& generator) {
 
 template <int N>
 void check_lanes_against_one() {
-    using cspace::lane;
+    using cspace::get_lane;
     std::mt19937_64 generator(N);
     for (int round = 0; round < 20000; ++round) {
         cspace::Pack<N> x{}, y{}, s, c;
@@ -36,11 +36,11 @@ void check_lanes_against_one() {
         const auto angle = cspace::atan2(y, x), arc_cosine = cspace::acos(x), arc_sine = cspace::asin(x);
         for (int k = 0; k < N; ++k) {
             double one_s, one_c;
-            cspace::sincos(lane(x, k), one_s, one_c);
-            CHECK(same(lane(s, k), one_s) && same(lane(c, k), one_c));
-            CHECK(same(lane(angle, k), cspace::atan2(lane(y, k), lane(x, k))));
-            CHECK(same(lane(arc_cosine, k), cspace::acos(lane(x, k))));
-            CHECK(same(lane(arc_sine, k), cspace::asin(lane(x, k))));
+            cspace::sincos(get_lane(x, k), one_s, one_c);
+            CHECK(same(get_lane(s, k), one_s) && same(get_lane(c, k), one_c));
+            CHECK(same(get_lane(angle, k), cspace::atan2(get_lane(y, k), get_lane(x, k))));
+            CHECK(same(get_lane(arc_cosine, k), cspace::acos(get_lane(x, k))));
+            CHECK(same(get_lane(arc_sine, k), cspace::asin(get_lane(x, k))));
         }
     }
 }

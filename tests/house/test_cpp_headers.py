@@ -74,15 +74,10 @@ FREE_FUNCTION = re.compile(
 )
 MATHEMATICS = """
     abs acos all any asin atan2 binomial conjugate copysign cross determinant difference distance dot expm1
-    inverse max min norm polynomial product quadratic round sign sincos sqrt square tanh transpose
+    inverse max min norm orientation polynomial product quadratic round sign sincos sqrt square tanh transpose
 """
 """Functions that one word of mathematics names."""
 ONE_WORD = {
-    "math": """
-        append carry column crossing decompose deliver direction doubled evaluate fill fill3 fill33
-        lane load meets middle negated orientation polished power project reduce reflect repeat
-        rotate row select shortening slope store times variations where window
-    """,
 }
 """Of each room those that still have one word. Give new ones a verb and an object; take renamed ones out."""
 

@@ -66,7 +66,8 @@ class CellMotion {
         constexpr float nonzero = 1e-30f;  // where the distance is zero the whole motion counts
         const Floats distance = sqrt(gap);
         rate = rate + moved * rounding_;  // n is off by the rounding of places over the distance
-        const Floats along = select(distance > nonzero, rate / max(distance, fill_floats(nonzero)), moved);
+        const Floats along =
+            select_lanes(distance > nonzero, rate / max(distance, fill_floats(nonzero)), moved);
         return {moved * round_up, along + bend * round_up + moved * (round_up - 1) + 2 * rounding_, true};
     }
     float rounding() const { return rounding_; }

@@ -186,7 +186,7 @@ class EdgeCheck {
                     sum = sum + moved * before;
                 } else {
                     sum = sum + moved * (before + 0.5f * h);
-                    before = select(lever > 0.0f, before + h, before);
+                    before = select_lanes(lever > 0.0f, before + h, before);
                 }
             }
             store_floats(kappa + b, sum);

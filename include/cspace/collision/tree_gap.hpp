@@ -38,7 +38,7 @@ CSPACE_INLINE Floats square_gap(const Triangle& triangle, const Place& at) {
     const Floats a_b = square(x - min(max(x, zero), fill_floats(triangle.side))) + square(y);
     const Floats b_c = from_side(u, v, triangle.inverse_b_c), a_c = from_side(x, c_x, triangle.inverse_a_c);
     const FloatMask inside = (y > 0.0f) & (y * v > u * c_y) & (x * c_y > y * c_x);
-    return select(inside, zero, min(a_b, min(b_c, a_c))) + square(z);
+    return select_lanes(inside, zero, min(a_b, min(b_c, a_c))) + square(z);
 }
 
 CSPACE_INLINE double fill_as(double, double value) { return value; }
@@ -54,18 +54,18 @@ CSPACE_INLINE V count_exits(const Facet<S>& f, const V& x, const V& y, const V& 
     };
     const auto is_lower = y < f.middle[1];
     const auto choose = [&](S lower, S upper) {
-        return select(is_lower, fill_as(x, lower), fill_as(x, upper));
+        return select_lanes(is_lower, fill_as(x, lower), fill_as(x, upper));
     };
     const V a_x = choose(f.low[0], f.middle[0]), a_y = choose(f.low[1], f.middle[1]);
     const V b_x = choose(f.middle[0], f.high[0]), b_y = choose(f.middle[1], f.high[1]);
-    const V left_of_long = select(is_left_of(f.low[0], f.low[1], f.high[0], f.high[1]), one, zero);
-    const V left_of_short = select(is_left_of(a_x, a_y, b_x, b_y), one, zero);
+    const V left_of_long = select_lanes(is_left_of(f.low[0], f.low[1], f.high[0], f.high[1]), one, zero);
+    const V left_of_short = select_lanes(is_left_of(a_x, a_y, b_x, b_y), one, zero);
     const V crossing = left_of_short - left_of_long;  // 1 where the normal points up, −1 where it points down
     const V height =
         (x - f.low[0]) * f.normal[0] + ((y - f.low[1]) * f.normal[1] + (z - f.low[2]) * f.normal[2]);
     const auto is_below = (z < f.bottom) | ((z < f.top) & (crossing * height < S(0)));
-    const V exits = select(is_below, crossing * f.turn, zero);
-    return select(y < f.low[1], zero, select(y < f.high[1], exits, zero));
+    const V exits = select_lanes(is_below, crossing * f.turn, zero);
+    return select_lanes(y < f.low[1], zero, select_lanes(y < f.high[1], exits, zero));
 }
 
 // The lanes whose places are inside a solid.
@@ -103,8 +103,8 @@ struct Sought {
     }
     // A lane that is below `enough` needs no more items, one below the limit only those below `enough`.
     CSPACE_INLINE Floats settle(Floats squares) const {
-        const Floats rest = select(squares < limit, enough, limit);
-        return select(squares < enough, fill_floats(0.0f), rest);
+        const Floats rest = select_lanes(squares < limit, enough, limit);
+        return select_lanes(squares < enough, fill_floats(0.0f), rest);
     }
 };
 
@@ -136,7 +136,7 @@ inline Floats square_gap(const Mesh& mesh, const Place& at, const Sought& sought
     const Floats least = find_least<false>(mesh.nodes, mesh.n_nodes, at, sought,
                                            [&](int k) { return square_gap(mesh.triangles[k], at); });
     if (!mesh.facets || sought.is_met(least)) return least;
-    return select(find_inside(mesh, at), fill_floats(0.0f), least);
+    return select_lanes(find_inside(mesh, at), fill_floats(0.0f), least);
 }
 
 // The cells of places, and in which lanes the points may be nearer than the root of a limit.

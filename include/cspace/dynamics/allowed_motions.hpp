@@ -83,7 +83,7 @@ inline void find_allowed_motions(const ClosedLoops& loops, int cap, LoopMemory& 
 // x := Q x (dof,), with the units of velocities.
 inline void turn_back(const ClosedLoops& loops, const AllowedMotions& motions, double* x) {
     for (int k = motions.rank - 1; k >= 0; --k)
-        linear::reflect(motions.reflections, loops.dof, k, motions.factor[k], x);
+        linear::reflect_vector(motions.reflections, loops.dof, k, motions.factor[k], x);
     for (int j = 0; j < loops.dof; ++j) x[j] *= loops.unit[j];
 }
 

@@ -23,7 +23,7 @@ void pd_torques(const Mechanics& mechanics, bool carries_weight, const V* given,
     const int n = mechanics.bodies.n_coordinates;
     const V *kp = given, *kd = given + n, *goal = given + 2 * n, *qd = state.qd + mechanics.first();
     if (carries_weight) {
-        const Vec3<V> lift = transpose_times(state.T.R, -fill3<V>(mechanics.gravity));
+        const Vec3<V> lift = transpose_times(state.T.R, -fill_vec3<V>(mechanics.gravity));
         gravity_torques(mechanics.bodies, lift, state.q, static_cast<LinkMotion<V>*>(work.links), tau);
     }
     for (int j = 0; j < n; ++j) {
@@ -43,10 +43,10 @@ void computed_torques(const Mechanics& mechanics, const Control& control, const 
         wanted[j] = qdd[j] + kd[j] * (qd[j] - state.qd[j]) + kp[j] * (q[j] - state.q[j]);
     inverse_dynamics(mechanics.bodies, resting_base(mechanics, state), state.q, state.qd, wanted, false,
                      static_cast<LinkMotion<V>*>(work.links), tau);
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     for (int j = 0; j < n; ++j) {
-        const V size = fill<V>(control.dry[j]);
-        const V slides = select(qd[j] > zero, size, select(qd[j] < zero, -size, zero));
+        const V size = fill_lanes<V>(control.dry[j]);
+        const V slides = select_lanes(qd[j] > zero, size, select_lanes(qd[j] < zero, -size, zero));
         tau[j] = tau[j] + control.damping[j] * state.qd[j] + slides;
     }
 }
@@ -56,7 +56,7 @@ template <class V>
 void find_torques(const Mechanics& mechanics, const Control& control, std::size_t i, int count, long long k,
                   const State<V>& state, Workspace<V>& work, V* memory, V* tau) {
     const int n = mechanics.bodies.n_coordinates, first = mechanics.first();
-    for (int j = 0; j < first + n; ++j) tau[j] = fill<V>(0.0);
+    for (int j = 0; j < first + n; ++j) tau[j] = fill_lanes<V>(0.0);
     if (control.law == ControlLaw::given) {
         if (control.torques.values) load_values(control.torques, i, count, first + n, tau);
         return;

@@ -18,7 +18,7 @@ CSPACE_INLINE void coriolis_matrix(const Multibody& bodies, const Twist<V>& base
         V& entry = C[row * columns + column];
         entry = entry + value;
     };
-    for (int i = 0; i < columns * columns; ++i) C[i] = fill<V>(0.0);
+    for (int i = 0; i < columns * columns; ++i) C[i] = fill_lanes<V>(0.0);
     for (int k = 0; k < bodies.n_links; ++k) {
         const Link& link = bodies.links[k];
         const SpatialLink<V>& state = links[k];
@@ -44,10 +44,10 @@ CSPACE_INLINE void coriolis_matrix(const Multibody& bodies, const Twist<V>& base
     }
     if (!floating) return;
     // Columns of the base: (e; 0) with rate zero and (0; e) with rate (v × e; 0).
-    const V zero = fill<V>(0.0), one = fill<V>(1.0);
+    const V zero = fill_lanes<V>(0.0), one = fill_lanes<V>(1.0);
     const Vec3<V> none = {zero, zero, zero},
                   unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
-    const V mass = fill<V>(bodies.mass);
+    const V mass = fill_lanes<V>(bodies.mass);
     for (int j = 0; j < 3; ++j) {
         const Twist<V> axis = {none, unit[j]}, rate = {cross(base.v, unit[j]), none};
         const Wrench<V> F1 = momentum_of(mass, whole, rate) + velocity_product(whole, axis);

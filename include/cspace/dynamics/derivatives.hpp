@@ -40,7 +40,7 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
     for (int i = 0; i < columns; ++i) {
         for (int j = 0; j < columns; ++j) {
             const int k = i * stride + j;
-            dq[k] = dqd[k] = M[k] = fill<V>(0.0);
+            dq[k] = dqd[k] = M[k] = fill_lanes<V>(0.0);
         }
     }
     for (int k = 0; k < bodies.n_links; ++k) {
@@ -62,7 +62,7 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
         const double square = link.ratio * link.ratio;
         add(dq, column, column, square * find_power(own.axis, by_position));
         add(dqd, column, column, square * find_power(own.axis, by_velocity));
-        if (rubs) add(dqd, column, column, fill<V>(square * link.damping));
+        if (rubs) add(dqd, column, column, fill_lanes<V>(square * link.damping));
         add(M, column, column, square * (find_power(own.axis, unit) + link.armature));
         for (int i = link.parent; i >= 0; i = bodies.links[i].parent) {
             const Link& before = bodies.links[i];
@@ -85,7 +85,7 @@ CSPACE_INLINE void torque_derivatives(const Multibody& bodies, const Twist<V>& b
     if (!floating) return;
     // Turning the base by e and all motion and gravity with it changes no joint force and turns the wrench on
     // the base. Turning motion and gravity back again is a change of velocity and acceleration.
-    const V zero = fill<V>(0.0), one = fill<V>(1.0), mass = fill<V>(bodies.mass);
+    const V zero = fill_lanes<V>(0.0), one = fill_lanes<V>(1.0), mass = fill_lanes<V>(bodies.mass);
     const Vec3<V> none = {zero, zero, zero},
                   unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
     const Vec3<V> point_change =

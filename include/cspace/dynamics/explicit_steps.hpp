@@ -56,7 +56,7 @@ inline constexpr double dormand_prince_dense[4][7] = {
 template <class V>
 CSPACE_INLINE void weigh_rates(const double* weights, int count, const V* rates, int dof, V h, V* sum) {
     for (int j = 0; j < dof; ++j) {
-        V total = fill<V>(0.0);
+        V total = fill_lanes<V>(0.0);
         for (int s = 0; s < count; ++s)
             if (weights[s] != 0.0) total = total + weights[s] * rates[s * dof + j];
         sum[j] = h * total;

@@ -39,8 +39,8 @@ inline constexpr scalar_of<V> singular_inertia =
 // The response of a rigid body that turns at w.
 template <class V>
 CSPACE_INLINE Articulated<V> rigid_response(const MomentsOf<V>& body, const Vec3<V>& w) {
-    const V zero = fill<V>(0.0), m = fill<V>(body.mass);
-    const Vec3<V> h = fill3<V>(body.first);
+    const V zero = fill_lanes<V>(0.0), m = fill_lanes<V>(body.mass);
+    const Vec3<V> h = fill_vec3<V>(body.first);
     const Symmetric3<scalar_of<V>>& S = body.second;
     const Mat3<V> K = acceleration_gradient(w, {zero, zero, zero});
     return {fill_symmetric<V>(
@@ -83,14 +83,16 @@ CSPACE_INLINE void shift_response(Articulated<V>& body, const Vec3<V>& t) {
     const Mat3<V> C = to_matrix(body.C), old = body.B;
     Mat3<V>& B = body.B;
     for (int j = 0; j < 3; ++j) {
-        const Vec3<V> c = cross(t, column(C, j));
+        const Vec3<V> c = cross(t, matrix_column(C, j));
         B.m[0][j] = B.m[0][j] + c.x;
         B.m[1][j] = B.m[1][j] + c.y;
         B.m[2][j] = B.m[2][j] + c.z;
     }
     // Row i of B' [t]× is row i of B' crossed with t; column j of [t]× Bᵀ is t crossed with row j of B.
-    const Vec3<V> x = cross(t, row(old, 0)), y = cross(t, row(old, 1)), z = cross(t, row(old, 2));
-    const Vec3<V> u = cross(row(B, 0), t), v = cross(row(B, 1), t), w = cross(row(B, 2), t);
+    const Vec3<V> x = cross(t, matrix_row(old, 0)), y = cross(t, matrix_row(old, 1)),
+                  z = cross(t, matrix_row(old, 2));
+    const Vec3<V> u = cross(matrix_row(B, 0), t), v = cross(matrix_row(B, 1), t),
+                  w = cross(matrix_row(B, 2), t);
     body.A = body.A + Symmetric3<V>{x.x - u.x, y.x - u.y, z.x - u.z, y.y - v.y, z.y - v.z, z.z - w.z};
     body.bias.n = body.bias.n + cross(t, body.bias.f);
 }
@@ -101,7 +103,7 @@ template <class V>
 CSPACE_INLINE Articulated<V> give_way(const LinkOf<V>& link, LinkResponse<V>& state, V tau,
                                       mask_of<V>& regular) {
     const Articulated<V>& body = state.body;
-    const Vec3<V> last_of_B = link.prismatic ? column(body.B, 2) : row(body.B, 2);
+    const Vec3<V> last_of_B = link.prismatic ? matrix_column(body.B, 2) : matrix_row(body.B, 2);
     if (link.prismatic)
         state.U = {{body.C.xz, body.C.yz, body.C.zz}, last_of_B};
     else
@@ -130,7 +132,7 @@ CSPACE_INLINE Articulated<V> articulate_bodies(const MultibodyOf<V>& bodies, con
                                                const V* q, const V* qd, const V* tau, bool rubs,
                                                LinkResponse<V>* links, mask_of<V>& regular,
                                                const AppliedWrenches<V>& applied = {}) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     regular = zero == 0.0;
     turn_links(bodies, q, links);
     for (int k = 0; k < bodies.n_links; ++k) {

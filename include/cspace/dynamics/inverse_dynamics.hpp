@@ -49,13 +49,13 @@ CSPACE_INLINE Vec3<V> torque_of_gradient(const Mat3<V>& K, const Symmetric3<S>& 
 // The wrench that moves a body.
 template <class V>
 CSPACE_INLINE Wrench<V> body_wrench(const MomentsOf<V>& body, const Motion<V>& motion, const Mat3<V>& K) {
-    const Vec3<V> h = fill3<V>(body.first);
+    const Vec3<V> h = fill_vec3<V>(body.first);
     return {body.mass * motion.a + K * h, cross(h, motion.a) + torque_of_gradient(K, body.second)};
 }
 // The same for a body that does not turn.
 template <class V>
 CSPACE_INLINE Wrench<V> body_wrench(const MomentsOf<V>& body, const Vec3<V>& a) {
-    return {body.mass * a, cross(fill3<V>(body.first), a)};
+    return {body.mass * a, cross(fill_vec3<V>(body.first), a)};
 }
 
 // Adds what a link feels at its origin to what its parent feels.
@@ -74,9 +74,9 @@ CSPACE_INLINE V joint_resistance(const LinkOf<V>& link, V qd, V qdd, bool rubs) 
     if (!rubs) return force;
     force = force + (link.ratio * link.ratio * link.damping) * qd;
     if (link.friction == 0.0) return force;
-    const V zero = fill<V>(0.0), v = link.ratio * qd;
-    const V size = fill<V>(link.ratio * link.friction);
-    return force + select(v > zero, size, select(v < zero, -size, zero));
+    const V zero = fill_lanes<V>(0.0), v = link.ratio * qd;
+    const V size = fill_lanes<V>(link.ratio * link.friction);
+    return force + select_lanes(v > zero, size, select_lanes(v < zero, -size, zero));
 }
 
 // The torques (n_coordinates,) that accelerate the joints by qdd (null: zero) and carry the weight of the
@@ -86,7 +86,7 @@ template <class V>
 CSPACE_INLINE Wrench<V> inverse_dynamics(const MultibodyOf<V>& bodies, const Motion<V>& base, const V* q,
                                          const V* qd, const V* qdd, bool rubs, LinkMotion<V>* links, V* tau,
                                          const AppliedWrenches<V>& applied = {}) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     turn_links(bodies, q, links);
     const Mat3<V> base_K = acceleration_gradient(base.w, base.wd);
     for (int k = 0; k < bodies.n_links; ++k) {
@@ -139,7 +139,7 @@ CSPACE_INLINE Wrench<V> gravity_torques(const MultibodyOf<V>& bodies, const Vec3
         to_link(link, state.turn, state.motion.a);
         state.wrench = body_wrench(link.body, state.motion.a);
     }
-    for (int j = 0; j < bodies.n_coordinates; ++j) tau[j] = fill<V>(0.0);
+    for (int j = 0; j < bodies.n_coordinates; ++j) tau[j] = fill_lanes<V>(0.0);
     Wrench<V> on_base = body_wrench(bodies.base, lift);
     for (int k = bodies.n_links - 1; k >= 0; --k) {
         const LinkOf<V>& link = bodies.links[k];

@@ -36,7 +36,7 @@ namespace cspace::dynamics::inline CSPACE_ISA {
 // The momentum of a body about the origin of its frame, which moves so.
 template <class V>
 CSPACE_INLINE Wrench<V> body_momentum(const Moments<double>& body, const Twist<V>& motion) {
-    const Vec3<V> h = fill3<V>(body.first);
+    const Vec3<V> h = fill_vec3<V>(body.first);
     const Symmetric3<double>& S = body.second;
     const Symmetric3<V> inertia =
         fill_symmetric<V>(Symmetric3<double>{S.yy + S.zz, -S.xy, -S.xz, S.xx + S.zz, -S.yz, S.xx + S.yy});
@@ -71,10 +71,10 @@ CSPACE_INLINE WholeMomentum<V> lagrangian_rates(const Multibody& bodies, const T
         V& along = link.prismatic ? state.motion.v.z : state.motion.w.z;
         along = along + rate;
         state.momentum = body_momentum(link.body, state.motion);
-        state.first = fill3<V>(link.body.first);
+        state.first = fill_vec3<V>(link.body.first);
     }
-    for (int j = 0; j < bodies.n_coordinates; ++j) momentum[j] = slope[j] = fill<V>(0.0);
-    WholeMomentum<V> whole = {body_momentum(bodies.base, base), fill3<V>(bodies.base.first)};
+    for (int j = 0; j < bodies.n_coordinates; ++j) momentum[j] = slope[j] = fill_lanes<V>(0.0);
+    WholeMomentum<V> whole = {body_momentum(bodies.base, base), fill_vec3<V>(bodies.base.first)};
     for (int k = bodies.n_links - 1; k >= 0; --k) {
         const Link& link = bodies.links[k];
         const LinkMomentum<V>& state = links[k];

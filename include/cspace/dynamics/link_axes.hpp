@@ -158,7 +158,7 @@ CSPACE_INLINE void to_parent(const LinkOf<V>& link, const Turn<V>& turn, Tensors
 // The origin of the link in the axes of the parent, and the value by which its joint slides.
 template <class V>
 CSPACE_INLINE Vec3<V> link_origin(const LinkOf<V>& link, const V* q) {
-    if (!link.prismatic) return fill3<V>(link.t);
+    if (!link.prismatic) return fill_vec3<V>(link.t);
     const V value = link.slide * q[link.coordinate] + link.z;
     return {link.t.x + value * link.d.x, link.t.y + value * link.d.y, link.t.z + value * link.d.z};
 }
@@ -167,7 +167,7 @@ template <class V, class State>
 CSPACE_INLINE void turn_links(const MultibodyOf<V>& bodies, const V* q, State* links) {
     if constexpr (Lanes<V>::count == 1) {
         for (int k = 0; k < bodies.n_links; k += 4) {
-            auto angles = fill<Pack<4>>(0.0);
+            auto angles = fill_lanes<Pack<4>>(0.0);
             const int count = bodies.n_links - k < 4 ? bodies.n_links - k : 4;
             for (int i = 0; i < count; ++i) {
                 const LinkOf<V>& link = bodies.links[k + i];
@@ -175,7 +175,7 @@ CSPACE_INLINE void turn_links(const MultibodyOf<V>& bodies, const V* q, State* l
             }
             Pack<4> sines, cosines;
             sincos(angles, sines, cosines);
-            for (int i = 0; i < count; ++i) links[k + i].turn = {lane(sines, i), lane(cosines, i)};
+            for (int i = 0; i < count; ++i) links[k + i].turn = {get_lane(sines, i), get_lane(cosines, i)};
         }
     } else {
         for (int k = 0; k < bodies.n_links; ++k) {

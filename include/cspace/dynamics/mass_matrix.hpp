@@ -34,11 +34,12 @@ template <class V>
 CSPACE_INLINE void compose_links(const MultibodyOf<V>& bodies, const V* q, LinkComposite<V>* links,
                                  Moments<V>& base) {
     turn_links(bodies, q, links);
-    base = {fill<V>(bodies.mass), fill3<V>(bodies.base.first), fill_symmetric<V>(bodies.base.second)};
+    base = {fill_lanes<V>(bodies.mass), fill_vec3<V>(bodies.base.first),
+            fill_symmetric<V>(bodies.base.second)};
     for (int k = 0; k < bodies.n_links; ++k) {
         const LinkOf<V>& link = bodies.links[k];
         links[k].t = link_origin(link, q);
-        links[k].first = fill3<V>(link.body.first);
+        links[k].first = fill_vec3<V>(link.body.first);
         links[k].second = fill_symmetric<V>(link.body.second);
     }
     for (int k = bodies.n_links - 1; k >= 0; --k) {
@@ -57,10 +58,10 @@ CSPACE_INLINE void compose_links(const MultibodyOf<V>& bodies, const V* q, LinkC
 // The wrench that accelerates all that a joint moves by one along the joint.
 template <class V>
 CSPACE_INLINE Wrench<V> unit_wrench(const LinkOf<V>& link, const LinkComposite<V>& all) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Vec3<V>& h = all.first;
     const Symmetric3<V>& S = all.second;
-    if (link.prismatic) return {{zero, zero, fill<V>(link.carried_mass)}, {h.y, -h.x, zero}};
+    if (link.prismatic) return {{zero, zero, fill_lanes<V>(link.carried_mass)}, {h.y, -h.x, zero}};
     return {{-h.y, h.x, zero}, {-S.xz, -S.yz, S.xx + S.yy}};
 }
 
@@ -83,7 +84,7 @@ CSPACE_INLINE void mass_matrix(const MultibodyOf<V>& bodies, const V* q, const M
     const int first = floating ? 6 : 0, columns = first + bodies.n_coordinates;
     Moments<V> whole;
     compose_links(bodies, q, links, whole);
-    for (int i = 0; i < columns * columns; ++i) M[i] = fill<V>(0.0);
+    for (int i = 0; i < columns * columns; ++i) M[i] = fill_lanes<V>(0.0);
     for (int k = bodies.n_links - 1; k >= 0; --k) {
         const LinkOf<V>& link = bodies.links[k];
         Wrench<V> wrench = unit_wrench(link, links[k]);
@@ -111,7 +112,7 @@ CSPACE_INLINE void mass_matrix(const MultibodyOf<V>& bodies, const V* q, const M
     // [m 1, −[h]×; [h]×, I] in world axes.
     const Vec3<V> h = R * whole.first;
     const Mat3<V> S = R * to_matrix(whole.second) * transpose(R);
-    const V zero = fill<V>(0.0), trace = S.m[0][0] + S.m[1][1] + S.m[2][2];
+    const V zero = fill_lanes<V>(0.0), trace = S.m[0][0] + S.m[1][1] + S.m[2][2];
     const V skew[3][3] = {{zero, -h.z, h.y}, {h.z, zero, -h.x}, {-h.y, h.x, zero}};
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {

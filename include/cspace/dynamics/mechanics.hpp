@@ -62,7 +62,7 @@ CSPACE_INLINE mask_of<V> advance_state(const Mechanics& mechanics, const State<V
     for (int j = first; j < dof; ++j) after.q[j - first] = state.q[j - first] + dx[j];
     for (int j = 0; j < dof; ++j) after.qd[j] = state.qd[j] + dv[j];
     after.T = state.T;
-    if (!first) return fill<V>(0.0) == fill<V>(0.0);
+    if (!first) return fill_lanes<V>(0.0) == fill_lanes<V>(0.0);
     const Vec3<V> u = vector_from(dx + 3);
     after.T.t = state.T.t + vector_from(dx);
     after.T.R = spatial::rotation_of_rotvec(u) * state.T.R;
@@ -138,10 +138,10 @@ mask_of<V> factor_mass_matrix(const Mechanics& mechanics, const State<V>& state,
 // How the base moves, in its axes, where it does not accelerate; its acceleration is less gravity.
 template <class V>
 CSPACE_INLINE Motion<V> resting_base(const Mechanics& mechanics, const State<V>& state) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Vec3<V> rest = {zero, zero, zero};
     return {mechanics.floating ? transpose_times(state.T.R, vector_from(state.qd + 3)) : rest, rest,
-            transpose_times(state.T.R, -fill3<V>(mechanics.gravity))};
+            transpose_times(state.T.R, -fill_vec3<V>(mechanics.gravity))};
 }
 
 // force − b (dof,): what is left to accelerate the robot.
@@ -173,7 +173,7 @@ mask_of<V> solve_accelerations(const Mechanics& mechanics, const State<V>& state
 // Takes values of one lane, and puts them there.
 template <class V>
 void take_lane(const V* values, int l, int count, double* to) {
-    for (int i = 0; i < count; ++i) to[i] = lane(values[i], l);
+    for (int i = 0; i < count; ++i) to[i] = get_lane(values[i], l);
 }
 template <class V>
 void put_lane(const double* values, int l, int count, V* to) {
@@ -189,7 +189,7 @@ mask_of<V> constrained_accelerations(const Mechanics& mechanics, const State<V>&
     const int dof = mechanics.dof();
     find_mass_matrix(mechanics, state, work);
     subtract_bias(mechanics, state, force, work, qdd);
-    V regular = fill<V>(0.0);
+    V regular = fill_lanes<V>(0.0);
     for (int l = 0; l < Lanes<V>::count; ++l) {
         take_lane(state.q, l, loops.n_coordinates, memory.q);
         take_lane(state.qd, l, dof, memory.qd);
@@ -208,7 +208,7 @@ mask_of<V> settle_state(const Mechanics& mechanics, State<V>& state, Workspace<V
     LoopMemory& memory = work.loops;
     const int dof = mechanics.dof();
     find_mass_matrix(mechanics, state, work);
-    V closed = fill<V>(0.0);
+    V closed = fill_lanes<V>(0.0);
     for (int l = 0; l < Lanes<V>::count; ++l) {
         take_lane(state.q, l, loops.n_coordinates, memory.q);
         take_lane(state.qd, l, dof, memory.qd);
@@ -260,7 +260,7 @@ mask_of<V> accelerations(const Mechanics& mechanics, const State<V>& state, cons
         regular = accelerate_base(felt, transpose_times(R, vector_from(force)),
                                   transpose_times(R, vector_from(force + 3)), base) &&
                   regular;
-        put_vector(qdd, R * base.a + fill3<V>(mechanics.gravity));
+        put_vector(qdd, R * base.a + fill_vec3<V>(mechanics.gravity));
         put_vector(qdd + 3, R * base.wd);
     }
     find_accelerations(mechanics.bodies, base.a, base.wd, links, qdd + first);
@@ -277,8 +277,8 @@ void driven_accelerations(const Mechanics& mechanics, const State<V>& state, con
     add_wrenches(mechanics, state, work, work.force);
     const mask_of<V> regular = accelerations(mechanics, state, work.force, work, qdd);
     if (all(regular)) return;
-    const V lost = fill<V>(std::numeric_limits<double>::quiet_NaN());
-    for (int j = 0; j < dof; ++j) qdd[j] = select(regular, qdd[j], lost);
+    const V lost = fill_lanes<V>(std::numeric_limits<double>::quiet_NaN());
+    for (int j = 0; j < dof; ++j) qdd[j] = select_lanes(regular, qdd[j], lost);
 }
 
 }  // namespace cspace::dynamics::inline CSPACE_ISA

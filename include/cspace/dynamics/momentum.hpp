@@ -20,7 +20,7 @@ CSPACE_INLINE void momentum_matrix(const Multibody& bodies, bool floating, const
                                    const SpatialBody<V>& whole, V* A) {
     const int first = floating ? 6 : 0, columns = first + bodies.n_coordinates;
     const Vec3<V> c = (1.0 / bodies.mass) * whole.first;
-    for (int i = 0; i < 6 * columns; ++i) A[i] = fill<V>(0.0);
+    for (int i = 0; i < 6 * columns; ++i) A[i] = fill_lanes<V>(0.0);
     const auto add = [&](int column, const Wrench<V>& momentum) {
         kinematics::add_to_column(A, columns, column, 0, momentum.f);
         kinematics::add_to_column(A, columns, column, 3, momentum.n);
@@ -32,7 +32,7 @@ CSPACE_INLINE void momentum_matrix(const Multibody& bodies, bool floating, const
         add(first + link.coordinate, momentum_about(momentum_of(link.carried_mass, state.all, motion), c));
     }
     if (!floating) return;
-    const V zero = fill<V>(0.0), one = fill<V>(1.0), mass = fill<V>(bodies.mass);
+    const V zero = fill_lanes<V>(0.0), one = fill_lanes<V>(1.0), mass = fill_lanes<V>(bodies.mass);
     const Vec3<V> none = {zero, zero, zero},
                   unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
     for (int j = 0; j < 3; ++j) {

@@ -65,9 +65,9 @@ CSPACE_INLINE void move_frames(const Multibody& bodies, const MovingFrame<V>& ro
 template <class V>
 CSPACE_INLINE MovingBody<V> move_body(const MovingFrame<V>& link, const Posed& frame) {
     const Mat3<V> axes = from_columns(link.frame.x, link.frame.y, link.frame.z);
-    const Vec3<V> d = axes * fill3<V>(frame.t);
+    const Vec3<V> d = axes * fill_vec3<V>(frame.t);
     MovingBody<V> body;
-    body.R = axes * fill33<V>(frame.R);
+    body.R = axes * fill_mat3<V>(frame.R);
     body.origin = link.frame.origin + d;
     body.motion = {transpose_times(body.R, link.motion.w), transpose_times(body.R, link.motion.wd),
                    transpose_times(body.R, acceleration_at(link.motion, d))};
@@ -98,7 +98,7 @@ CSPACE_INLINE void add_powers(const MovingBody<V>& body, const Vec3<V>& v, const
 template <class V>
 CSPACE_INLINE void add_joint_powers(const MovingBody<V>& body, const Link& link,
                                     const kinematics::FrameAxes<V>& joint, V* powers) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Vec3<V> axis = link.ratio * joint.z;
     if (link.prismatic)
         add_powers(body, axis, {zero, zero, zero}, powers);

@@ -45,7 +45,7 @@ namespace cspace::dynamics::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE mask_of<V> running_lanes(const RollOut& task, std::size_t i, int count) {
-    V flags = fill<V>(0.0);
+    V flags = fill_lanes<V>(0.0);
     for (int l = 0; l < count; ++l)
         if (task.status[i + std::size_t(l)] == running) set_lane(flags, l, 1.0);
     return flags > 0.5;
@@ -89,7 +89,7 @@ void update_torques(const RollOut& task, const RollOutPack<V>& pack, long long k
     find_torques(task.mechanics, task.control, pack.i, pack.count, k, memory.state, memory.work,
                  memory.control, memory.fresh);
     for (int j = 0; j < task.mechanics.dof(); ++j)
-        memory.tau[j] = select(pack.runs, memory.fresh[j], memory.tau[j]);
+        memory.tau[j] = select_lanes(pack.runs, memory.fresh[j], memory.tau[j]);
 }
 
 // The energy of a state, and its momentum: linear, and angular about the centre of mass, in axes of the
@@ -106,8 +106,8 @@ Balance<V> find_balance(const RollOut& task, const State<V>& state, RollOutMemor
     const Mechanics& mechanics = task.mechanics;
     const int first = mechanics.first();
     const Mat3<V>& R = state.T.R;
-    const V zero = fill<V>(0.0);
-    const Vec3<V> gravity = fill3<V>(mechanics.gravity);
+    const V zero = fill_lanes<V>(0.0);
+    const Vec3<V> gravity = fill_vec3<V>(mechanics.gravity);
     Twist<V> base = {{zero, zero, zero}, {zero, zero, zero}};
     if (first)
         base = {transpose_times(R, vector_from(state.qd)), transpose_times(R, vector_from(state.qd + 3))};
@@ -156,9 +156,9 @@ CSPACE_INLINE void end_lanes(const RollOut& task, RollOutPack<V>& pack, mask_of<
                              V time) {
     if (!any(which)) return;
     for (int l = 0; l < pack.count; ++l) {
-        if (!lane(which, l)) continue;
+        if (!get_lane(which, l)) continue;
         task.status[pack.i + std::size_t(l)] = status;
-        task.stopped[pack.i + std::size_t(l)] = lane(time, l);
+        task.stopped[pack.i + std::size_t(l)] = get_lane(time, l);
     }
     pack.runs = pack.runs && !which;
 }
@@ -166,7 +166,7 @@ CSPACE_INLINE void end_lanes(const RollOut& task, RollOutPack<V>& pack, mask_of<
 // Whether all numbers of a state are finite, and small enough to compute with.
 template <class V>
 CSPACE_INLINE mask_of<V> tame_state(const RollOut& task, const State<V>& state) {
-    mask_of<V> tame = fill<V>(0.0) == fill<V>(0.0);
+    mask_of<V> tame = fill_lanes<V>(0.0) == fill_lanes<V>(0.0);
     for (int j = 0; j < task.mechanics.bodies.n_coordinates; ++j)
         tame = tame && abs(state.q[j]) < largest_state;
     for (int j = 0; j < task.mechanics.dof(); ++j) tame = tame && abs(state.qd[j]) < largest_state;
@@ -182,7 +182,7 @@ void end_at_limits(const RollOut& task, RollOutPack<V>& pack, const State<V>& st
             pack.runs && moved && (state.q[j] < task.lower[j] || state.q[j] > task.upper[j]);
         if (!any(beyond)) continue;
         for (int l = 0; l < pack.count; ++l)
-            if (lane(beyond, l)) task.joint[pack.i + std::size_t(l)] = j;
+            if (get_lane(beyond, l)) task.joint[pack.i + std::size_t(l)] = j;
         end_lanes(task, pack, beyond, at_limit, time);
     }
 }
@@ -198,13 +198,14 @@ void take_step(const RollOut& task, RollOutPack<V>& pack, mask_of<V> moved, mask
     const mask_of<V> goes = pack.runs && moved;
     if (task.lower) end_at_limits(task, pack, after, moved, time_after);
     for (int j = 0; j < task.mechanics.bodies.n_coordinates; ++j)
-        state.q[j] = select(goes, after.q[j], state.q[j]);
-    for (int j = 0; j < task.mechanics.dof(); ++j) state.qd[j] = select(goes, after.qd[j], state.qd[j]);
+        state.q[j] = select_lanes(goes, after.q[j], state.q[j]);
+    for (int j = 0; j < task.mechanics.dof(); ++j) state.qd[j] = select_lanes(goes, after.qd[j], state.qd[j]);
     if (!task.mechanics.floating) return;
     for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) state.T.R.m[r][c] = select(goes, after.T.R.m[r][c], state.T.R.m[r][c]);
-    state.T.t = {select(goes, after.T.t.x, state.T.t.x), select(goes, after.T.t.y, state.T.t.y),
-                 select(goes, after.T.t.z, state.T.t.z)};
+        for (int c = 0; c < 3; ++c)
+            state.T.R.m[r][c] = select_lanes(goes, after.T.R.m[r][c], state.T.R.m[r][c]);
+    state.T.t = {select_lanes(goes, after.T.t.x, state.T.t.x), select_lanes(goes, after.T.t.y, state.T.t.y),
+                 select_lanes(goes, after.T.t.z, state.T.t.z)};
 }
 
 // Steps of one length from number k to k_end, with the look at the end that number `steps` stands for.
@@ -214,14 +215,14 @@ void roll_fixed_steps(const RollOut& task, std::size_t i, int count, long long k
     RollOutPack<V> pack = {i, count, {}};
     load_state(task, pack, memory);
     const bool is_variational = task.method == Method::variational;
-    const mask_of<V> always = fill<V>(0.0) == fill<V>(0.0);
+    const mask_of<V> always = fill_lanes<V>(0.0) == fill_lanes<V>(0.0);
     if (k == 0 && task.mechanics.loops)
         end_lanes(task, pack, pack.runs && !settle_state(task.mechanics, memory.state, memory.work), broken,
-                  fill<V>(0.0));
+                  fill_lanes<V>(0.0));
     if (is_variational && k < task.steps && any(pack.runs))
         factor_mass_matrix(task.mechanics, memory.state, memory.work);
     for (; k < k_end && any(pack.runs); ++k) {
-        const V time = fill<V>(task.find_time(k));
+        const V time = fill_lanes<V>(task.find_time(k));
         update_torques(task, pack, k, memory);
         const long long record = task.find_record(k);
         if (record >= 0) write_record(task, pack, std::size_t(record), memory);
@@ -230,13 +231,13 @@ void roll_fixed_steps(const RollOut& task, std::size_t i, int count, long long k
             break;
         }
         const double later = task.find_time(k + 1);
-        const V h = fill<V>(later - task.find_time(k));
+        const V h = fill_lanes<V>(later - task.find_time(k));
         mask_of<V> solved = is_variational ? step_variational(task.mechanics, memory.state, memory.tau, h,
                                                               memory.work, memory.variational, memory.after)
                                            : step_runge_kutta(task.mechanics, memory.state, memory.tau, h,
                                                               memory.work, memory.stages, memory.after);
         if (task.mechanics.loops) solved = settle_state(task.mechanics, memory.after, memory.work) && solved;
-        take_step(task, pack, always, solved, time, fill<V>(later), memory);
+        take_step(task, pack, always, solved, time, fill_lanes<V>(later), memory);
     }
     store_state(task, pack, memory);
 }
@@ -251,8 +252,8 @@ V relative_error(const RollOut& task, V h, RollOutMemory<V>& memory) {
     weigh_rates(dormand_prince_error, 7, stages.xs, dof, h, dx);
     weigh_rates(dormand_prince_error, 7, stages.vs, dof, h, dv);
     const Vec3<V>& at = memory.state.T.t;
-    const V origin[3] = {at.x, at.y, at.z}, one = fill<V>(1.0);
-    V sum = fill<V>(0.0);
+    const V origin[3] = {at.x, at.y, at.z}, one = fill_lanes<V>(1.0);
+    V sum = fill_lanes<V>(0.0);
     for (int j = 0; j < dof; ++j) {
         V size = one;
         if (j >= first)
@@ -264,16 +265,16 @@ V relative_error(const RollOut& task, V h, RollOutMemory<V>& memory) {
         sum = sum + x * x + v * v;
     }
     const V error = sqrt(sum / double(dof > 0 ? 2 * dof : 1));
-    const V infinite = fill<V>(std::numeric_limits<double>::infinity());
-    return select(error < infinite && tame_state(task, memory.after), error, infinite);
+    const V infinite = fill_lanes<V>(std::numeric_limits<double>::infinity());
+    return select_lanes(error < infinite && tame_state(task, memory.after), error, infinite);
 }
 
 // The length of the next step relative to this one.
 template <class V>
 V step_factors(V error) {
-    V factor = fill<V>(fastest_change);
+    V factor = fill_lanes<V>(fastest_change);
     for (int l = 0; l < Lanes<V>::count; ++l) {
-        const double e = lane(error, l);
+        const double e = get_lane(error, l);
         if (e == 0.0) continue;
         const double wanted = step_safety * std::pow(e, -1.0 / error_order);
         set_lane(factor, l,
@@ -302,12 +303,12 @@ void keep_pieces(const RollOut& task, const RollOutPack<V>& pack, mask_of<V> tak
     V matrix[16];
     kinematics::write_matrix(state.T, matrix);
     for (int l = 0; l < pack.count; ++l) {
-        if (!lane(takes, l)) continue;
+        if (!get_lane(takes, l)) continue;
         const std::size_t row = pack.i - begin + std::size_t(l);
         double* to = pieces.values + (row * std::size_t(pieces.room) + std::size_t(pieces.count[row]++)) *
                                          std::size_t(task.piece_width());
         const auto put = [&](const V* values, int width) {
-            for (int j = 0; j < width; ++j) *to++ = lane(values[j], l);
+            for (int j = 0; j < width; ++j) *to++ = get_lane(values[j], l);
         };
         put(&time, 1);
         put(&h, 1);
@@ -339,13 +340,13 @@ template <class V>
 void write_between(const RollOut& task, const RollOutPack<V>& pack, mask_of<V> takes, V time, V h,
                    V time_after, long long k_end, const V* dx, const V* dv, RollOutMemory<V>& memory) {
     for (;;) {
-        V theta = fill<V>(0.0);
+        V theta = fill_lanes<V>(0.0);
         bool due[8] = {}, is_any = false;
         for (int l = 0; l < pack.count; ++l) {
             const long long k = task.next[pack.i + std::size_t(l)];
-            if (!lane(takes, l) || k >= k_end || task.find_time(k) > lane(time_after, l)) continue;
+            if (!get_lane(takes, l) || k >= k_end || task.find_time(k) > get_lane(time_after, l)) continue;
             due[l] = is_any = true;
-            set_lane(theta, l, (task.find_time(k) - lane(time, l)) / lane(h, l));
+            set_lane(theta, l, (task.find_time(k) - get_lane(time, l)) / get_lane(h, l));
         }
         if (!is_any) return;
         interpolate(task, theta, dx, dv, memory);
@@ -361,7 +362,7 @@ void write_between(const RollOut& task, const RollOutPack<V>& pack, mask_of<V> t
             k += task.every;
             const auto put = [&](const V* values, int width, double* array) {
                 for (int j = 0; j < width; ++j)
-                    array[at * std::size_t(width) + std::size_t(j)] = lane(values[j], l);
+                    array[at * std::size_t(width) + std::size_t(j)] = get_lane(values[j], l);
             };
             put(state.q, task.mechanics.bodies.n_coordinates, to.q);
             put(state.qd, task.mechanics.dof(), to.qd);
@@ -381,8 +382,8 @@ bool roll_adaptive_steps(const RollOut& task, std::size_t begin, std::size_t i, 
                          long long k_end, bool is_fresh, PieceBuffer& pieces, RollOutMemory<V>& memory) {
     RollOutPack<V> pack = {i, count, {}};
     load_state(task, pack, memory);
-    const V until = fill<V>(task.find_time(k_end)), dt = fill<V>(task.dt);
-    V time = fill<V>(task.find_time(k)), length = dt;
+    const V until = fill_lanes<V>(task.find_time(k_end)), dt = fill_lanes<V>(task.dt);
+    V time = fill_lanes<V>(task.find_time(k)), length = dt;
     if (is_fresh) {
         update_torques(task, pack, k, memory);
         const long long record = task.find_record(k);
@@ -403,13 +404,13 @@ bool roll_adaptive_steps(const RollOut& task, std::size_t begin, std::size_t i, 
         is_done = !any(active);
         if (is_done) break;
         const mask_of<V> is_inside = time + length * (1.0 + shortest_step) < until;
-        const V h = select(is_inside, length, until - time);
-        const V time_after = select(is_inside, time + length, until);
+        const V h = select_lanes(is_inside, length, until - time);
+        const V time_after = select_lanes(is_inside, time + length, until);
         find_stages(dormand_prince, task.mechanics, memory.state, memory.tau, h, memory.work, memory.stages);
         const mask_of<V> near =
             advance_state(task.mechanics, memory.state, memory.stages.dx, memory.stages.dv, memory.after);
         V error = relative_error(task, h, memory);
-        error = select(near, error, fill<V>(std::numeric_limits<double>::infinity()));
+        error = select_lanes(near, error, fill_lanes<V>(std::numeric_limits<double>::infinity()));
         const V next = h * step_factors(error);
         const mask_of<V> is_good = error <= 1.0;
         const mask_of<V> takes = active && (is_good || h <= shortest_step * (time + dt));
@@ -420,13 +421,13 @@ bool roll_adaptive_steps(const RollOut& task, std::size_t begin, std::size_t i, 
             write_between(task, pack, takes && is_good, time, h, time_after, k_end, dx, dv, memory);
             take_step(task, pack, takes, is_good, time, time_after, memory);
         }
-        const V after = select(takes && !(h == length), max(length, next), next);
-        length = select(active, after, length);
-        time = select(takes, time_after, time);
+        const V after = select_lanes(takes && !(h == length), max(length, next), next);
+        length = select_lanes(active, after, length);
+        time = select_lanes(takes, time_after, time);
     }
     for (int l = 0; l < count; ++l) {
-        task.time[i + std::size_t(l)] = lane(time, l);
-        task.length[i + std::size_t(l)] = lane(length, l);
+        task.time[i + std::size_t(l)] = get_lane(time, l);
+        task.length[i + std::size_t(l)] = get_lane(length, l);
     }
     store_state(task, pack, memory);
     return is_done;

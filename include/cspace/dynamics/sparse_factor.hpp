@@ -26,7 +26,7 @@ template <class V>
 CSPACE_INLINE mask_of<V> factor_sparse(const SparseFactor<V>& factor, double least) {
     const int n = factor.n;
     V* L = factor.L;
-    mask_of<V> regular = fill<V>(1.0) > 0.0;
+    mask_of<V> regular = fill_lanes<V>(1.0) > 0.0;
     for (int i = 0; i < n; ++i) {
         factor.n_before[i] = factor.n_behind[i] = 0;
         if (i < n - 1) L[i * n + n - 1] = L[i * n + i];  // the last column keeps the diagonal of M
@@ -41,7 +41,7 @@ CSPACE_INLINE mask_of<V> factor_sparse(const SparseFactor<V>& factor, double lea
         }
         const mask_of<V> positive = row[k] > least * row[n - 1];
         regular = regular && positive;
-        row[k] = 1.0 / select(positive, row[k], fill<V>(1.0));
+        row[k] = 1.0 / select_lanes(positive, row[k], fill_lanes<V>(1.0));
         for (int a = count - 1; a >= 0; --a) {
             const int i = before[a];
             const V multiple = row[i] * row[k];
@@ -62,7 +62,7 @@ CSPACE_INLINE void solve_columns(const SparseFactor<V>& factor, W* B, int column
     const int n = factor.n;
     const auto number = [](V x) -> W {
         if constexpr (Lanes<V>::count == 1)
-            return fill<W>(x);
+            return fill_lanes<W>(x);
         else
             return x;
     };

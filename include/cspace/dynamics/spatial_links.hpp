@@ -79,8 +79,8 @@ CSPACE_INLINE Mat3<V> gyration_of(const Vec3<V>& first, const Symmetric3<V>& sec
     const Mat3<V> S = to_matrix(second);
     const Vec3<V>&h = first, &v = motion.v;
     const V hv = dot(h, v);
-    Mat3<V> P = from_columns(cross(motion.w, column(S, 0)), cross(motion.w, column(S, 1)),
-                             cross(motion.w, column(S, 2)));
+    Mat3<V> P = from_columns(cross(motion.w, matrix_column(S, 0)), cross(motion.w, matrix_column(S, 1)),
+                             cross(motion.w, matrix_column(S, 2)));
     const V a[3] = {v.x, v.y, v.z}, b[3] = {h.x, h.y, h.z};
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) P.m[i][j] = P.m[i][j] + a[i] * b[j];
@@ -121,11 +121,11 @@ template <class V>
 CSPACE_INLINE void place_moments(const Moments<double>& body, const kinematics::FrameAxes<V>& frame,
                                  Vec3<V>& first, Symmetric3<V>& second) {
     const Mat3<V> R = from_columns(frame.x, frame.y, frame.z);
-    const Mat3<V> turned = R * fill33<V>(to_matrix(body.second));
-    const Vec3<V> x = row(turned, 0), y = row(turned, 1), z = row(turned, 2);
-    const Vec3<V> r0 = row(R, 0), r1 = row(R, 1), r2 = row(R, 2);
+    const Mat3<V> turned = R * fill_mat3<V>(to_matrix(body.second));
+    const Vec3<V> x = matrix_row(turned, 0), y = matrix_row(turned, 1), z = matrix_row(turned, 2);
+    const Vec3<V> r0 = matrix_row(R, 0), r1 = matrix_row(R, 1), r2 = matrix_row(R, 2);
     second = {dot(x, r0), dot(x, r1), dot(x, r2), dot(y, r1), dot(y, r2), dot(z, r2)};
-    first = R * fill3<V>(body.first);
+    first = R * fill_vec3<V>(body.first);
     shift_moments(body.mass, first, second, frame.origin);
 }
 
@@ -159,10 +159,11 @@ template <class V>
 CSPACE_INLINE SpatialBody<V> place_links(const Multibody& bodies, const Mat3<V>& R, const Twist<V>& base,
                                          const Twist<V>* change, const V* q, const V* qd, const V* qdd,
                                          SpatialLink<V>* links) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Vec3<V> none = {zero, zero, zero};
     turn_links(bodies, q, links);
-    const kinematics::FrameAxes<V> root = {column(R, 0), column(R, 1), column(R, 2), none};
+    const kinematics::FrameAxes<V> root = {matrix_column(R, 0), matrix_column(R, 1), matrix_column(R, 2),
+                                           none};
     for (int k = 0; k < bodies.n_links; ++k) {
         const Link& link = bodies.links[k];
         SpatialLink<V>& state = links[k];

@@ -47,14 +47,14 @@ template <class V>
 void split_forces(const Mechanics& mechanics, const V* qd, const V* M, V h, V* late) {
     const int dof = mechanics.dof();
     for (int j = 0; j < dof; ++j) {
-        late[j] = fill<V>(0.5);
+        late[j] = fill_lanes<V>(0.5);
         if (!mechanics.damping || (mechanics.damping[j] == 0.0 && mechanics.dry[j] == 0.0)) continue;
-        const V speed = max(abs(qd[j]), fill<V>(mechanics.friction_speed));
+        const V speed = max(abs(qd[j]), fill_lanes<V>(mechanics.friction_speed));
         const V x = h * (mechanics.damping[j] + mechanics.dry[j] / speed) / M[j * (dof + 1)];
-        const V safe = min(fill<V>(most_decay), max(fill<V>(small_decay), x));
+        const V safe = min(fill_lanes<V>(most_decay), max(fill_lanes<V>(small_decay), x));
         const V series = 0.5 - x / 12.0 + x * x * x / 720.0;
-        const V split = select(x < small_decay, series, 1.0 / safe - 1.0 / expm1(safe));
-        late[j] = select(x > most_decay, 1.0 / max(x, fill<V>(1.0)), split);
+        const V split = select_lanes(x < small_decay, series, 1.0 / safe - 1.0 / expm1(safe));
+        late[j] = select_lanes(x > most_decay, 1.0 / max(x, fill_lanes<V>(1.0)), split);
     }
 }
 
@@ -68,12 +68,12 @@ mask_of<V> find_middle(const Mechanics& mechanics, const State<V>& state, const 
     for (int j = 0; j < dof; ++j) step.residual[j] = 0.5 * h * step.w[j];
     const mask_of<V> near = advance_state(mechanics, state, step.residual, step.zero, middle);
     for (int j = 0; j < dof; ++j) middle.qd[j] = step.w[j];
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Mat3<V>& R = middle.T.R;
     Twist<V> base = {{zero, zero, zero}, {zero, zero, zero}};
     if (first)
         base = {transpose_times(R, vector_from(middle.qd)), transpose_times(R, vector_from(middle.qd + 3))};
-    const Vec3<V> gravity = transpose_times(R, fill3<V>(mechanics.gravity));
+    const Vec3<V> gravity = transpose_times(R, fill_vec3<V>(mechanics.gravity));
     const WholeMomentum<V> whole =
         lagrangian_rates(mechanics.bodies, base, gravity, middle.q, middle.qd + first,
                          static_cast<LinkMomentum<V>*>(work.links), step.momentum + first, step.push + first);
@@ -83,7 +83,7 @@ mask_of<V> find_middle(const Mechanics& mechanics, const State<V>& state, const 
         const Vec3<V>&l = whole.momentum.f, &k = whole.momentum.n;
         put_vector(step.momentum, R * l);
         put_vector(step.momentum + 3, R * k);
-        put_vector(step.push, mechanics.bodies.mass * fill3<V>(mechanics.gravity));
+        put_vector(step.push, mechanics.bodies.mass * fill_vec3<V>(mechanics.gravity));
         put_vector(step.push + 3, R * (cross(l, base.v) + cross(whole.first, gravity) - cross(base.w, k)));
     }
     for (int j = 0; j < dof; ++j) step.push[j] = step.push[j] + tau[j];
@@ -120,7 +120,7 @@ mask_of<V> factor_slope(const Mechanics& mechanics, V h, const Workspace<V>& wor
     for (int i = 0; i < dof * dof; ++i) step.slope[i] = work.M[i];
     const double per_speed = 1.0 / mechanics.friction_speed;
     for (int j = mechanics.first(); j < dof; ++j) {
-        V rate = fill<V>(mechanics.damping[j]);
+        V rate = fill_lanes<V>(mechanics.damping[j]);
         if (mechanics.dry[j] > 0.0) {
             const V slides = tanh(per_speed * step.w[j]);
             rate = rate + (mechanics.dry[j] * per_speed) * (1.0 - slides * slides);
@@ -142,9 +142,9 @@ mask_of<V> solve_step(const Mechanics& mechanics, const State<V>& state, const V
                       Workspace<V>& work, VariationalMemory<V>& step) {
     const int dof = mechanics.dof();
     const bool rubs = mechanics.damping != nullptr;
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     mask_of<V> settled = zero > zero, possible = zero == zero;
-    V size = zero, last = zero, change = fill<V>(std::numeric_limits<double>::infinity());
+    V size = zero, last = zero, change = fill_lanes<V>(std::numeric_limits<double>::infinity());
     for (int j = 0; j < dof; ++j) step.w[j] = state.qd[j];
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
         find_middle(mechanics, state, tau, h, work, step);
@@ -157,11 +157,11 @@ mask_of<V> solve_step(const Mechanics& mechanics, const State<V>& state, const V
         change = zero;
         for (int j = 0; j < dof; ++j) {
             V after = step.w[j] - step.residual[j];
-            if (rubs && mechanics.dry[j] > 0.0) after = select(step.w[j] * after < 0.0, zero, after);
+            if (rubs && mechanics.dry[j] > 0.0) after = select_lanes(step.w[j] * after < 0.0, zero, after);
             possible = possible && abs(after) < std::numeric_limits<double>::infinity();
             change = max(change, abs(after - step.w[j]));
             largest = max(largest, abs(step.w[j]));
-            step.w[j] = select(settled, step.w[j], after);
+            step.w[j] = select_lanes(settled, step.w[j], after);
         }
         if (iteration == 0) size = max(largest, change);
         settled = settled || change <= step_converged * size ||
@@ -178,7 +178,7 @@ mask_of<V> step_variational(const Mechanics& mechanics, const State<V>& state, c
                             Workspace<V>& work, VariationalMemory<V>& step, State<V>& after) {
     const int dof = mechanics.dof();
     for (int i = 0; i < dof; ++i) {
-        V sum = fill<V>(0.0);
+        V sum = fill_lanes<V>(0.0);
         for (int j = 0; j < dof; ++j) sum = mul_add(work.M[i * dof + j], state.qd[j], sum);
         step.p[i] = sum;
     }

@@ -36,8 +36,8 @@ inline double wrap_joint(const Chain& chain, int i, double q) {
 // The displacement of joint i by q.
 template <class V>
 CSPACE_INLINE Pose<V> joint_motion(const Chain& chain, int i, V q) {
-    const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
-    if (chain.prismatic[i]) return {fill33<V>(identity_pose().R), q * h};
+    const Vec3<V> h = fill_vec3<V>(chain.axis[i]), p = fill_vec3<V>(chain.point[i]);
+    if (chain.prismatic[i]) return {fill_mat3<V>(identity_pose().R), q * h};
     V s, c;
     sincos(q, s, c);
     const Mat3<V> R = spatial::rotation_about(h, c, s);
@@ -50,7 +50,7 @@ template <class V, class Visit>
 CSPACE_INLINE Pose<V> move_joints(const Chain& chain, int n, const V* q, const Visit& visit) {
     Pose<V> T = fill_pose<V>(identity_pose());
     for (int i = 0; i < n; ++i) {
-        const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
+        const Vec3<V> h = fill_vec3<V>(chain.axis[i]), p = fill_vec3<V>(chain.point[i]);
         const Vec3<V> axis = T.R * h, point = T * p;
         visit(i, axis, point);
         if (chain.prismatic[i]) {

@@ -23,7 +23,7 @@ CSPACE_INLINE mask_of<W> polished_angles(const Plan& plan, const Pose<W>& goal, 
 inline bool remove_virtual_joints(const Plan& plan, Pack<4> (&angles)[2][6], Mask<4> (&ok)[2]) {
     constexpr double zero = 3e-14, off = 1e-3;  // [rad]
     int column[6] = {};                         // of the completed arm, for each joint of the arm
-    Pack<4> stray[2] = {fill<Pack<4>>(0), fill<Pack<4>>(0)};
+    Pack<4> stray[2] = {fill_lanes<Pack<4>>(0), fill_lanes<Pack<4>>(0)};
     for (int i = 0; i < 6; ++i) {
         const int place = plan.reversed ? 5 - i : i;
         if (plan.joint[i] >= 0)

@@ -21,7 +21,7 @@ template <class V>
 CSPACE_INLINE Mat3<V> straighten_rotation(const Mat3<V>& R) {
     Mat3<V> out = R;
     for (int step = 0; step < 2; ++step) {
-        const Vec3<V> x = column(out, 0), y = column(out, 1), z = column(out, 2);
+        const Vec3<V> x = matrix_column(out, 0), y = matrix_column(out, 1), z = matrix_column(out, 2);
         const V xx = 0.5 * (dot(x, x) - 1.0), yy = 0.5 * (dot(y, y) - 1.0), zz = 0.5 * (dot(z, z) - 1.0);
         const V xy = 0.5 * dot(x, y), yz = 0.5 * dot(y, z), xz = 0.5 * dot(x, z);
         out = from_columns(x - xx * x - xy * y - xz * z, y - xy * x - yy * y - yz * z,
@@ -37,7 +37,7 @@ CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
     ReadGoal<V> out;
     out.T = kinematics::read_matrix(m);
     Mat3<V>& R = out.T.R;
-    const Vec3<V> x = column(R, 0), y = column(R, 1), z = column(R, 2);
+    const Vec3<V> x = matrix_column(R, 0), y = matrix_column(R, 1), z = matrix_column(R, 2);
     const V lengths = max(max(abs(dot(x, x) - 1.0), abs(dot(y, y) - 1.0)), abs(dot(z, z) - 1.0));
     const V error = max(max(max(abs(dot(x, y)), abs(dot(y, z))), abs(dot(x, z))), lengths);
     const V last_row = max(max(abs(m[12]), abs(m[13])), max(abs(m[14]), abs(m[15] - 1.0)));

@@ -46,7 +46,7 @@ inline double miss_between(const Chain& chain, const Posed& goal, double length,
     measure_error(chain, goal, length, q, error);
     double least = size_of_error(error);
     for (int step = 0; step < 2; ++step) {
-        decompose(error.jacobian);
+        decompose_matrix(error.jacobian);
         step_to_floor(error, weakest_direction(error.jacobian), dq);
         least = min(least, take_step(chain, goal, length, q, dq, q, error));
     }

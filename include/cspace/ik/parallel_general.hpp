@@ -55,7 +55,7 @@ inline TwoTurns both_angles(TwoTurnEquations e) {
 inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal, const Care& care) {
     Branches<double> out{};
     out.doubt = true;
-    const Vec3d p = goal.t, g = column(goal.R, 2);
+    const Vec3d p = goal.t, g = matrix_column(goal.R, 2);
     const double length = f.length, height = f.d[1] + f.d[2] + f.d[3] + f.ca[3] * f.d[4];
     const TwoTurns found =
         both_angles({{(f.ca[0] * p.z - height) / length, f.ca[0] * g.z - f.ca[3] * f.ca[4]},
@@ -65,7 +65,7 @@ inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal
         const Turn<double>&t1 = found.u[n], &t5 = found.w[n];
         const Posed seen = inverse(link_pose(f, 0, t1)) * goal;  // Rz(t2)…Rz(t4) · rest · Rz(t6)
         const Posed rest = Posed{link_pose(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * link_pose(f, 4, t5);
-        const Vec3d z = column(rest.R, 2), want = column(seen.R, 2);
+        const Vec3d z = matrix_column(rest.R, 2), want = matrix_column(seen.R, 2);
         const Turn<double> t234 = align_turn(z.x, z.y, want.x, want.y, 1.0, care, care.unconstrained[3]).t;
         const Posed turned = {spatial::rotation_about(Vec3d{0, 0, 1}, t234.c, t234.s), {0, 0, 0}};
         const Turn<double> t6 = turn_about_z(transpose((turned * rest).R) * seen.R);
@@ -78,7 +78,7 @@ inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal
 inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal, const Care& care) {
     Branches<double> out{};
     out.doubt = true;
-    const Vec3d r = row(goal.R, 2);
+    const Vec3d r = matrix_row(goal.R, 2);
     const double length = f.length;
     const double height = f.d[1] + f.d[2] + f.ca[2] * f.d[3] + f.d[4] * f.ca[4] * r.z - goal.t.z;
     const TwoTurns found = both_angles({{r.z * f.ca[4] - f.ca[2] * f.ca[3], height / length},
@@ -89,7 +89,7 @@ inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal,
     for (int n = 0; n < found.count; ++n) {
         const Turn<double>&t4 = found.u[n], &t6 = found.w[n];
         const Posed to_four = Posed{link_pose(f, 2, {1, 0}).R, {f.a[2], 0, 0}} * link_pose(f, 3, t4);
-        const Vec3d k = row(to_four.R, 2);
+        const Vec3d k = matrix_row(to_four.R, 2);
         const double x = r.x * t6.c - r.y * t6.s, y = r.x * t6.s + r.y * t6.c;
         // (k.x, k.y) turned by −t5 is (x, y cos α5 − rz sin α5).
         const Turn<double> t5 =

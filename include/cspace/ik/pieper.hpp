@@ -49,7 +49,7 @@ CSPACE_INLINE Triples<V> last_parallel(const ThreeJoints& g, const Vec3<V>& p, c
         out.doubt = out.doubt || (shoulder.ok && arm.doubt);
         for (int j = 0; j < 2; ++j) {
             const int n = 2 * i + j;
-            const Turn<V> w = {fill<V>(g.w_angle.c), fill<V>(g.w_angle.s)};
+            const Turn<V> w = {fill_lanes<V>(g.w_angle.c), fill_lanes<V>(g.w_angle.s)};
             out.t[0][n] = shoulder.root[i];
             out.t[1][n] = arm.first[j];
             out.t[2][n] = arm.elbow[j] - w;
@@ -99,7 +99,7 @@ CSPACE_INLINE Triples<V> nested_triples(const TwoAngles<V>& first, const Visit& 
 template <class V>
 CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     const auto [fixed, a, b] = half_square_behind(g);
-    const TwoAngles<V> elbow = linear_equation<V>(fill<V>(a), fill<V>(b), 0.5 * dot(p, p) - fixed,
+    const TwoAngles<V> elbow = linear_equation<V>(fill_lanes<V>(a), fill_lanes<V>(b), 0.5 * dot(p, p) - fixed,
                                                   std::hypot(a, b), care, care.unconstrained[2]);
     return nested_triples<2, 1>(elbow, [&](const Turn<V>& t3, const auto& add) {
         const Vec3<V> v = behind_joint_two(g, t3);
@@ -115,8 +115,8 @@ CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p, cons
 // The height of w along axis 2 determines t3 where axis 2 meets or is parallel to its neighbour.
 template <class V>
 CSPACE_INLINE TwoAngles<V> elbow_angles(const ThreeJoints& g, V height, const Care& care) {
-    return linear_equation<V>(fill<V>(g.sa2 * g.w.y), fill<V>(g.sa2 * g.w.x), height - g.ca2 * g.w.z,
-                              g.sa2 * g.wrist_reach, care, care.unconstrained[2]);
+    return linear_equation<V>(fill_lanes<V>(g.sa2 * g.w.y), fill_lanes<V>(g.sa2 * g.w.x),
+                              height - g.ca2 * g.w.z, g.sa2 * g.wrist_reach, care, care.unconstrained[2]);
 }
 
 // Axes 2 and 3 intersect: the distance of p from their intersection determines t1, then a height along axis 2
@@ -183,7 +183,7 @@ inline PieperRoots pieper_roots(const ThreeJoints& g, double p2, double pz, doub
     const double size =
         std::fabs(f.a0) + std::fabs(f.a1) + std::fabs(f.b1) + std::fabs(f.a2) + std::fabs(f.b2);
     for (int i = 0; i < out.roots.count; ++i) {
-        const double rise = slope(f, out.roots.theta[i]) / size;
+        const double rise = slope_at(f, out.roots.theta[i]) / size;
         out.close = out.close || out.roots.multiplicity[i] > 1 || rise * rise < band;
     }
     // A minimum that just misses zero has no roots to show: ask the value where the slope vanishes.
@@ -191,7 +191,7 @@ inline PieperRoots pieper_roots(const ThreeJoints& g, double p2, double pz, doub
         const TrigPolynomial df = {0, f.b1, -f.a1, 2 * f.b2, -2 * f.a2};
         const TrigRoots flat = trig_roots(df);
         for (int i = 0; i < flat.count; ++i)
-            out.close = out.close || std::fabs(evaluate(f, flat.theta[i])) < band * size;
+            out.close = out.close || std::fabs(evaluate_polynomial(f, flat.theta[i])) < band * size;
     }
     return out;
 }
@@ -200,10 +200,10 @@ template <class V>
 CSPACE_INLINE Triples<V> any_three(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
     const V p2 = dot(p, p);
-    V count = fill<V>(0.0), close = fill<V>(0.0);
+    V count = fill_lanes<V>(0.0), close = fill_lanes<V>(0.0);
     for (auto& t : out.t[2]) t = no_turn<V>();
     for (int l = 0; l < Lanes<V>::count; ++l) {
-        const PieperRoots found = pieper_roots(g, lane(p2, l), lane(p.z, l), care.band);
+        const PieperRoots found = pieper_roots(g, get_lane(p2, l), get_lane(p.z, l), care.band);
         set_lane(count, l, found.roots.count);
         set_lane(close, l, found.close);
         for (int i = 0; i < found.roots.count; ++i) {

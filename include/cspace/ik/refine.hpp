@@ -78,12 +78,12 @@ inline void newton_pose_step(PoseError& error, double* dq) {
     }
     for (int k = 0; k < n && n <= 6; ++k) {
         linear::reduce_column(A, 6, n, k, diagonal[k], factor[k]);
-        linear::reflect(A, 6, k, factor[k], b);
+        linear::reflect_vector(A, 6, k, factor[k], b);
         least = min(least, std::fabs(diagonal[k]));
         largest = max(largest, std::fabs(diagonal[k]));
     }
     if (n > 6 || !(least > regular * largest)) {
-        decompose(error.jacobian);
+        decompose_matrix(error.jacobian);
         damped_pose_step(error, 0, dq);
         return;
     }
@@ -156,7 +156,7 @@ inline WeakDirection weak_direction(const SquareQr& qr) {
     }
     out.sigma = 1 / std::sqrt(growth);
     make_unit6(out.u);
-    for (int k = 5; k >= 0; --k) linear::reflect(qr.A, 6, k, qr.factor[k], out.u);
+    for (int k = 5; k >= 0; --k) linear::reflect_vector(qr.A, 6, k, qr.factor[k], out.u);
     return out;
 }
 // Of a Jacobian of six columns that is not decomposed. Where sigma is certainly above `enough`, a bound below
@@ -172,7 +172,7 @@ inline WeakDirection weak_direction(const PoseSvd& jacobian,
 inline double take_step(const Chain& chain, const Posed& goal, double length, const double* from,
                         const double* dq, double* to, PoseError& error) {
     constexpr double stride = 0.3;
-    const double keep = shortening(largest_of(dq, chain.n), stride);
+    const double keep = shortening_factor(largest_of(dq, chain.n), stride);
     for (int i = 0; i < chain.n; ++i) to[i] = from[i] + keep * dq[i];
     measure_error(chain, goal, length, to, error);
     return size_of_error(error);
@@ -214,7 +214,7 @@ inline bool step_in_valley(PoseError& error, double narrow, double* dq) {
     WeakDirection weak = weak_direction(qr);
     if (!weak.settled) {
         PoseSvd whole = J;
-        decompose(whole);
+        decompose_matrix(whole);
         const int k = weakest_direction(whole);
         weak.sigma = whole.sigma[k];
         for (int i = 0; i < 6; ++i) {
@@ -226,7 +226,7 @@ inline bool step_in_valley(PoseError& error, double narrow, double* dq) {
     const double along = dot_n(weak.u, error.e, 6);
     const bool on_floor = dot_n(error.e, error.e, 6) < 1.01 * along * along;
     for (int i = 0; i < 6; ++i) dq[i] = error.e[i] - along * weak.u[i];
-    for (int k = 0; k < 6; ++k) linear::reflect(qr.A, 6, k, qr.factor[k], dq);
+    for (int k = 0; k < 6; ++k) linear::reflect_vector(qr.A, 6, k, qr.factor[k], dq);
     solve_upper(qr, dq);
     const double shift = (on_floor ? along / weak.sigma : 0) - dot_n(weak.v, dq, 6);
     for (int i = 0; i < 6; ++i) dq[i] += shift * weak.v[i];
@@ -269,7 +269,7 @@ struct LazySvd {
 
     void decompose_once() {
         if (is_fresh) return;
-        decompose(jacobian, has_directions);
+        decompose_matrix(jacobian, has_directions);
         is_fresh = has_directions = true;
     }
 };
@@ -393,11 +393,11 @@ CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double le
         for (int k = 0; k < 6; ++k) A[k][i] = twist[k];
     }
     solve_linear(A, b);
-    const V largest = largest_of(b, 6), keep = shortening(largest, stride);
+    const V largest = largest_of(b, 6), keep = shortening_factor(largest, stride);
     for (int i = 0; i < 6; ++i) q[i] = mul_add(chain.prismatic[i] ? length * keep : keep, b[i], q[i]);
     // Half a turn off, the sum of cross products vanishes as at the goal: nothing beyond a right angle has
     // settled.
-    return select(aligned < 1.0, max(largest, fill<V>(1.0)), largest);
+    return select_lanes(aligned < 1.0, max(largest, fill_lanes<V>(1.0)), largest);
 }
 
 // True if q, a candidate near a solution, has converged to it.
@@ -419,7 +419,7 @@ double generic_conditioning(const Chain& chain, double length, int k, const IsZe
     PoseError error;
     measure_error(chain, chain.tip, length, q, error);
     if (chain.n == 6) return weak_direction(error.jacobian).sigma;
-    decompose(error.jacobian);
+    decompose_matrix(error.jacobian);
     return error.jacobian.sigma[weakest_direction(error.jacobian)];
 }
 

@@ -64,7 +64,7 @@ CSPACE_INLINE WristView<V> write_wrist(const SphericalWrist& arm, const Turn<V> 
         return undo_joint(t[2], arm.ca3, arm.sa3, v);
     };
     const Wrist& w = arm.last;
-    const WristView<V> view = look_at_wrist(w, seen(column(R, 2)), seen(column(R, 0)), care);
+    const WristView<V> view = look_at_wrist(w, seen(matrix_column(R, 2)), seen(matrix_column(R, 0)), care);
     for (int i = 0; i < 3; ++i) up[i] = down[i] = angle_of(t[i]);
     const WristSide<V> r = wrist_side(w, view, view.s5, care.unconstrained[3]);
     up[3] = angle_of(r.t4);
@@ -72,8 +72,8 @@ CSPACE_INLINE WristView<V> write_wrist(const SphericalWrist& arm, const Turn<V> 
     up[5] = angle_of(r.t6);
     down[4] = -up[4];
     if (w.right_angled) {
-        down[3] = up[3] - copysign(fill<V>(pi), up[3]);
-        down[5] = up[5] - copysign(fill<V>(pi), up[5]);
+        down[3] = up[3] - copysign(fill_lanes<V>(pi), up[3]);
+        down[5] = up[5] - copysign(fill_lanes<V>(pi), up[5]);
     } else {
         const WristSide<V> other = wrist_side(w, view, -view.s5, care.unconstrained[3]);
         down[3] = angle_of(other.t4);
@@ -119,7 +119,7 @@ CSPACE_INLINE Abreast solve_abreast(const SphericalWrist& arm, const Posed& goal
     const Triples<double> first = place_wrist(arm.first, goal.t, care);
     const Turn<Four> t[3] = {side_by_side(first.t[0]), side_by_side(first.t[1]), side_by_side(first.t[2])};
     Abreast out;
-    const WristView<Four> view = write_wrist(arm, t, fill33<Four>(goal.R), care, out.t[0], out.t[1]);
+    const WristView<Four> view = write_wrist(arm, t, fill_mat3<Four>(goal.R), care, out.t[0], out.t[1]);
     out.ok = (side_by_side(first.ok) > 0.0) && view.ok;
     out.doubt = first.doubt || any(out.ok && view.doubt);
     return out;

@@ -57,8 +57,8 @@ CSPACE_INLINE BehindShoulder<V> look_behind_shoulder(const ThreeParallel& arm, c
                                                      const Pose<V>& goal, const Care& care) {
     const auto seen = [&](const Vec3<V>& v) { return undo_joint(t1, arm.ca1, arm.sa1, v); };
     const Vec3<V> p = seen(goal.t);
-    return {t1, look_at_wrist(arm.last, seen(column(goal.R, 2)), seen(column(goal.R, 0)), care), p.x - arm.a1,
-            p.y};
+    return {t1, look_at_wrist(arm.last, seen(matrix_column(goal.R, 2)), seen(matrix_column(goal.R, 0)), care),
+            p.x - arm.a1, p.y};
 }
 
 // Completes one shoulder and one wrist solution, that with sin t5 = s5, by the planar arm: both elbow
@@ -111,11 +111,11 @@ CSPACE_INLINE Abreast solve_abreast(const ThreeParallel& arm, const Posed& goal,
     const Turn<double> each[4] = {shoulder.root[0], shoulder.root[0], shoulder.root[1], shoulder.root[1]};
     const BehindShoulder<Four> at =
         look_behind_shoulder(arm, side_by_side(each), fill_pose<Four>(goal), care);
-    Four side = fill<Four>(1.0);
+    Four side = fill_lanes<Four>(1.0);
     set_lane(side, 1, -1.0);
     set_lane(side, 3, -1.0);
     Abreast out;
-    out.ok = shoulder.ok ? at.wrist.ok : fill<Four>(0.0) > 1.0;
+    out.ok = shoulder.ok ? at.wrist.ok : fill_lanes<Four>(0.0) > 1.0;
     Mask<4> doubt = out.ok && at.wrist.doubt;
     Four* const rows[2] = {out.t[0], out.t[1]};
     write_elbows(arm, at, side * at.wrist.s5, care, rows, out.ok, doubt);
@@ -166,7 +166,7 @@ inline FreeSums free_sums(const ThreeParallel& arm, const Posed& goal, int i, do
     const TwoAngles<double> shoulder = shoulder_angles(arm, goal.t, care);
     const Turn<double>& t1 = shoulder.root[i];
     const bool is_same = i == 1 && std::fabs(angle_of(t1 - shoulder.root[0])) < merged;
-    const Vec3d z = undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2));
+    const Vec3d z = undo_joint(t1, arm.ca1, arm.sa1, matrix_column(goal.R, 2));
     if (!shoulder.ok || is_same || z.x * z.x + z.y * z.y > care.free * care.free) return out;
     const Vec3d p = undo_joint(t1, arm.ca1, arm.sa1, goal.t);
     for (const double reach : {arm.l2 + arm.l3, arm.l2 - arm.l3})

@@ -31,7 +31,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Turn<V> choose_turn(mask_of<V> m, const Turn<double>& yes, const Turn<V>& no) {
-    return {select(m, fill<V>(yes.c), no.c), select(m, fill<V>(yes.s), no.s)};
+    return {select_lanes(m, fill_lanes<V>(yes.c), no.c), select_lanes(m, fill_lanes<V>(yes.s), no.s)};
 }
 // Rᵀ v for R = Rz(t) Rx(α).
 template <class V>
@@ -50,7 +50,7 @@ CSPACE_INLINE Aligned<V> align_turn(V x, V y, V u, V v, double unit, const Care&
                                     const Turn<double>& unconstrained) {
     const V n2 = u * u + v * v;
     const mask_of<V> is_free = n2 <= care.free * care.free * unit * unit;
-    const V scale = 1.0 / select(is_free, fill<V>(1.0), n2);
+    const V scale = 1.0 / select_lanes(is_free, fill_lanes<V>(1.0), n2);
     const Turn<V> t = {(x * u + y * v) * scale, (x * v - y * u) * scale};
     return {choose_turn(is_free, unconstrained, t), n2 <= care.band * unit * unit};
 }
@@ -58,7 +58,7 @@ CSPACE_INLINE Aligned<V> align_turn(V x, V y, V u, V v, double unit, const Care&
 template <class V>
 CSPACE_INLINE Turn<V> turn_onto(const Vec3<V>& h, const Vec3<V>& v, const Vec3<V>& u, double free) {
     const Vec3<V> a = v - dot(v, h) * h, b = u - dot(u, h) * h;
-    const V size2 = max(dot(a, a), fill<V>(tolerance::nonzero));
+    const V size2 = max(dot(a, a), fill_lanes<V>(tolerance::nonzero));
     const V inverse = 1.0 / size2;
     return choose_turn(size2 <= free * free, {1, 0},
                        Turn<V>{dot(a, b) * inverse, dot(h, cross(a, b)) * inverse});
@@ -67,11 +67,11 @@ CSPACE_INLINE Turn<V> turn_onto(const Vec3<V>& h, const Vec3<V>& v, const Vec3<V
 template <class V>
 CSPACE_INLINE void outer_turns(const Vec3d* axis, const Turn<V>& middle, const Mat3<V>& R, double free,
                                Turn<V>& first, Turn<V>& last) {
-    const Vec3<V> h1 = fill3<V>(axis[0]), h2 = fill3<V>(axis[1]), h3 = fill3<V>(axis[2]);
-    first = turn_onto(h1, rotate(h2, middle, h3), R * h3, free);
-    const Vec3<V> across = fill3<V>(any_perpendicular(axis[2]));
-    const Vec3<V> x =
-        rotate(h2, Turn<V>{middle.c, -middle.s}, rotate(h1, Turn<V>{first.c, -first.s}, R * across));
+    const Vec3<V> h1 = fill_vec3<V>(axis[0]), h2 = fill_vec3<V>(axis[1]), h3 = fill_vec3<V>(axis[2]);
+    first = turn_onto(h1, rotate_about(h2, middle, h3), R * h3, free);
+    const Vec3<V> across = fill_vec3<V>(any_perpendicular(axis[2]));
+    const Vec3<V> x = rotate_about(h2, Turn<V>{middle.c, -middle.s},
+                                   rotate_about(h1, Turn<V>{first.c, -first.s}, R * across));
     last = {dot(x, across), dot(x, cross(h3, across))};
 }
 // sqrt(x) with x clipped below at floor ≥ 0.
@@ -88,7 +88,7 @@ CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Car
     const V room = n2 - r * r;
     const double unit2 = unit * unit;
     const mask_of<V> is_free = n2 <= care.free * care.free * unit2;
-    const V scale = 1.0 / select(is_free, fill<V>(1.0), n2);
+    const V scale = 1.0 / select_lanes(is_free, fill_lanes<V>(1.0), n2);
     const V h = root_above(room, care.spread * n2);
     TwoAngles<V> out;
     out.root[0] = {(a * r - b * h) * scale, (b * r + a * h) * scale};
@@ -125,12 +125,12 @@ CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, double unit, c
     const V room_in = (r2 - (l1 - l2) * (l1 - l2)) * (1 / product);  // 1 + cos γ
     TwoLink<V> out;
     const V cosine = 0.5 * (room_in - room_out);
-    const V sine = root_above(room_out * room_in, fill<V>(care.spread));
+    const V sine = root_above(room_out * room_in, fill_lanes<V>(care.spread));
     out.elbow[0] = {cosine, sine};
     out.elbow[1] = {cosine, -sine};
     const V along = l1 + l2 * cosine, across = l2 * sine;
     const mask_of<V> is_free = r2 <= care.free * care.free * size2;
-    const V scale = 1.0 / select(is_free, fill<V>(1.0), r2);
+    const V scale = 1.0 / select_lanes(is_free, fill_lanes<V>(1.0), r2);
     out.first[0] = {(x * along + y * across) * scale, (y * along - x * across) * scale};
     out.first[1] = {(x * along - y * across) * scale, (y * along + x * across) * scale};
     for (auto& t : out.first) t = choose_turn(is_free, unconstrained, t);
@@ -165,8 +165,8 @@ inline Wrist make_wrist(double ca4, double sa4, double ca5, double sa5) {
 template <class V>
 CSPACE_INLINE V cosine_gap(V ca, V sa2, double cb, double sb) {
     const V total = ca + cb;
-    const V by_sines = (sb * sb - sa2) / select(abs(total) > 0.5, total, fill<V>(1.0));
-    return select(abs(total) > 0.5, by_sines, ca - cb);
+    const V by_sines = (sb * sb - sa2) / select_lanes(abs(total) > 0.5, total, fill_lanes<V>(1.0));
+    return select_lanes(abs(total) > 0.5, by_sines, ca - cb);
 }
 
 // Quantities common to both solutions: cos t5 and |sin t5|, and the third and first column of M.
@@ -188,9 +188,9 @@ CSPACE_INLINE WristView<V> look_at_wrist(const Wrist& w, const Vec3<V>& z, const
     const V high = -cosine_gap(z.z, rho2, w.c_diff, w.s_diff) * w.inv;
     const V least = min(low, high);
     view.c5 = 0.5 * (high - low);
-    view.s5 = root_above(low * high, fill<V>(care.spread));
+    view.s5 = root_above(low * high, fill_lanes<V>(care.spread));
     view.t4_is_free = rho2 <= care.free * care.free;
-    view.inverse_rho2 = 1.0 / select(view.t4_is_free, fill<V>(1.0), rho2);
+    view.inverse_rho2 = 1.0 / select_lanes(view.t4_is_free, fill_lanes<V>(1.0), rho2);
     const double band = care.band * (1 + std::fabs(w.inv));
     view.ok = least >= -band;
     view.doubt = view.ok && ((least <= band) || (rho2 <= band));

@@ -118,7 +118,7 @@ inline Bend bend_behind_three(const WristPlace& at, double sine) {
         const Vec3d l = centre_velocity(at, j);
         J.us[j][0] = l.x, J.us[j][1] = l.y, J.us[j][2] = l.z;
     }
-    decompose(J);
+    decompose_matrix(J);
     const int weak = weakest_direction(J), a = (weak + 1) % 3, b = (weak + 2) % 3;
     if (min(J.sigma[a], J.sigma[b]) < firm) return {sine, unknown, unknown, unknown};
     const auto u = [&](int j) { return (1 / J.sigma[j]) * Vec3d{J.us[j][0], J.us[j][1], J.us[j][2]}; };

@@ -13,7 +13,7 @@ namespace cspace::kinematics::inline CSPACE_ISA {
 // The first moment of the base and of the links fixed to it.
 template <class V>
 CSPACE_INLINE Vec3<V> base_moment(const model::Tree& tree, const Pose<V>& T_world_base) {
-    return tree.bodies[0].mass * (T_world_base * fill3<V>(tree.bodies[0].center));
+    return tree.bodies[0].mass * (T_world_base * fill_vec3<V>(tree.bodies[0].center));
 }
 // The centre of mass; moments[k] becomes the first moment Σ m p of all that joint k carries.
 template <class V>
@@ -21,7 +21,7 @@ CSPACE_INLINE Vec3<V> center_of_mass(const model::Tree& tree, const Pose<V>& T_w
                                      const Pose<V>* T_world_joint, Vec3<V>* moments) {
     for (int k = 0; k < tree.n_joints; ++k) {
         const model::Body& body = tree.bodies[k + 1];
-        moments[k] = body.mass * (T_world_joint[k] * fill3<V>(body.center));
+        moments[k] = body.mass * (T_world_joint[k] * fill_vec3<V>(body.center));
     }
     Vec3<V> sum = base_moment(tree, T_world_base);
     for (int k = tree.n_joints - 1; k >= 0; --k) {
@@ -37,11 +37,11 @@ template <class V>
 CSPACE_INLINE void center_of_mass_columns(const model::Tree& tree, const Pose<V>* T_world_joint,
                                           const Vec3<V>* moments, V* J, int columns, int first) {
     for (int j = 0; j < 3 * columns; ++j) {
-        if (j % columns >= first) J[j] = fill<V>(0.0);
+        if (j % columns >= first) J[j] = fill_lanes<V>(0.0);
     }
     for (int k = 0; k < tree.n_joints; ++k) {
         const model::Joint& joint = tree.joints[k];
-        const Vec3<V> d = (joint.ratio / tree.mass) * column(T_world_joint[k].R, 2);
+        const Vec3<V> d = (joint.ratio / tree.mass) * matrix_column(T_world_joint[k].R, 2);
         const Vec3<V> lever = moments[k] - joint.carried_mass * T_world_joint[k].t;
         add_to_column(J, columns, first + joint.coordinate, 0,
                       joint.prismatic ? joint.carried_mass * d : cross(d, lever));

@@ -24,7 +24,7 @@ template <class V>
 CSPACE_INLINE void chain_sines(const model::Chain& chain, const V* q, V* s, V* c) {
     if constexpr (Lanes<V>::count == 1) {
         for (int i = 0; i < chain.n; i += 4) {
-            auto angles = fill<Pack<4>>(0.0);
+            auto angles = fill_lanes<Pack<4>>(0.0);
             const int count = chain.n - i < 4 ? chain.n - i : 4;
             for (int k = 0; k < count; ++k) {
                 const model::ChainJoint& joint = chain.joints[i + k];
@@ -33,8 +33,8 @@ CSPACE_INLINE void chain_sines(const model::Chain& chain, const V* q, V* s, V* c
             Pack<4> sines, cosines;
             sincos(angles, sines, cosines);
             for (int k = 0; k < 4; ++k) {
-                s[i + k] = lane(sines, k);
-                c[i + k] = lane(cosines, k);
+                s[i + k] = get_lane(sines, k);
+                c[i + k] = get_lane(cosines, k);
             }
         }
     } else {
@@ -48,7 +48,7 @@ CSPACE_INLINE void chain_sines(const model::Chain& chain, const V* q, V* s, V* c
 // A frame by its axes and its origin. Without arrays inside, a compiler keeps all of it in registers.
 template <class V>
 CSPACE_INLINE FrameAxes<V> frame_axes(const Pose<V>& T) {
-    return {column(T.R, 0), column(T.R, 1), column(T.R, 2), T.t};
+    return {matrix_column(T.R, 0), matrix_column(T.R, 1), matrix_column(T.R, 2), T.t};
 }
 template <class V>
 CSPACE_INLINE Pose<V> to_pose(const FrameAxes<V>& frame) {
@@ -112,7 +112,7 @@ CSPACE_INLINE void joint_poses(const model::Tree& tree, const V* q, const Pose<V
         Pose<V> T = parent * fill_pose<V>(joint.T_parent_joint);
         const V value = joint.ratio * q[joint.coordinate] + joint.offset;
         if (joint.prismatic) {
-            T.t = T.t + value * column(T.R, 2);
+            T.t = T.t + value * matrix_column(T.R, 2);
         } else {
             V s, c;
             sincos(value, s, c);

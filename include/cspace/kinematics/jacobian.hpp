@@ -41,7 +41,7 @@ CSPACE_INLINE Vec3<V> choose_vector(bool first, const Vec3<V>& a, const Vec3<V>&
 // The twist of the point p per unit velocity of a joint along the direction d, or about it through o.
 template <class V>
 CSPACE_INLINE Twist<V> joint_twist(bool prismatic, const Vec3<V>& d, const Vec3<V>& o, const Vec3<V>& p) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     return {choose_vector(prismatic, d, cross(d, p - o)), choose_vector(prismatic, {zero, zero, zero}, d)};
 }
 
@@ -73,7 +73,7 @@ CSPACE_INLINE void sum_columns(const model::Chain& chain, V* J, int columns, int
     }
     if (chain.ordered) return;
     for (int r = 0; r < 6; ++r) {
-        for (int j = first; j < columns; ++j) J[r * columns + j] = fill<V>(0.0);
+        for (int j = first; j < columns; ++j) J[r * columns + j] = fill_lanes<V>(0.0);
     }
     for (int i = 0; i < chain.n; ++i) {
         const model::ChainJoint& joint = chain.joints[i];
@@ -96,7 +96,7 @@ CSPACE_INLINE void joint_columns(const model::Chain& chain, const Axis<V>* axes,
 // 1, or 0 for their derivatives, where `arm` is its rate: nothing else changes.
 template <class V>
 CSPACE_INLINE void base_columns(const Vec3<V>& arm, V* J, int columns, int rows, double unit = 1) {
-    const V zero = fill<V>(0.0), one = fill<V>(1.0);
+    const V zero = fill_lanes<V>(0.0), one = fill_lanes<V>(1.0);
     const Vec3<V> axis[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
     for (int j = 0; j < 3; ++j) {
         put_column(J, columns, j, 0, unit * axis[j]);

@@ -36,7 +36,7 @@ CSPACE_INLINE Twist<V> axis_rates(const model::Chain& chain, const Axis<V>* axes
 template <class V>
 CSPACE_INLINE Twist<V> joint_twist_rate(bool prismatic, const Axis<V>& axis, const Axis<V>& rate,
                                         const Vec3<V>& p, const Vec3<V>& p_rate) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     if (prismatic) return {rate.direction, {zero, zero, zero}};
     return {cross(rate.direction, p - axis.point) + cross(axis.direction, p_rate - rate.point),
             rate.direction};

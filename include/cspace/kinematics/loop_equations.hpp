@@ -87,7 +87,7 @@ inline void find_loop_jacobian(const ClosedLoops& loops, const LoopPlaces& place
         for (int k = 0; k < loops.n_joints; ++k) {
             if (!sides[k]) continue;
             const LoopJoint& joint = loops.joints[k];
-            const Vec3d axis = column(places.joints[k].R, 2);
+            const Vec3d axis = matrix_column(places.joints[k].R, 2);
             const double along = joint.turns ? dot(axis, n + cross(p - places.joints[k].t, f)) : dot(axis, f);
             to[joint.column] += sides[k] * joint.ratio * along;
         }
@@ -99,7 +99,7 @@ inline void find_loop_motions(const ClosedLoops& loops, const double* qd, LoopPl
     const Vec3d none = {0.0, 0.0, 0.0};
     for (int k = 0; k < loops.n_joints; ++k) {
         const LoopJoint& joint = loops.joints[k];
-        const Vec3d axis = (joint.ratio * qd[joint.column]) * column(places.joints[k].R, 2);
+        const Vec3d axis = (joint.ratio * qd[joint.column]) * matrix_column(places.joints[k].R, 2);
         const Vec3d w = joint.turns ? axis : none, v = joint.turns ? cross(places.joints[k].t, axis) : axis;
         const LoopMotion before =
             joint.parent < 0 ? LoopMotion{none, none, none, none} : places.motions[joint.parent];

@@ -11,9 +11,9 @@ CSPACE_INLINE void write_matrix(const Pose<V>& T, V* matrix) {
     for (int r = 0; r < 3; ++r) {
         for (int j = 0; j < 3; ++j) matrix[4 * r + j] = T.R.m[r][j];
         matrix[4 * r + 3] = r == 0 ? T.t.x : r == 1 ? T.t.y : T.t.z;
-        matrix[12 + r] = fill<V>(0.0);
+        matrix[12 + r] = fill_lanes<V>(0.0);
     }
-    matrix[15] = fill<V>(1.0);
+    matrix[15] = fill_lanes<V>(1.0);
 }
 template <class V>
 CSPACE_INLINE Pose<V> read_matrix(const V* m) {

@@ -15,7 +15,7 @@ namespace cspace::kinematics::inline CSPACE_ISA {
 // were not.
 template <class V>
 CSPACE_INLINE bool make_orthogonal(V* a, V* b, int n, int step) {
-    V aa = fill<V>(0.0), bb = fill<V>(0.0), ab = fill<V>(0.0);
+    V aa = fill_lanes<V>(0.0), bb = fill_lanes<V>(0.0), ab = fill_lanes<V>(0.0);
     for (int k = 0; k < n; ++k) {
         aa = aa + a[k * step] * a[k * step];
         bb = bb + b[k * step] * b[k * step];
@@ -24,9 +24,9 @@ CSPACE_INLINE bool make_orthogonal(V* a, V* b, int n, int step) {
     const V limit = (8.0 * std::numeric_limits<double>::epsilon()) * sqrt(aa * bb);
     const auto turns = abs(ab) > limit;
     if (!any(turns)) return false;
-    const V zeta = (bb - aa) / (2.0 * select(turns, ab, 1.0));
-    const V tangent = copysign(fill<V>(1.0), zeta) / (abs(zeta) + sqrt(1.0 + zeta * zeta));
-    const V t = select(turns, tangent, 0.0);
+    const V zeta = (bb - aa) / (2.0 * select_lanes(turns, ab, 1.0));
+    const V tangent = copysign(fill_lanes<V>(1.0), zeta) / (abs(zeta) + sqrt(1.0 + zeta * zeta));
+    const V t = select_lanes(turns, tangent, 0.0);
     const V c = 1.0 / sqrt(1.0 + t * t), s = c * t;
     for (int k = 0; k < n; ++k) {
         const V x = a[k * step], y = b[k * step];
@@ -53,7 +53,7 @@ CSPACE_INLINE void singular_values(V* J, int rows, int columns, V* sigma) {
         }
     }
     for (int i = 0; i < count; ++i) {
-        V square = fill<V>(0.0);
+        V square = fill_lanes<V>(0.0);
         for (int k = 0; k < length; ++k) square = square + J[i * next + k * step] * J[i * next + k * step];
         V value = sqrt(square);
         for (int j = 0; j < i; ++j) {

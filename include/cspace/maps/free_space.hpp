@@ -76,7 +76,7 @@ inline Outlines snap_rounded(const Outlines& world) {
         for (Index i = 0; i < Index(made.points.size()); ++i) {
             poll.step();
             const Point p = made.points[std::size_t(i)];
-            if (meets(a, b, {p - half, p + half}) != BoxPart::none) met.push_back({dot(p - a, b - a), i});
+            if (met_part(a, b, {p - half, p + half}) != BoxPart::none) met.push_back({dot(p - a, b - a), i});
         }
         std::sort(met.begin(), met.end());
         for (std::size_t i = 1; i < met.size(); ++i)

@@ -319,9 +319,9 @@ class Triangulator {
         const Owner &one = owners[std::size_t(s.owners)], &other = owners[std::size_t(list)];
         const Line a{at(one.from), at(one.to)}, b{at(other.from), at(other.to)};
         const bool is_given = do_cross(a, b);
-        Point x = is_given ? crossing(a, b) : Point{};
+        Point x = is_given ? line_crossing(a, b) : Point{};
         if (!is_given || !is_near(x, s.a, s.b) || !is_near(x, p, q))
-            x = crossing({at(s.a), at(s.b)}, {at(p), at(q)});
+            x = line_crossing({at(s.a), at(s.b)}, {at(p), at(q)});
         if (is_given) crossings.push_back({x, s.owners, list});
         ++bends_;
         set_owners(t, e, none);

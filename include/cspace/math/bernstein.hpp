@@ -30,11 +30,11 @@ CSPACE_INLINE int count_bits(unsigned x) {
 }
 
 template <int n>
-inline Variations variations(const double* b, double noise) {
+inline Variations count_variations(const double* b, double noise) {
     Variations out{0, 0, true, 0};
     unsigned above = 0, below = 0;
     for_each_pack(n + 1, [&](auto pack, int i) {
-        const auto part = load<decltype(pack)>(b + i, n + 1 - i);
+        const auto part = load_lanes<decltype(pack)>(b + i, n + 1 - i);
         above |= bits_of(part > noise) << i;
         below |= bits_of(part < -noise) << i;
     });
@@ -97,14 +97,14 @@ CSPACE_NOINLINE V only_roots(const V* b, double width) {
     V a[n + 1], d[n];
     for (int i = 0; i <= n; ++i) a[i] = b[i] * of_value.c[i];
     for (int i = 0; i < n; ++i) d[i] = (b[i + 1] - b[i]) * (n * of_slope.c[i]);
-    V low = fill<V>(0.0), high = fill<V>(1.0), x = 0.25 + 0.5 * (b[0] / (b[0] - b[n]));
+    V low = fill_lanes<V>(0.0), high = fill_lanes<V>(1.0), x = 0.25 + 0.5 * (b[0] / (b[0] - b[n]));
     for (int step = 0; step < 60; ++step) {
         const V value = scaled_bernstein<n>(a, x), slope = scaled_bernstein<n - 1>(d, x);
         const mask_of<V> before = value * b[0] > 0.0;
-        low = select(before, x, low);
-        high = select(before, high, x);
+        low = select_lanes(before, x, low);
+        high = select_lanes(before, high, x);
         const V newton = x - value / slope;
-        const V next = select((newton >= low) && (newton <= high), newton, 0.5 * (low + high));
+        const V next = select_lanes((newton >= low) && (newton <= high), newton, 0.5 * (low + high));
         const V moved = abs(next - x);
         x = next;
         if (!any(moved >= width)) break;

@@ -24,27 +24,28 @@ namespace cspace::inline CSPACE_ISA {
 
 // The vector (x, y) of length r > 0 as a turn; no turn where `idle`.
 template <class V>
-CSPACE_INLINE Turn<V> direction(V x, V y, V r, mask_of<V> idle) {
-    const V inverse = 1.0 / select(idle, fill<V>(1.0), r);
-    return {select(idle, fill<V>(1.0), x * inverse), select(idle, fill<V>(0.0), y * inverse)};
+CSPACE_INLINE Turn<V> turn_towards(V x, V y, V r, mask_of<V> idle) {
+    const V inverse = 1.0 / select_lanes(idle, fill_lanes<V>(1.0), r);
+    return {select_lanes(idle, fill_lanes<V>(1.0), x * inverse),
+            select_lanes(idle, fill_lanes<V>(0.0), y * inverse)};
 }
 
 // scale: the size of the numbers a and b were made of; r within rounding of it counts as zero.
 template <class V>
 CSPACE_INLINE CosSinRoots<V> cos_sin_roots(V a, V b, V d, V scale) {
-    const V r = sqrt(a * a + b * b), zero = fill<V>(0.0);
+    const V r = sqrt(a * a + b * b), zero = fill_lanes<V>(0.0);
     const V inside = (r - d) * (r + d);
     CosSinRoots<V> roots;
     roots.free = r <= tolerance::rounding * scale;
     roots.two = inside > tolerance::rounding * r * r && !roots.free;
     roots.error = max(abs(d) - r, zero);
-    const Turn<V> middle = direction(a, b, r, roots.free);
-    const V one_sided = copysign(fill<V>(1.0), d);
-    const V inverse = 1.0 / select(roots.free, fill<V>(1.0), r);
-    const Turn<V> aside = {select(roots.two, d * inverse, one_sided),
-                           select(roots.two, sqrt(max(inside, zero)) * inverse, zero)};
-    roots.theta[0] = select(roots.free, middle, middle + aside);
-    roots.theta[1] = select(roots.free, middle, middle - aside);
+    const Turn<V> middle = turn_towards(a, b, r, roots.free);
+    const V one_sided = copysign(fill_lanes<V>(1.0), d);
+    const V inverse = 1.0 / select_lanes(roots.free, fill_lanes<V>(1.0), r);
+    const Turn<V> aside = {select_lanes(roots.two, d * inverse, one_sided),
+                           select_lanes(roots.two, sqrt(max(inside, zero)) * inverse, zero)};
+    roots.theta[0] = select_lanes(roots.free, middle, middle + aside);
+    roots.theta[1] = select_lanes(roots.free, middle, middle - aside);
     return roots;
 }
 

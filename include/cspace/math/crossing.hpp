@@ -23,7 +23,7 @@ inline bool do_cross(const Line& a, const Line& b) {
 
 // Where line b crosses segment a; the middle of a if they are parallel. The first estimate is corrected by
 // how far it lies off both lines, which is computed without rounding (iterative refinement).
-inline Point crossing(const Line& a, const Line& b) {
+inline Point line_crossing(const Line& a, const Line& b) {
     const Point along = a.to - a.from, other = b.to - b.from;
     const double whole = cross(other, along), size = std::max(norm(along), norm(other));
     const double part = whole == 0 ? 0.5 : cross(other, b.from - a.from) / whole;
@@ -60,7 +60,7 @@ inline std::pair<int, int> sides_of(Point a, Point b, const Box& box) {
 
 // What a segment meets of a box.
 enum class BoxPart : std::int8_t { none, border, inside };
-inline BoxPart meets(Point a, Point b, const Box& box) {
+inline BoxPart met_part(Point a, Point b, const Box& box) {
     const auto& [low, high] = box;
     const auto [left, right] = std::minmax(a.x, b.x);
     const auto [lower, upper] = std::minmax(a.y, b.y);

@@ -17,9 +17,9 @@ CSPACE_INLINE V expm1(V x) {
     constexpr double largest = 709.0, smallest = -60.0;  // e^−60 is lost beside 1
     constexpr double inverse_ln2 = 1.44269504088896338700, ln2_high = 6.93147180369123816490e-01,
                      ln2_low = 1.90821492927058770002e-10;
-    x = min(fill<V>(largest), max(fill<V>(smallest), x));  // NaN stays
+    x = min(fill_lanes<V>(largest), max(fill_lanes<V>(smallest), x));  // NaN stays
     const V k = round(inverse_ln2 * x);
-    const V r = mul_add(k, fill<V>(-ln2_low), mul_add(k, fill<V>(-ln2_high), x));
+    const V r = mul_add(k, fill_lanes<V>(-ln2_low), mul_add(k, fill_lanes<V>(-ln2_high), x));
     // The lowest bits of 2^52 + i are those of i, here an exponent.
     constexpr double exponent_of_one = 4503599627370496.0 + 1023.0;
     const V power = shift_bits_left<52>(k + exponent_of_one);
@@ -28,7 +28,7 @@ CSPACE_INLINE V expm1(V x) {
 template <class V>
 CSPACE_INLINE V tanh(V x) {
     constexpr double saturated = 20.0;  // 1 − tanh is then below half a unit in the last place
-    const V e = expm1(2.0 * min(fill<V>(saturated), abs(x)));
+    const V e = expm1(2.0 * min(fill_lanes<V>(saturated), abs(x)));
     return copysign(e / (e + 2.0), x);
 }
 

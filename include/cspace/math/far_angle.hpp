@@ -39,7 +39,7 @@ struct Fraction {
 };
 
 // The 192 bits of 2/π from the bit of weight 2^-(first + 1) on; first ≥ −64.
-inline Fraction window(int first) {
+inline Fraction two_over_pi_from(int first) {
     const int bit = first + 64, index = bit / 32, shift = bit % 32;
     Fraction w;
     for (int i = 0; i < 6; ++i) {
@@ -50,7 +50,7 @@ inline Fraction window(int first) {
     return w;
 }
 // The product modulo 1.
-inline Fraction times(Fraction w, std::uint64_t m) {
+inline Fraction multiply_fraction(Fraction w, std::uint64_t m) {
     const std::uint64_t part[2] = {m & 0xffffffffu, m >> 32};
     Fraction p = {};
     for (int j = 0; j < 2; ++j) {
@@ -63,11 +63,11 @@ inline Fraction times(Fraction w, std::uint64_t m) {
     }
     return p;
 }
-inline Fraction doubled(Fraction f) {
+inline Fraction double_fraction(Fraction f) {
     for (int i = 5; i >= 0; --i) f.word[i] = f.word[i] << 1 | (i > 0 ? f.word[i - 1] >> 31 : 0);
     return f;
 }
-inline Fraction negated(Fraction f) {
+inline Fraction negate_fraction(Fraction f) {
     std::uint64_t carry = 1;
     for (int i = 0; i < 6; ++i) {
         carry += std::uint32_t(~f.word[i]);
@@ -86,18 +86,18 @@ inline FarAngle reduce_far(double x) {
     const int exponent = int(bits >> 52) - 1075;  // x = m 2^exponent
     const std::uint64_t m = (bits & 0xfffffffffffffu) | 0x10000000000000u;
     // Bits of 2/π that make multiples of four quadrants are left out: the product is (x 2/π mod 4) / 4.
-    far::Fraction f = far::times(far::window(exponent - 2), m);
+    far::Fraction f = far::multiply_fraction(far::two_over_pi_from(exponent - 2), m);
     int quadrant = int(f.word[5] >> 30);
-    f = far::doubled(far::doubled(f));
+    f = far::double_fraction(far::double_fraction(f));
     const bool beyond_half = f.word[5] >> 31;
     if (beyond_half) {
-        f = far::negated(f);
+        f = far::negate_fraction(f);
         ++quadrant;
     }
     constexpr double half_place = 0x1p-53;  // of a number between one half and one
     double unit = beyond_half ? -half_place : half_place;
     while (!(f.word[5] >> 31)) {
-        f = far::doubled(f);
+        f = far::double_fraction(f);
         unit *= 0.5;
     }
     // The leading 53 bits and the 53 that follow, times π/2 with both of its parts.

@@ -107,7 +107,7 @@ CSPACE_INLINE FloatRegister<N> shift_bits_left(FloatRegister<N> a) {
                       bits_as<float>(bits_as<std::uint32_t>(a.v[i]) << count));
 }
 template <int N>
-CSPACE_INLINE FloatRegister<N> select(MaskRegister<N> m, FloatRegister<N> yes, FloatRegister<N> no) {
+CSPACE_INLINE FloatRegister<N> select_lanes(MaskRegister<N> m, FloatRegister<N> yes, FloatRegister<N> no) {
 #if defined(CSPACE_X86_REGISTERS) && defined(__AVX__)
     if constexpr (N == 8) return {_mm256_blendv_ps(no.v, yes.v, (__m256)m.m)};
 #endif
@@ -129,11 +129,11 @@ CSPACE_INLINE unsigned bits_of(MaskRegister<4> m) { return unsigned(_mm_movemask
 #else
 template <int N>
 CSPACE_INLINE FloatRegister<N> min(FloatRegister<N> a, FloatRegister<N> b) {
-    return select(a < b, a, b);
+    return select_lanes(a < b, a, b);
 }
 template <int N>
 CSPACE_INLINE FloatRegister<N> max(FloatRegister<N> a, FloatRegister<N> b) {
-    return select(a > b, a, b);
+    return select_lanes(a > b, a, b);
 }
 template <int N>
 CSPACE_INLINE FloatRegister<N> sqrt(FloatRegister<N> a) {
@@ -177,8 +177,8 @@ template <int count>
 CSPACE_INLINE Floats shift_bits_left(Floats a) {
     return {shift_bits_left<count>(a.low), shift_bits_left<count>(a.high)};
 }
-CSPACE_INLINE Floats select(FloatMask m, Floats yes, Floats no) {
-    return {select(m.low, yes.low, no.low), select(m.high, yes.high, no.high)};
+CSPACE_INLINE Floats select_lanes(FloatMask m, Floats yes, Floats no) {
+    return {select_lanes(m.low, yes.low, no.low), select_lanes(m.high, yes.high, no.high)};
 }
 CSPACE_INLINE Floats sqrt(Floats a) { return {sqrt(a.low), sqrt(a.high)}; }
 CSPACE_INLINE unsigned bits_of(FloatMask m) { return bits_of(m.low) | bits_of(m.high) << 4; }

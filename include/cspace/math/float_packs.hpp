@@ -29,11 +29,11 @@ using FloatPack = FloatRegister<float_register_lanes>;
 #define CSPACE_WITH_SCALAR(Result, op)                                 \
     template <int N>                                                   \
     CSPACE_INLINE Result<N> operator op(FloatRegister<N> a, float b) { \
-        return a op fill<FloatRegister<N>>(b);                         \
+        return a op fill_lanes<FloatRegister<N>>(b);                   \
     }                                                                  \
     template <int N>                                                   \
     CSPACE_INLINE Result<N> operator op(float a, FloatRegister<N> b) { \
-        return fill<FloatRegister<N>>(a) op b;                         \
+        return fill_lanes<FloatRegister<N>>(a) op b;                   \
     }
 CSPACE_WITH_SCALAR(FloatRegister, +)
 CSPACE_WITH_SCALAR(FloatRegister, -)
@@ -64,7 +64,7 @@ template <int N>
 CSPACE_INLINE MaskRegister<N> operator==(FloatRegister<N> a, float b) {
     MaskRegister<N> r;
 #if CSPACE_VECTOR_EXTENSIONS
-    r.m = typename MaskRegister<N>::Raw(a.v == fill<FloatRegister<N>>(b).v);
+    r.m = typename MaskRegister<N>::Raw(a.v == fill_lanes<FloatRegister<N>>(b).v);
 #else
     for (int i = 0; i < N; ++i) r.m[i] = -std::int32_t(a.v[i] == b);
 #endif

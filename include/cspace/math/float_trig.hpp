@@ -22,8 +22,8 @@ CSPACE_INLINE void sin_cos(F x, F& sine, F& cosine) {
     // The last bit of k swaps the two; bit 1 is the sign of the sine, the sum of both that of the cosine.
     const F low = shift_bits_left<31>(shifted), high = and_bits(shift_bits_left<30>(shifted), 0x80000000u);
     const auto is_odd = xor_bits(low, fill_floats<F>(1.0f)) < 0.0f;
-    sine = xor_bits(select(is_odd, c, s), high);
-    cosine = xor_bits(select(is_odd, s, c), xor_bits(low, high));
+    sine = xor_bits(select_lanes(is_odd, c, s), high);
+    cosine = xor_bits(select_lanes(is_odd, s, c), xor_bits(low, high));
 }
 
 }  // namespace cspace::inline CSPACE_ISA

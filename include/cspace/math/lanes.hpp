@@ -3,7 +3,8 @@
 // A kernel is a template over a scalar V. With V = double it serves one call; with V = Pack<native_width> it
 // serves as many at once. Everything a kernel may do with V is in this file (arithmetic, comparison,
 // selection), in rows.hpp (memory) or in trig.hpp (angles); each operation exists for both.
-// How a pack is kept is the business of registers.hpp: read lanes with lane(), write them with set_lane().
+// How a pack is kept is the business of registers.hpp: read lanes with get_lane(), write them with
+// set_lane().
 #pragma once
 
 #include <cmath>
@@ -40,7 +41,7 @@ namespace cspace::inline CSPACE_ISA {
 // --- filling and reading lanes -------------------------------------------------------------------------
 // GCC broadcasts a vector made of one number; of a loop over eight lanes it makes eight instructions.
 template <class V, class S, int... lanes>
-CSPACE_INLINE V repeat(S x, std::integer_sequence<int, lanes...>) {
+CSPACE_INLINE V repeat_scalar(S x, std::integer_sequence<int, lanes...>) {
 #if CSPACE_VECTOR_EXTENSIONS
     return {typename V::Raw{((void)lanes, x)...}};
 #else
@@ -48,30 +49,30 @@ CSPACE_INLINE V repeat(S x, std::integer_sequence<int, lanes...>) {
 #endif
 }
 template <class V>
-CSPACE_INLINE V fill(double x) {
+CSPACE_INLINE V fill_lanes(double x) {
     if constexpr (Lanes<V>::count == 1) {
         return x;
     } else if constexpr (std::is_same_v<V, Pack<Lanes<V>::count>> && is_split<Lanes<V>::count>) {
-        const auto half = fill<Pack<Lanes<V>::count / 2>>(x);
+        const auto half = fill_lanes<Pack<Lanes<V>::count / 2>>(x);
         return {half, half};
     } else {
-        return repeat<V>(scalar_of<V>(x), std::make_integer_sequence<int, Lanes<V>::count>());
+        return repeat_scalar<V>(scalar_of<V>(x), std::make_integer_sequence<int, Lanes<V>::count>());
     }
 }
-CSPACE_INLINE double lane(double x, int) { return x; }
-CSPACE_INLINE bool lane(bool m, int) { return m; }
+CSPACE_INLINE double get_lane(double x, int) { return x; }
+CSPACE_INLINE bool get_lane(bool m, int) { return m; }
 template <int N>
-CSPACE_INLINE double lane(Pack<N> x, int i) {
+CSPACE_INLINE double get_lane(Pack<N> x, int i) {
     if constexpr (is_split<N>) {
-        return i < N / 2 ? lane(x.low, i) : lane(x.high, i - N / 2);
+        return i < N / 2 ? get_lane(x.low, i) : get_lane(x.high, i - N / 2);
     } else {
         return x.v[i];
     }
 }
 template <int N>
-CSPACE_INLINE bool lane(Mask<N> m, int i) {
+CSPACE_INLINE bool get_lane(Mask<N> m, int i) {
     if constexpr (is_split<N>) {
-        return i < N / 2 ? lane(m.low, i) : lane(m.high, i - N / 2);
+        return i < N / 2 ? get_lane(m.low, i) : get_lane(m.high, i - N / 2);
     } else {
         return m.m[i] != 0;
     }
@@ -129,8 +130,8 @@ CSPACE_INLINE Pack<N> mul_add(Pack<N> a, Pack<N> b, Pack<N> c) {
     return {mul_add(a.low, b.low, c.low), mul_add(a.high, b.high, c.high)};
 }
 template <int N, when<is_split<N>> = 0>
-CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, Pack<N> no) {
-    return {select(m.low, yes.low, no.low), select(m.high, yes.high, no.high)};
+CSPACE_INLINE Pack<N> select_lanes(Mask<N> m, Pack<N> yes, Pack<N> no) {
+    return {select_lanes(m.low, yes.low, no.low), select_lanes(m.high, yes.high, no.high)};
 }
 template <int count, int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> shift_bits_left(Pack<N> a) {
@@ -152,11 +153,11 @@ CSPACE_INLINE unsigned bits_of(Mask<N> m) {
 #define CSPACE_WITH_NUMBER(Result, op)                         \
     template <int N>                                           \
     CSPACE_INLINE Result<N> operator op(Pack<N> a, double b) { \
-        return a op fill<Pack<N>>(b);                          \
+        return a op fill_lanes<Pack<N>>(b);                    \
     }                                                          \
     template <int N>                                           \
     CSPACE_INLINE Result<N> operator op(double a, Pack<N> b) { \
-        return fill<Pack<N>>(a) op b;                          \
+        return fill_lanes<Pack<N>>(a) op b;                    \
     }
 #define CSPACE_ASSIGNMENT(op)                                         \
     CSPACE_WITH_NUMBER(Pack, op)                                      \
@@ -181,16 +182,16 @@ CSPACE_WITH_NUMBER(Mask, !=)
 #undef CSPACE_ASSIGNMENT
 #undef CSPACE_WITH_NUMBER
 template <int N>
-CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, double no) {
-    return select(m, yes, fill<Pack<N>>(no));
+CSPACE_INLINE Pack<N> select_lanes(Mask<N> m, Pack<N> yes, double no) {
+    return select_lanes(m, yes, fill_lanes<Pack<N>>(no));
 }
 template <int N>
-CSPACE_INLINE Pack<N> select(Mask<N> m, double yes, Pack<N> no) {
-    return select(m, fill<Pack<N>>(yes), no);
+CSPACE_INLINE Pack<N> select_lanes(Mask<N> m, double yes, Pack<N> no) {
+    return select_lanes(m, fill_lanes<Pack<N>>(yes), no);
 }
 
 // --- the same for one double -----------------------------------------------------------------------------
-CSPACE_INLINE double select(bool m, double yes, double no) { return m ? yes : no; }
+CSPACE_INLINE double select_lanes(bool m, double yes, double no) { return m ? yes : no; }
 CSPACE_INLINE unsigned bits_of(bool m) { return m; }
 CSPACE_INLINE double sqrt(double x) { return std::sqrt(x); }
 CSPACE_INLINE double min(double a, double b) { return a < b ? a : b; }
@@ -222,17 +223,17 @@ CSPACE_INLINE bool all(Mask<N> m) {
 }
 // x where the mask is set, else +0.
 template <class V>
-CSPACE_INLINE V where(mask_of<V> m, V x) {
-    return select(m, x, fill<V>(0.0));
+CSPACE_INLINE V keep_lanes(mask_of<V> m, V x) {
+    return select_lanes(m, x, fill_lanes<V>(0.0));
 }
 // The sign bit alone, +0 or −0; bit_xor with it multiplies by the sign.
 template <class V>
 CSPACE_INLINE V sign_bit(V x) {
-    return bit_and(x, fill<V>(-0.0));
+    return bit_and(x, fill_lanes<V>(-0.0));
 }
 template <class V>
 CSPACE_INLINE V abs(V x) {
-    return bit_and_not(x, fill<V>(-0.0));
+    return bit_and_not(x, fill_lanes<V>(-0.0));
 }
 template <class V>
 CSPACE_INLINE V copysign(V magnitude, V sign) {
@@ -242,8 +243,8 @@ CSPACE_INLINE V copysign(V magnitude, V sign) {
 // The nearest integer, ties to even. Adding 2⁵² removes the fraction; larger numbers have none.
 template <class V>
 CSPACE_INLINE V round(V x) {
-    const V big = fill<V>(4503599627370496.0), magnitude = abs(x);
-    return bit_or(select(magnitude < big, (magnitude + big) - big, magnitude), sign_bit(x));
+    const V big = fill_lanes<V>(4503599627370496.0), magnitude = abs(x);
+    return bit_or(select_lanes(magnitude < big, (magnitude + big) - big, magnitude), sign_bit(x));
 }
 #endif
 

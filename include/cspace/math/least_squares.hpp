@@ -9,14 +9,14 @@ namespace cspace::inline CSPACE_ISA {
 // The largest magnitude of n numbers.
 template <class V>
 CSPACE_INLINE V largest_of(const V* x, int n) {
-    V largest = fill<V>(0.0);
+    V largest = fill_lanes<V>(0.0);
     for (int i = 0; i < n; ++i) largest = max(largest, abs(x[i]));
     return largest;
 }
 // The factor that shortens a step with this largest entry to a stride.
 template <class V>
-CSPACE_INLINE V shortening(V largest, double stride) {
-    return select(largest > stride, stride / largest, fill<V>(1.0));
+CSPACE_INLINE V shortening_factor(V largest, double stride) {
+    return select_lanes(largest > stride, stride / largest, fill_lanes<V>(1.0));
 }
 
 // dx (n,) with (JᵀJ + λ I) dx = Jᵀ e, for the first m rows of J. loose[j] is 1, or 0 for an unknown that must
@@ -28,12 +28,12 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[rows][columns], const 
     if (n <= m) {
         for (int i = 0; i < n; ++i) {
             for (int j = i; j < n; ++j) {
-                V sum = fill<V>(0.0);
+                V sum = fill_lanes<V>(0.0);
                 for (int r = 0; r < m; ++r) sum = mul_add(J[r][i], J[r][j], sum);
                 M[i][j] = loose[i] * loose[j] * sum;
             }
             M[i][i] = M[i][i] + damping + (1.0 - loose[i]);
-            b[i] = fill<V>(0.0);
+            b[i] = fill_lanes<V>(0.0);
             for (int r = 0; r < m; ++r) b[i] = mul_add(J[r][i], e[r], b[i]);
             b[i] = loose[i] * b[i];
         }
@@ -43,7 +43,7 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[rows][columns], const 
     }
     for (int r = 0; r < m; ++r) {
         for (int t = r; t < m; ++t) {
-            V sum = fill<V>(0.0);
+            V sum = fill_lanes<V>(0.0);
             for (int j = 0; j < n; ++j) sum = mul_add(loose[j] * J[r][j], J[t][j], sum);
             M[r][t] = sum;
         }
@@ -52,7 +52,7 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[rows][columns], const 
     }
     solve_positive(M, m, b);
     for (int j = 0; j < n; ++j) {
-        dx[j] = fill<V>(0.0);
+        dx[j] = fill_lanes<V>(0.0);
         for (int r = 0; r < m; ++r) dx[j] = mul_add(J[r][j], b[r], dx[j]);
         dx[j] = loose[j] * dx[j];
     }
@@ -86,7 +86,7 @@ double descend_damped(const Problem& problem, Unknown* x, Place& at, Rule rule, 
             rule.reject();
             continue;
         }
-        const double largest = largest_of(step, n), keep = shortening(largest, rule.stride);
+        const double largest = largest_of(step, n), keep = shortening_factor(largest, rule.stride);
         Unknown to[size];
         Place there;
         for (int i = 0; i < n; ++i) to[i] = problem.add_step(x[i], keep * step[i]);

@@ -36,8 +36,8 @@ CSPACE_INLINE void lift_pivot(V (&A)[n][n], V (&b)[n], int k, int i) {
     }
     const auto swap = [&](V& upper, V& lower) {
         const V kept = upper;
-        upper = select(larger, lower, upper);
-        lower = select(larger, kept, lower);
+        upper = select_lanes(larger, lower, upper);
+        lower = select_lanes(larger, kept, lower);
     };
     for (int j = k; j < n; ++j) swap(A[k][j], A[i][j]);
     swap(b[k], b[i]);
@@ -46,7 +46,7 @@ CSPACE_INLINE void lift_pivot(V (&A)[n][n], V (&b)[n], int k, int i) {
 // 1/x, and 1 in the lanes where x is zero.
 template <class V>
 CSPACE_INLINE V safe_inverse(V x) {
-    return 1.0 / select(x == 0.0, fill<V>(1.0), x);
+    return 1.0 / select_lanes(x == 0.0, fill_lanes<V>(1.0), x);
 }
 // Whether no diagonal entry is lost in the rounding of the largest.
 template <int n, class V>
@@ -84,7 +84,7 @@ CSPACE_INLINE void factor_qr(V (&A)[m][n], V (&diagonal)[reduced], V (&factor)[r
 }
 // b := (I − factor v_k v_kᵀ) b, of m numbers.
 template <class Matrix, class V>
-CSPACE_INLINE void reflect(const Matrix& A, int m, int k, V factor, V* b) {
+CSPACE_INLINE void reflect_vector(const Matrix& A, int m, int k, V factor, V* b) {
     V along = A[k][k] * b[k];
     for (int i = k + 1; i < m; ++i) along = mul_add(A[i][k], b[i], along);
     along = along * factor;
@@ -128,11 +128,11 @@ CSPACE_INLINE mask_of<V> solve_linear(V (&A)[n][n], V (&b)[n]) {
 template <class Matrix>
 CSPACE_INLINE auto factor_ldl(Matrix& A, int n, double floor = 0) {
     using V = std::remove_reference_t<decltype(A[0][0])>;
-    mask_of<V> definite = fill<V>(1.0) > 0.0;
+    mask_of<V> definite = fill_lanes<V>(1.0) > 0.0;
     for (int k = 0; k < n; ++k) {
         const mask_of<V> positive = A[k][k] > floor;
         definite = definite && positive;
-        A[k][k] = where(positive, linear::safe_inverse(A[k][k]));
+        A[k][k] = keep_lanes(positive, linear::safe_inverse(A[k][k]));
         for (int i = k + 1; i < n; ++i) {
             const V multiple = -A[k][i] * A[k][k];
             for (int j = i; j < n; ++j) A[i][j] = mul_add(multiple, A[k][j], A[i][j]);

@@ -42,8 +42,9 @@ template <class V>
 CSPACE_INLINE V product_difference(V a, V b, V c, V d) {
     V r;
     for (int i = 0; i < Lanes<V>::count; ++i) {
-        const double cd = lane(c, i) * lane(d, i), lost = std::fma(-lane(c, i), lane(d, i), cd);
-        set_lane(r, i, std::fma(lane(a, i), lane(b, i), -cd) + lost);
+        const double cd = get_lane(c, i) * get_lane(d, i),
+                     lost = std::fma(-get_lane(c, i), get_lane(d, i), cd);
+        set_lane(r, i, std::fma(get_lane(a, i), get_lane(b, i), -cd) + lost);
     }
     return r;
 }
@@ -52,17 +53,17 @@ CSPACE_INLINE V product_difference(V a, V b, V c, V d) {
 // measured.
 template <class V>
 CSPACE_INLINE QuadraticRoots<V> quadratic_roots(V a, V b, V c, double unit = 0.0) {
-    const V zero = fill<V>(0.0), one = fill<V>(1.0), h = 0.5 * b;
+    const V zero = fill_lanes<V>(0.0), one = fill_lanes<V>(1.0), h = 0.5 * b;
     const V inside = product_difference(h, h, a, c);
     const V root = sqrt(max(inside, zero));
     const V q = -(h + copysign(root, h)), middle = -h / a;
-    const V distant = q / a, near = select(q == zero, zero, c / select(q == zero, one, q));
-    const V band = tolerance::double_root * max(abs(middle), fill<V>(unit)) * a;
+    const V distant = q / a, near = select_lanes(q == zero, zero, c / select_lanes(q == zero, one, q));
+    const V band = tolerance::double_root * max(abs(middle), fill_lanes<V>(unit)) * a;
     QuadraticRoots<V> r;
     r.two = inside > zero;
     r.real = inside > -(band * band) || inside == zero;
-    r.x[0] = select(r.two, min(distant, near), middle);
-    r.x[1] = select(r.two, max(distant, near), middle);
+    r.x[0] = select_lanes(r.two, min(distant, near), middle);
+    r.x[1] = select_lanes(r.two, max(distant, near), middle);
     return r;
 }
 
@@ -80,7 +81,7 @@ struct Value {
 template <int n>
 inline constexpr double evaluation_error = 2.0 * n * std::numeric_limits<double>::epsilon();
 template <int n>
-CSPACE_INLINE Value evaluate(const Uncertain<n>& p, double x) {
+CSPACE_INLINE Value evaluate_polynomial(const Uncertain<n>& p, double x) {
     double value = p.a[n], slope = 0, bend = 0, noise = p.error[n];
     for (int i = n - 1; i >= 0; --i) {
         bend = bend * x + slope;
@@ -93,7 +94,7 @@ CSPACE_INLINE Value evaluate(const Uncertain<n>& p, double x) {
 
 // The number in the middle of the list of all floating-point numbers between lower and upper: 64 halvings
 // exhaust any interval, whatever its scale.
-inline double middle(double lower, double upper) {
+inline double middle_number(double lower, double upper) {
     const double low = std::fabs(lower), high = std::fabs(upper);
     if (lower < 0 && upper > 0) return 0.0;
     if (low < 4 * high && high < 4 * low) return 0.5 * (lower + upper);
@@ -109,9 +110,9 @@ inline double middle(double lower, double upper) {
 // The root between lower and upper, where the polynomial has the signs −rising and +rising.
 template <int n>
 double bracketed_root(const Uncertain<n>& polynomial, double lower, double upper, double rising) {
-    double x = middle(lower, upper), last_step = upper - lower;
+    double x = middle_number(lower, upper), last_step = upper - lower;
     for (int i = 0; i < 200; ++i) {
-        const Value p = evaluate(polynomial, x);
+        const Value p = evaluate_polynomial(polynomial, x);
         if (p.value == 0) return x;
         (p.value * rising < 0 ? lower : upper) = x;
         const double halley = p.slope * p.slope - p.value * p.bend;
@@ -120,7 +121,8 @@ double bracketed_root(const Uncertain<n>& polynomial, double lower, double upper
         const bool rests = next == x;  // at a root, or where the slope vanishes and Halley's step with it
         if (rests && std::fabs(p.value) <= p.noise) return x;
         const bool stalls = std::fabs(step) > 0.5 * std::fabs(last_step);
-        if (rests || !(next > lower && next < upper) || (stalls && i % 3 == 2)) next = middle(lower, upper);
+        if (rests || !(next > lower && next < upper) || (stalls && i % 3 == 2))
+            next = middle_number(lower, upper);
         if (next == lower || next == upper) return next;
         last_step = next - x;
         x = next;
@@ -128,7 +130,7 @@ double bracketed_root(const Uncertain<n>& polynomial, double lower, double upper
     return x;
 }
 
-inline void append(RealRoots& roots, double x, int multiplicity) {
+inline void append_root(RealRoots& roots, double x, int multiplicity) {
     roots.x[roots.count] = x;
     roots.multiplicity[roots.count++] = multiplicity;
 }
@@ -136,7 +138,7 @@ inline void append(RealRoots& roots, double x, int multiplicity) {
 // The sign of the polynomial at a root of its derivative: 0 where it makes a multiple root.
 template <int n>
 int sign_at_turning_point(const Uncertain<n>& polynomial, double x, double unit) {
-    const Value p = evaluate(polynomial, x);
+    const Value p = evaluate_polynomial(polynomial, x);
     const double band = tolerance::double_root * std::fmax(std::fabs(x), unit);
     const bool conjugate_pair = p.value * p.bend > 0 && std::fabs(p.value) <= std::fabs(p.bend) * band * band;
     if (std::fabs(p.value) <= p.noise || conjugate_pair) return 0;
@@ -163,11 +165,11 @@ RealRoots roots_between(const Uncertain<n>& p, const RealRoots& turns, double bo
         }
         if (many > 0) {  // the next turning point, not yet passed, has the sign of this side
             const int crosses = sign != before;
-            append(roots, sum / many, many + 1 + ((many + 1) % 2 != crosses));
+            append_root(roots, sum / many, many + 1 + ((many + 1) % 2 != crosses));
             lower = turns.x[i - 1];
         } else {
             const double x = i < turns.count ? turns.x[i] : bound;
-            if (sign != before) append(roots, bracketed_root(p, lower, x, sign), 1);
+            if (sign != before) append_root(roots, bracketed_root(p, lower, x, sign), 1);
             lower = x;
             ++i;
         }
@@ -180,9 +182,9 @@ inline RealRoots quadratic(const Uncertain<2>& p, double unit) {
     RealRoots roots;
     const QuadraticRoots<double> r = quadratic_roots(p.a[2], p.a[1], p.a[0], unit);
     if (r.two)
-        append(roots, r.x[0], 1), append(roots, r.x[1], 1);
+        append_root(roots, r.x[0], 1), append_root(roots, r.x[1], 1);
     else if (r.real)
-        append(roots, r.x[0], 2);
+        append_root(roots, r.x[0], 2);
     return roots;
 }
 
@@ -191,7 +193,7 @@ template <int n>
 RealRoots bounded_roots(const Uncertain<n>& p, double bound, double unit) {
     if constexpr (n == 1) {
         RealRoots roots;
-        append(roots, -p.a[0] / p.a[1], 1);
+        append_root(roots, -p.a[0] / p.a[1], 1);
         return roots;
     } else if constexpr (n == 2) {
         return quadratic(p, unit);

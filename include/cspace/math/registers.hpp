@@ -209,7 +209,7 @@ CSPACE_INLINE Mask<N> lowest_bit(Pack<N> a) {
     CSPACE_INLINE Pack<N> mul_add(Pack<N> a, Pack<N> b, Pack<N> c) {                                   \
         return {CSPACE_X86_FMA(prefix, a, b, c)};                                                      \
     }                                                                                                  \
-    CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, Pack<N> no) {                                 \
+    CSPACE_INLINE Pack<N> select_lanes(Mask<N> m, Pack<N> yes, Pack<N> no) {                           \
         return {CSPACE_X86_SELECT(prefix, D, m, yes, no)};                                             \
     }
 #if defined(__FMA__)
@@ -265,12 +265,12 @@ CSPACE_BITS(bit_and_not, &~)
 #undef CSPACE_BITS
 
 template <int N, when<!is_split<N>> = 0>
-CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, Pack<N> no) {
+CSPACE_INLINE Pack<N> select_lanes(Mask<N> m, Pack<N> yes, Pack<N> no) {
     using Bits [[maybe_unused]] = decltype(Mask<N>::m);
     CSPACE_EACH_LANE(Pack, v, (m.m & (Bits)yes.v) | (~m.m & (Bits)no.v), m.m[i] ? yes.v[i] : no.v[i])
 }
-CSPACE_REGISTER_OPERATION(Pack, min, Pack) { return select(a < b, a, b); }
-CSPACE_REGISTER_OPERATION(Pack, max, Pack) { return select(a > b, a, b); }
+CSPACE_REGISTER_OPERATION(Pack, min, Pack) { return select_lanes(a < b, a, b); }
+CSPACE_REGISTER_OPERATION(Pack, max, Pack) { return select_lanes(a > b, a, b); }
 template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Pack<N> sqrt(Pack<N> a) {
 #if CSPACE_VECTOR_EXTENSIONS && defined(__ARM_NEON)

@@ -11,27 +11,27 @@ namespace cspace::inline CSPACE_ISA {
 // --- runs: lane k contains values[k]; no alignment is needed
 // ------------------------------------------------
 template <class V>
-CSPACE_INLINE V load(const double* values) {
+CSPACE_INLINE V load_lanes(const double* values) {
     V v;
     std::memcpy(&v, values, sizeof v);
     return v;
 }
 template <class V>
-CSPACE_INLINE void store(double* values, V v) {
+CSPACE_INLINE void store_lanes(double* values, V v) {
     std::memcpy(values, &v, sizeof v);
 }
 // The first `count` lanes alone; when loading, the others repeat the last.
 template <class V>
-CSPACE_INLINE V load(const double* values, int count) {
-    if (count >= Lanes<V>::count) return load<V>(values);
+CSPACE_INLINE V load_lanes(const double* values, int count) {
+    if (count >= Lanes<V>::count) return load_lanes<V>(values);
     V v{};
     for (int k = 0; k < Lanes<V>::count; ++k) set_lane(v, k, values[k < count ? k : count - 1]);
     return v;
 }
 template <class V>
-CSPACE_INLINE void store(double* values, V v, int count) {
-    if (count >= Lanes<V>::count) return store(values, v);
-    for (int k = 0; k < count; ++k) values[k] = lane(v, k);
+CSPACE_INLINE void store_lanes(double* values, V v, int count) {
+    if (count >= Lanes<V>::count) return store_lanes(values, v);
+    for (int k = 0; k < count; ++k) values[k] = get_lane(v, k);
 }
 
 // body(pack, i) for the values from i on, in packs as wide as the registers while more than four are left,
@@ -114,8 +114,8 @@ CSPACE_INLINE void store_column_pair(Pack<N> a, Pack<N> b, double* rows, std::si
 #endif
 #endif
     for (int k = 0; k < N; ++k) {
-        rows[std::size_t(k) * stride] = lane(a, k);
-        rows[std::size_t(k) * stride + 1] = lane(b, k);
+        rows[std::size_t(k) * stride] = get_lane(a, k);
+        rows[std::size_t(k) * stride + 1] = get_lane(b, k);
     }
 }
 
@@ -141,7 +141,7 @@ CSPACE_INLINE void load_rows(const double* rows, std::size_t stride, int count, 
         }
     }
     for (; j < width; ++j) {
-        values[j] = fill<V>(rows[j]);
+        values[j] = fill_lanes<V>(rows[j]);
         for (int k = 1; k < Lanes<V>::count; ++k) {
             set_lane(values[j], k, rows[std::size_t(k < count ? k : count - 1) * stride + std::size_t(j)]);
         }
@@ -163,7 +163,7 @@ CSPACE_INLINE void store_rows(const V* values, int width, double* rows, std::siz
     }
     for (; j < width; ++j) {
         for (int k = 0; k < Lanes<V>::count; ++k) {
-            if (k < count) rows[std::size_t(k) * stride + std::size_t(j)] = lane(values[j], k);
+            if (k < count) rows[std::size_t(k) * stride + std::size_t(j)] = get_lane(values[j], k);
         }
     }
 }

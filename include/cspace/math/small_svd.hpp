@@ -32,7 +32,7 @@ inline double dot_n(const double* a, const double* b, int n) {
 
 // The projection of v onto the span of the orthonormal vectors basis[0 … k), of unit length. Returns its
 // length before that.
-inline double project(const double* const* basis, int k, int n, double* v) {
+inline double project_vector(const double* const* basis, int k, int n, double* v) {
     double part[16];
     for (int j = 0; j < k; ++j) part[j] = dot_n(basis[j], v, n);
     for (int i = 0; i < n; ++i) {
@@ -56,7 +56,7 @@ template <int s, int W, int R>
 bool turn_pairs(SvdLanes<W, R>& m, double nothing) {
     constexpr double tolerance2 = tolerance::last_digits * tolerance::last_digits;
     const int height = R <= W ? R : m.height;  // a constant for small matrices; the rows past A are zero
-    Pack<W> other[R], own2 = fill<Pack<W>>(0), both = own2, order = own2;
+    Pack<W> other[R], own2 = fill_lanes<Pack<W>>(0), both = own2, order = own2;
     for (int k = 0; k < height; ++k) {
         other[k] = swap_lanes<s>(m.row[k]);
         own2 = mul_add(m.row[k], m.row[k], own2);
@@ -68,9 +68,9 @@ bool turn_pairs(SvdLanes<W, R>& m, double nothing) {
     // The tangent p / (d + √(d² + p²)) of the smaller angle; the two of a pair have opposite signs.
     for (int i = 0; i < W; ++i) set_lane(order, i, (i ^ s) > i ? 1 : -1);
     const Pack<W> difference = other2 - own2, p = both + both;
-    const Pack<W> sign = sign_bit(select(difference == 0.0, order, difference)), d = abs(difference);
-    const Pack<W> t = where(apart, bit_xor(p / (d + sqrt(mul_add(d, d, p * p))), sign));
-    const Pack<W> c = 1.0 / sqrt(mul_add(t, t, fill<Pack<W>>(1))), sine = c * t;
+    const Pack<W> sign = sign_bit(select_lanes(difference == 0.0, order, difference)), d = abs(difference);
+    const Pack<W> t = keep_lanes(apart, bit_xor(p / (d + sqrt(mul_add(d, d, p * p))), sign));
+    const Pack<W> c = 1.0 / sqrt(mul_add(t, t, fill_lanes<Pack<W>>(1))), sine = c * t;
     for (int k = 0; k < height; ++k) m.row[k] = c * m.row[k] - sine * other[k];
     for (int k = height; k < m.rows; ++k) m.row[k] = c * m.row[k] - sine * swap_lanes<s>(m.row[k]);
     return true;
@@ -90,7 +90,7 @@ void decompose_on_lanes(SmallSvd<R, C>& m, bool from_v) {
     SvdLanes<W, R> lanes;
     const int height = lanes.height = R <= W ? R : m.rows;
     lanes.rows = height + m.columns;
-    for (int k = 0; k < lanes.rows; ++k) lanes.row[k] = fill<Pack<W>>(0);
+    for (int k = 0; k < lanes.rows; ++k) lanes.row[k] = fill_lanes<Pack<W>>(0);
     double largest2 = 0;
     for (int j = 0; j < m.columns; ++j) {
         Pack<W>& v = lanes.row[height + j];
@@ -99,7 +99,8 @@ void decompose_on_lanes(SmallSvd<R, C>& m, bool from_v) {
         } else {
             set_lane(v, j, 1);
         }
-        for (int k = 0; k < m.rows; ++k) lanes.row[k] = mul_add(fill<Pack<W>>(m.us[j][k]), v, lanes.row[k]);
+        for (int k = 0; k < m.rows; ++k)
+            lanes.row[k] = mul_add(fill_lanes<Pack<W>>(m.us[j][k]), v, lanes.row[k]);
         largest2 = max(largest2, dot_n(m.us[j], m.us[j], m.rows));
     }
     // A column this small against the largest is rounding noise, whose direction never settles.
@@ -107,8 +108,8 @@ void decompose_on_lanes(SmallSvd<R, C>& m, bool from_v) {
     for (int sweep = 0; sweep < 40; ++sweep)
         if (!turn_all_pairs(lanes, nothing, std::make_integer_sequence<int, W - 1>())) break;
     for (int j = 0; j < m.columns; ++j) {
-        for (int k = 0; k < m.rows; ++k) m.us[j][k] = lane(lanes.row[k], j);
-        for (int k = 0; k < m.columns; ++k) m.v[j][k] = lane(lanes.row[height + k], j);
+        for (int k = 0; k < m.rows; ++k) m.us[j][k] = get_lane(lanes.row[k], j);
+        for (int k = 0; k < m.columns; ++k) m.v[j][k] = get_lane(lanes.row[height + k], j);
         m.sigma[j] = std::sqrt(dot_n(m.us[j], m.us[j], m.rows));
     }
 }
@@ -129,7 +130,7 @@ void decompose_wide(SmallSvd<R, C>& m) {
     for (int j = 0; j < columns; ++j) {
         const bool null = j >= m.rows;
         for (int k = 0; k < columns; ++k) m.v[j][k] = null ? k == j : k < m.rows ? m.v[j][k] : 0;
-        for (int k = m.rows - 1; k >= 0; --k) linear::reflect(A, columns, k, factor[k], m.v[j]);
+        for (int k = m.rows - 1; k >= 0; --k) linear::reflect_vector(A, columns, k, factor[k], m.v[j]);
         for (int k = 0; k < m.rows && null; ++k) m.us[j][k] = 0;
         if (null) m.sigma[j] = 0;
     }
@@ -137,7 +138,7 @@ void decompose_wide(SmallSvd<R, C>& m) {
 // On entry us contains the columns of A. from_v: v contains those of a similar matrix, with which it takes
 // fewer turns.
 template <int R, int C>
-CSPACE_NOINLINE void decompose(SmallSvd<R, C>& m, bool from_v = false) {
+CSPACE_NOINLINE void decompose_matrix(SmallSvd<R, C>& m, bool from_v = false) {
     if constexpr (C > 8) {
         if (m.columns > 8) return decompose_wide(m);
     }

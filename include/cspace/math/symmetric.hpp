@@ -25,7 +25,8 @@ CSPACE_INLINE Symmetric3<V> operator+(const Symmetric3<V>& A, const Symmetric3<V
 }
 template <class V, class S>
 CSPACE_INLINE Symmetric3<V> fill_symmetric(const Symmetric3<S>& A) {
-    return {fill<V>(A.xx), fill<V>(A.xy), fill<V>(A.xz), fill<V>(A.yy), fill<V>(A.yz), fill<V>(A.zz)};
+    return {fill_lanes<V>(A.xx), fill_lanes<V>(A.xy), fill_lanes<V>(A.xz),
+            fill_lanes<V>(A.yy), fill_lanes<V>(A.yz), fill_lanes<V>(A.zz)};
 }
 // The symmetric part of a matrix that is symmetric but for rounding: its upper triangle.
 template <class V>

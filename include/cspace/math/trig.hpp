@@ -29,26 +29,27 @@ inline constexpr double half_pi = 0x1.921fb54442d18p+0, half_pi_rest = 0x1.1a626
 constexpr int largest_power_of_two(int n) { return n < 2 ? 1 : 2 * largest_power_of_two(n / 2); }
 
 template <int n, class V>
-CSPACE_INLINE V power(V z) {
+CSPACE_INLINE V power_of(V z) {
     if constexpr (n == 1) {
         return z;
     } else {
-        return power<n / 2>(z) * power<n / 2>(z);
+        return power_of<n / 2>(z) * power_of<n / 2>(z);
     }
 }
 // c[0] + c[1] z + … of n coefficients by halves (Estrin 1960): short chains keep every unit busy.
 template <int n, class V>
 CSPACE_INLINE V polynomial(const double* c, V z) {
     if constexpr (n == 1) {
-        return fill<V>(c[0]);
+        return fill_lanes<V>(c[0]);
     } else {
         constexpr int half = largest_power_of_two(n - 1);
-        return mul_add(polynomial<n - half>(c + half, z), power<half>(z), polynomial<half>(c, z));
+        return mul_add(polynomial<n - half>(c + half, z), power_of<half>(z), polynomial<half>(c, z));
     }
 }
 template <int n, class V>
 CSPACE_INLINE V polynomial(const double (&c)[n], V z) {
-    return mul_add(polynomial<n - 1>(&c[1], z), z, fill<V>(c[0]));  // the large first term is rounded once
+    return mul_add(polynomial<n - 1>(&c[1], z), z,
+                   fill_lanes<V>(c[0]));  // the large first term is rounded once
 }
 
 // sin u = u + u³ S(u²) and cos u = 1 − u²/2 + u⁴ C(u²) for |u| ≤ π/4; relative error 2⁻⁵⁷, absolute 2⁻⁶⁴.
@@ -84,23 +85,23 @@ inline constexpr double shift = 0x1.8p+52;  // adding it leaves the nearest inte
 // right to 2⁻⁵⁶.
 inline constexpr double cheap_range = 1e5;
 template <class V>
-CSPACE_INLINE Reduced<V> reduce(V magnitude) {
+CSPACE_INLINE Reduced<V> reduce_angle(V magnitude) {
     constexpr double part_1 = 0x1.921fb54440000p+0, part_2 = 0x1.68c234c4c0000p-39,
                      part_3 = 0x1.98a2e03707345p-77;
     constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
-    const V shifted = mul_add(magnitude, fill<V>(two_over_pi), fill<V>(shift));
+    const V shifted = mul_add(magnitude, fill_lanes<V>(two_over_pi), fill_lanes<V>(shift));
     const V k = shifted - shift;
     const V t = magnitude - k * part_1;
     const V w = k * part_2;
     const V u = t - w;
-    return {u, mul_add(k, fill<V>(-part_3), (t - u) - w), shifted};
+    return {u, mul_add(k, fill_lanes<V>(-part_3), (t - u) - w), shifted};
 }
 
 // Puts right the lanes beyond the cheap range; infinities and NaN become NaN.
 template <class V>
 CSPACE_COLD Reduced<V> mend(V magnitude, Reduced<V> r) {
     for (int i = 0; i < Lanes<V>::count; ++i) {
-        const double x = lane(magnitude, i);
+        const double x = get_lane(magnitude, i);
         if (x <= cheap_range) continue;
         const FarAngle far = std::isfinite(x) ? reduce_far(x) : FarAngle{x - x, 0.0, 0};
         set_lane(r.u, i, far.u);
@@ -113,7 +114,7 @@ CSPACE_COLD Reduced<V> mend(V magnitude, Reduced<V> r) {
 template <class V>
 CSPACE_INLINE void sincos_lanes(V x, V& s, V& c) {
     const V magnitude = abs(x);
-    Reduced<V> r = reduce(magnitude);
+    Reduced<V> r = reduce_angle(magnitude);
     if (!all(magnitude <= cheap_range)) r = mend(magnitude, r);
 
     const V u = r.u, z = u * u, half = 0.5 * z;
@@ -126,8 +127,8 @@ CSPACE_INLINE void sincos_lanes(V x, V& s, V& c) {
     // The quadrant k mod 4 chooses the function by its low bit and the signs by both.
     const auto odd = lowest_bit(r.shifted);
     const V second_bit = shift_bits_left<62>(r.shifted), first_bit = shift_bits_left<63>(r.shifted);
-    s = bit_xor(select(odd, cosine_u, sine_u), sign_bit(bit_xor(second_bit, x)));
-    c = bit_xor(select(odd, sine_u, cosine_u), sign_bit(bit_xor(second_bit, first_bit)));
+    s = bit_xor(select_lanes(odd, cosine_u, sine_u), sign_bit(bit_xor(second_bit, x)));
+    c = bit_xor(select_lanes(odd, sine_u, cosine_u), sign_bit(bit_xor(second_bit, first_bit)));
 }
 
 template <class V>
@@ -137,16 +138,17 @@ CSPACE_INLINE V atan2_lanes(V y, V x) {
     // A NaN in either goes into the quotient: min and max return their second argument then.
     const V small = min(height, width), large = max(width, height);
     V t = small / large;
-    t = select(small == large, where(large != 0.0, fill<V>(1.0)), t);  // 0/0 counts as 0, ∞/∞ as 1
+    t = select_lanes(small == large, keep_lanes(large != 0.0, fill_lanes<V>(1.0)),
+                     t);  // 0/0 counts as 0, ∞/∞ as 1
     const V z = t * t;
 
     // The angle from the positive x axis is B π/2 ± atan t: B = 1 where steep, else 0 or 2 by the sign of x.
-    const V one = fill<V>(1.0);
-    const V B = 1.0 - where(!steep, copysign(one, x));
-    const V sign = bit_xor(where(steep, fill<V>(-0.0)), sign_bit(x));
+    const V one = fill_lanes<V>(1.0);
+    const V B = 1.0 - keep_lanes(!steep, copysign(one, x));
+    const V sign = bit_xor(keep_lanes(steep, fill_lanes<V>(-0.0)), sign_bit(x));
     const V signed_t = bit_xor(t, sign);
     const V low = mul_add(signed_t * z, polynomial(arctangent, z), B * half_pi_rest);
-    return bit_or(mul_add(B, fill<V>(half_pi), signed_t + low), sign_bit(y));
+    return bit_or(mul_add(B, fill_lanes<V>(half_pi), signed_t + low), sign_bit(y));
 }
 
 // asin |x| = p + cubed B(z), or its complement doubled where |x| > 1/2: z = p², there p²/4 = (1 − |x|)/2.
@@ -159,9 +161,9 @@ template <class V>
 CSPACE_INLINE Arcsine<V> arcsine_parts(V x) {
     const V magnitude = abs(x);
     const auto beyond_half = magnitude > 0.5;
-    const V z = select(beyond_half, 0.5 - 0.5 * magnitude, x * x);
+    const V z = select_lanes(beyond_half, 0.5 - 0.5 * magnitude, x * x);
     const V root = sqrt(z);
-    const V p = select(beyond_half, root + root, magnitude);
+    const V p = select_lanes(beyond_half, root + root, magnitude);
     return {beyond_half, p, p * z, polynomial(arcsine, z)};
 }
 
@@ -169,10 +171,10 @@ CSPACE_INLINE Arcsine<V> arcsine_parts(V x) {
 template <class V>
 CSPACE_INLINE V acos_lanes(V x) {
     const Arcsine<V> a = arcsine_parts(x);
-    const V B = 1.0 - where(a.beyond_half, copysign(fill<V>(1.0), x));
-    const V sign = bit_xor(where(!a.beyond_half, fill<V>(-0.0)), sign_bit(x));
+    const V B = 1.0 - keep_lanes(a.beyond_half, copysign(fill_lanes<V>(1.0), x));
+    const V sign = bit_xor(keep_lanes(!a.beyond_half, fill_lanes<V>(-0.0)), sign_bit(x));
     const V low = mul_add(bit_xor(a.cubed, sign), a.factor, B * half_pi_rest);
-    return mul_add(B, fill<V>(half_pi), bit_xor(a.p, sign) + low);
+    return mul_add(B, fill_lanes<V>(half_pi), bit_xor(a.p, sign) + low);
 }
 
 // Beyond a half the sum π/2 − p is kept with its rounding error, since the result has smaller ulps.
@@ -183,7 +185,7 @@ CSPACE_INLINE V asin_lanes(V x) {
     const V lost = (half_pi - high) - a.p;
     const V beyond = high + mul_add(-a.cubed, a.factor, lost + half_pi_rest);
     const V within = mul_add(a.cubed, a.factor, a.p);
-    return bit_or(select(a.beyond_half, beyond, within), sign_bit(x));
+    return bit_or(select_lanes(a.beyond_half, beyond, within), sign_bit(x));
 }
 
 // One double travels in a register of two lanes where there is one.
@@ -196,17 +198,17 @@ template <class V>
 using Carrier = std::conditional_t<Lanes<V>::count == 1, Single, V>;
 
 template <class V>
-CSPACE_INLINE Carrier<V> carry(V x) {
+CSPACE_INLINE Carrier<V> to_carrier(V x) {
     if constexpr (Lanes<V>::count == 1) {
-        return fill<Single>(x);
+        return fill_lanes<Single>(x);
     } else {
         return x;
     }
 }
 template <class V>
-CSPACE_INLINE V deliver(Carrier<V> x) {
+CSPACE_INLINE V from_carrier(Carrier<V> x) {
     if constexpr (Lanes<V>::count == 1) {
-        return lane(x, 0);
+        return get_lane(x, 0);
     } else {
         return x;
     }
@@ -218,24 +220,24 @@ CSPACE_INLINE V deliver(Carrier<V> x) {
 template <class V>
 CSPACE_INLINE void sincos(V x, V& s, V& c) {
     trig::Carrier<V> sine, cosine;
-    trig::sincos_lanes(trig::carry(x), sine, cosine);
-    s = trig::deliver<V>(sine);
-    c = trig::deliver<V>(cosine);
+    trig::sincos_lanes(trig::to_carrier(x), sine, cosine);
+    s = trig::from_carrier<V>(sine);
+    c = trig::from_carrier<V>(cosine);
 }
 // The angle of the vector (x, y) in [−π, π].
 template <class V>
 CSPACE_INLINE V atan2(V y, V x) {
-    return trig::deliver<V>(trig::atan2_lanes(trig::carry(y), trig::carry(x)));
+    return trig::from_carrier<V>(trig::atan2_lanes(trig::to_carrier(y), trig::to_carrier(x)));
 }
 // The angle in [0, π] with cosine x; NaN beyond ±1.
 template <class V>
 CSPACE_INLINE V acos(V x) {
-    return trig::deliver<V>(trig::acos_lanes(trig::carry(x)));
+    return trig::from_carrier<V>(trig::acos_lanes(trig::to_carrier(x)));
 }
 // The angle in [−π/2, π/2] with sine x; NaN beyond ±1.
 template <class V>
 CSPACE_INLINE V asin(V x) {
-    return trig::deliver<V>(trig::asin_lanes(trig::carry(x)));
+    return trig::from_carrier<V>(trig::asin_lanes(trig::to_carrier(x)));
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -31,11 +31,11 @@ struct TrigRoots {
 
 namespace cspace::inline CSPACE_ISA {
 
-inline double evaluate(const TrigPolynomial& f, const Turn<double>& t) {
+inline double evaluate_polynomial(const TrigPolynomial& f, const Turn<double>& t) {
     const Turn<double> twice = t + t;
     return f.a0 + f.a1 * t.c + f.b1 * t.s + f.a2 * twice.c + f.b2 * twice.s;
 }
-inline double slope(const TrigPolynomial& f, const Turn<double>& t) {
+inline double slope_at(const TrigPolynomial& f, const Turn<double>& t) {
     const Turn<double> twice = t + t;
     return f.b1 * t.c - f.a1 * t.s + 2 * (f.b2 * twice.c - f.a2 * twice.s);
 }
@@ -60,12 +60,12 @@ inline TrigPolynomial product(const LinearInTurn& f, const LinearInTurn& g) {
 }
 
 // One Newton step on the circle, kept if it brings f closer to zero.
-inline Turn<double> polished(const TrigPolynomial& f, const Turn<double>& t) {
-    const double value = evaluate(f, t), rise = slope(f, t);
+inline Turn<double> polish_root(const TrigPolynomial& f, const Turn<double>& t) {
+    const double value = evaluate_polynomial(f, t), rise = slope_at(f, t);
     if (rise == 0) return t;
     const double step = -value / rise, length = std::sqrt(1 + step * step);
     const Turn<double> next = t + Turn<double>{1 / length, step / length};
-    return std::fabs(evaluate(f, next)) < std::fabs(value) ? next : t;
+    return std::fabs(evaluate_polynomial(f, next)) < std::fabs(value) ? next : t;
 }
 
 // scale: the size of the numbers the coefficients were made of; f within rounding of it counts as zero.
@@ -85,7 +85,7 @@ inline TrigRoots trig_roots(const TrigPolynomial& f, double scale = 0.0) {
     Turn<double> origin{};
     double largest = -1;
     for (const auto& v : fifths) {
-        const double size = std::fabs(evaluate(f, {v[0], v[1]}));
+        const double size = std::fabs(evaluate_polynomial(f, {v[0], v[1]}));
         if (size > largest) largest = size, origin = {-v[0], -v[1]};
     }
     const TrigPolynomial g = seen_from(origin, f);
@@ -103,7 +103,7 @@ inline TrigRoots trig_roots(const TrigPolynomial& f, double scale = 0.0) {
     for (int i = 0; i < tangents.count; ++i) {
         const double t = tangents.x[i], inverse = 1 / (1 + t * t);
         Turn<double> root = origin + Turn<double>{(1 - t * t) * inverse, 2 * t * inverse};
-        if (tangents.multiplicity[i] == 1) root = polished(f, polished(f, root));
+        if (tangents.multiplicity[i] == 1) root = polish_root(f, polish_root(f, root));
         roots.theta[roots.count] = root;
         roots.multiplicity[roots.count++] = tangents.multiplicity[i];
     }

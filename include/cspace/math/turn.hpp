@@ -17,7 +17,7 @@ namespace cspace::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Turn<V> no_turn() {
-    return {fill<V>(1.0), fill<V>(0.0)};
+    return {fill_lanes<V>(1.0), fill_lanes<V>(0.0)};
 }
 template <class V>
 CSPACE_INLINE Turn<V> turn_by(V angle) {
@@ -29,7 +29,7 @@ CSPACE_INLINE Turn<V> turn_by(V angle) {
 template <class V>
 CSPACE_INLINE V angle_of(const Turn<V>& t) {
     const V a = atan2(t.s, t.c);
-    return select(a <= -pi, fill<V>(pi), a);
+    return select_lanes(a <= -pi, fill_lanes<V>(pi), a);
 }
 template <class V>
 CSPACE_INLINE Turn<V> operator+(const Turn<V>& a, const Turn<V>& b) {
@@ -40,16 +40,16 @@ CSPACE_INLINE Turn<V> operator-(const Turn<V>& a, const Turn<V>& b) {
     return {a.c * b.c + a.s * b.s, a.s * b.c - a.c * b.s};
 }
 template <class V>
-CSPACE_INLINE Turn<V> select(mask_of<V> m, const Turn<V>& yes, const Turn<V>& no) {
-    return {select(m, yes.c, no.c), select(m, yes.s, no.s)};
+CSPACE_INLINE Turn<V> select_lanes(mask_of<V> m, const Turn<V>& yes, const Turn<V>& no) {
+    return {select_lanes(m, yes.c, no.c), select_lanes(m, yes.s, no.s)};
 }
 template <class V>
-CSPACE_INLINE Vec3<V> select(mask_of<V> m, const Vec3<V>& yes, const Vec3<V>& no) {
-    return {select(m, yes.x, no.x), select(m, yes.y, no.y), select(m, yes.z, no.z)};
+CSPACE_INLINE Vec3<V> select_lanes(mask_of<V> m, const Vec3<V>& yes, const Vec3<V>& no) {
+    return {select_lanes(m, yes.x, no.x), select_lanes(m, yes.y, no.y), select_lanes(m, yes.z, no.z)};
 }
 // Rot(k, θ) p about the unit axis k through the origin (Rodrigues 1840).
 template <class V>
-CSPACE_INLINE Vec3<V> rotate(const Vec3<V>& k, const Turn<V>& t, const Vec3<V>& p) {
+CSPACE_INLINE Vec3<V> rotate_about(const Vec3<V>& k, const Turn<V>& t, const Vec3<V>& p) {
     const Vec3<V> kp = cross(k, p);
     return p + t.s * kp + (1.0 - t.c) * cross(k, kp);
 }

@@ -57,11 +57,11 @@ CSPACE_INLINE V norm(const Vec3<V>& a) {
     return sqrt(dot(a, a));
 }
 template <class V>
-CSPACE_INLINE Vec3<V> column(const Mat3<V>& R, int j) {
+CSPACE_INLINE Vec3<V> matrix_column(const Mat3<V>& R, int j) {
     return {R.m[0][j], R.m[1][j], R.m[2][j]};
 }
 template <class V>
-CSPACE_INLINE Vec3<V> row(const Mat3<V>& R, int i) {
+CSPACE_INLINE Vec3<V> matrix_row(const Mat3<V>& R, int i) {
     return {R.m[i][0], R.m[i][1], R.m[i][2]};
 }
 template <class V>
@@ -70,20 +70,20 @@ CSPACE_INLINE Mat3<V> from_columns(const Vec3<V>& x, const Vec3<V>& y, const Vec
 }
 template <class V>
 CSPACE_INLINE Vec3<V> operator*(const Mat3<V>& R, const Vec3<V>& a) {
-    return {dot(row(R, 0), a), dot(row(R, 1), a), dot(row(R, 2), a)};
+    return {dot(matrix_row(R, 0), a), dot(matrix_row(R, 1), a), dot(matrix_row(R, 2), a)};
 }
 template <class V>
 CSPACE_INLINE Mat3<V> operator*(const Mat3<V>& A, const Mat3<V>& B) {
-    return from_columns(A * column(B, 0), A * column(B, 1), A * column(B, 2));
+    return from_columns(A * matrix_column(B, 0), A * matrix_column(B, 1), A * matrix_column(B, 2));
 }
 template <class V>
 CSPACE_INLINE Mat3<V> transpose(const Mat3<V>& R) {
-    return from_columns(row(R, 0), row(R, 1), row(R, 2));
+    return from_columns(matrix_row(R, 0), matrix_row(R, 1), matrix_row(R, 2));
 }
 // Rᵀ a without forming the transpose.
 template <class V>
 CSPACE_INLINE Vec3<V> transpose_times(const Mat3<V>& R, const Vec3<V>& a) {
-    return {dot(column(R, 0), a), dot(column(R, 1), a), dot(column(R, 2), a)};
+    return {dot(matrix_column(R, 0), a), dot(matrix_column(R, 1), a), dot(matrix_column(R, 2), a)};
 }
 template <class V>
 CSPACE_INLINE Pose<V> operator*(const Pose<V>& A, const Pose<V>& B) {
@@ -98,16 +98,17 @@ CSPACE_INLINE Pose<V> inverse(const Pose<V>& T) {
     return {transpose(T.R), -transpose_times(T.R, T.t)};
 }
 template <class V, class S>
-CSPACE_INLINE Vec3<V> fill3(const Vec3<S>& a) {
-    return {fill<V>(a.x), fill<V>(a.y), fill<V>(a.z)};
+CSPACE_INLINE Vec3<V> fill_vec3(const Vec3<S>& a) {
+    return {fill_lanes<V>(a.x), fill_lanes<V>(a.y), fill_lanes<V>(a.z)};
 }
 template <class V, class S>
-CSPACE_INLINE Mat3<V> fill33(const Mat3<S>& R) {
-    return from_columns(fill3<V>(column(R, 0)), fill3<V>(column(R, 1)), fill3<V>(column(R, 2)));
+CSPACE_INLINE Mat3<V> fill_mat3(const Mat3<S>& R) {
+    return from_columns(fill_vec3<V>(matrix_column(R, 0)), fill_vec3<V>(matrix_column(R, 1)),
+                        fill_vec3<V>(matrix_column(R, 2)));
 }
 template <class V>
 CSPACE_INLINE Pose<V> fill_pose(const Pose<double>& T) {
-    return {fill33<V>(T.R), fill3<V>(T.t)};
+    return {fill_mat3<V>(T.R), fill_vec3<V>(T.t)};
 }
 CSPACE_INLINE Posed identity_pose() { return {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}}; }
 template <class V>

@@ -29,8 +29,8 @@ CSPACE_INLINE V short_way(V difference) {
 // Brings an angle that is off by at most one turn back into (−π, π].
 template <class V>
 CSPACE_INLINE V wrap_once(V t) {
-    t = select(t > pi, t - 2 * pi, t);
-    return select(t <= fill<V>(-pi), t + 2 * pi, t);
+    t = select_lanes(t > pi, t - 2 * pi, t);
+    return select_lanes(t <= fill_lanes<V>(-pi), t + 2 * pi, t);
 }
 // The same in floats, in [−π, π] rounded.
 inline float wrap_once(float t) {

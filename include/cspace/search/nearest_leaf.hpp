@@ -83,8 +83,8 @@ inline int find_nearest_in_leaves(const LeafView& view, int width, const float* 
         const Floats bound = bound_leaf_distances<any_wraps>(boxes, width, q, wraps);
         store_floats(bounds + leaf, bound);
         const FloatMask is_less = bound < least;
-        least = select(is_less, bound, least);
-        at = select(is_less, fill_floats(float(leaf / float_lanes)), at);
+        least = select_lanes(is_less, bound, least);
+        at = select_lanes(is_less, fill_floats(float(leaf / float_lanes)), at);
     }
     if (view.leaves == 0) return count;
     const int first = least_of_lanes(least, at).row;

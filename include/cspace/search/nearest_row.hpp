@@ -54,8 +54,8 @@ inline NearRow find_nearest_row(const float* blocks, int count, int width, const
     for (int first = 0; first < count; first += float_lanes, blocks += float_lanes * width) {
         const Floats sum = square_distances<any_wraps>(blocks, width, q, wraps);
         const FloatMask is_less = sum < least;
-        least = select(is_less, sum, least);
-        at = select(is_less, fill_floats(float(first / float_lanes)), at);
+        least = select_lanes(is_less, sum, least);
+        at = select_lanes(is_less, fill_floats(float(first / float_lanes)), at);
     }
     return least_of_lanes(least, at);
 }
@@ -71,8 +71,8 @@ inline NearRow find_nearest_row_within(const float* blocks, const float* costs, 
         const Floats sum = square_distances<any_wraps>(blocks, width, q, wraps);
         const Floats total = sqrt(sum) + load_floats(costs + first);
         const FloatMask is_less = (sum < least) & (total < bound);
-        least = select(is_less, sum, least);
-        at = select(is_less, fill_floats(float(first / float_lanes)), at);
+        least = select_lanes(is_less, sum, least);
+        at = select_lanes(is_less, fill_floats(float(first / float_lanes)), at);
     }
     const NearRow found = least_of_lanes(least, at);
     return found.square < none ? found : NearRow{-1, none};

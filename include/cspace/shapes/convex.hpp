@@ -58,7 +58,7 @@ inline double find_depth(const Convex& solid, const Vec3d& place) {
         case Convex::Core::box:
             return -distance_from_box(place, solid.pose.t, solid.pose.R, solid.half).value;
         case Convex::Core::cylinder:
-            return -distance_from_cylinder(place, solid.pose.t, column(solid.pose.R, 2), solid.half.z,
+            return -distance_from_cylinder(place, solid.pose.t, matrix_column(solid.pose.R, 2), solid.half.z,
                                            solid.half.x)
                         .value;
         default:

@@ -43,8 +43,9 @@ inline Distance distance_from_box(const Vec3d& point, const Vec3d& center, const
                                   const Vec3d& half) {
     const Vec3d y = transpose_times(R, point - center);
     const double excess[] = {std::fabs(y.x) - half.x, std::fabs(y.y) - half.y, std::fabs(y.z) - half.z};
-    const Vec3d direction[] = {std::copysign(1.0, y.x) * column(R, 0), std::copysign(1.0, y.y) * column(R, 1),
-                               std::copysign(1.0, y.z) * column(R, 2)};
+    const Vec3d direction[] = {std::copysign(1.0, y.x) * matrix_column(R, 0),
+                               std::copysign(1.0, y.y) * matrix_column(R, 1),
+                               std::copysign(1.0, y.z) * matrix_column(R, 2)};
     return combine_excesses(excess, direction);
 }
 

@@ -27,12 +27,12 @@ CSPACE_INLINE LeftJacobianFactors<V> left_jacobian_factors(V square) {
     constexpr double second[] = {1.0 / 6,       -1.0 / 120,     1.0 / 5040,
                                  -1.0 / 362880, 1.0 / 39916800, -1.0 / 6227020800};
     const mask_of<V> is_small = square < small_rotation_square;
-    const V safe = select(is_small, fill<V>(1.0), square), theta = sqrt(safe);
+    const V safe = select_lanes(is_small, fill_lanes<V>(1.0), square), theta = sqrt(safe);
     V s, c;
     sincos(0.5 * theta, s, c);
-    const V near = select(is_small, square, fill<V>(0.0));
-    return {select(is_small, trig::polynomial(first, near), 2.0 * (s * s) / safe),
-            select(is_small, trig::polynomial(second, near), (1.0 - 2.0 * (s * c) / theta) / safe)};
+    const V near = select_lanes(is_small, square, fill_lanes<V>(0.0));
+    return {select_lanes(is_small, trig::polynomial(first, near), 2.0 * (s * s) / safe),
+            select_lanes(is_small, trig::polynomial(second, near), (1.0 - 2.0 * (s * c) / theta) / safe)};
 }
 // J(u) a = a + f u × a + g u × (u × a).
 template <class V>
@@ -50,11 +50,11 @@ CSPACE_INLINE V half_cotangent_rest(V square) {
     if constexpr (Lanes<V>::count == 1) {
         if (is_small) return trig::polynomial(series, square);
     }
-    const V safe = select(is_small, fill<V>(1.0), square), half = 0.5 * sqrt(safe);
+    const V safe = select_lanes(is_small, fill_lanes<V>(1.0), square), half = 0.5 * sqrt(safe);
     V s, c;
     sincos(half, s, c);
-    const V near = select(is_small, square, fill<V>(0.0));
-    return select(is_small, trig::polynomial(series, near), (1.0 - half * c / s) / safe);
+    const V near = select_lanes(is_small, square, fill_lanes<V>(0.0));
+    return select_lanes(is_small, trig::polynomial(series, near), (1.0 - half * c / s) / safe);
 }
 // J⁻¹(u) a = a − ½ u × a + (1 − (θ/2) cot(θ/2))/θ² u × (u × a), for less than a full turn.
 template <class V>
@@ -68,9 +68,10 @@ CSPACE_INLINE LeftJacobianFactors<V> left_jacobian_slopes(V square, const LeftJa
     constexpr double first[] = {-1.0 / 24, 2.0 / 720, -3.0 / 40320, 4.0 / 3628800, -5.0 / 479001600};
     constexpr double second[] = {-1.0 / 120, 2.0 / 5040, -3.0 / 362880, 4.0 / 39916800, -5.0 / 6227020800};
     const mask_of<V> is_small = square < small_rotation_square;
-    const V near = select(is_small, square, fill<V>(0.0)), safe = select(is_small, fill<V>(1.0), square);
-    return {select(is_small, trig::polynomial(first, near), (0.5 * (1.0 - of.g * safe) - of.f) / safe),
-            select(is_small, trig::polynomial(second, near), (0.5 * of.f - 1.5 * of.g) / safe)};
+    const V near = select_lanes(is_small, square, fill_lanes<V>(0.0)),
+            safe = select_lanes(is_small, fill_lanes<V>(1.0), square);
+    return {select_lanes(is_small, trig::polynomial(first, near), (0.5 * (1.0 - of.g * safe) - of.f) / safe),
+            select_lanes(is_small, trig::polynomial(second, near), (0.5 * of.f - 1.5 * of.g) / safe)};
 }
 
 // The angular velocity ω = J(u) u' of exp([u]) R in fixed axes, and its derivative ω'.

@@ -38,12 +38,12 @@ CSPACE_INLINE Mat3<V> rotation_of_quaternion(V w, const Vec3<V>& v, V square) {
 template <class V>
 CSPACE_INLINE Mat3<V> rotation_of_rotvec(const Vec3<V>& w, V square) {
     const mask_of<V> tiny = square < tolerance::least_square;
-    const V theta2 = select(tiny, fill<V>(1.0), square), theta = sqrt(theta2);
+    const V theta2 = select_lanes(tiny, fill_lanes<V>(1.0), square), theta = sqrt(theta2);
     V s, c;
     sincos(0.5 * theta, s, c);
     const V twice = 2.0 * s;
-    return rotation_of(w, select(tiny, fill<V>(1.0), twice * c / theta),
-                       select(tiny, fill<V>(0.5), twice * s / theta2));
+    return rotation_of(w, select_lanes(tiny, fill_lanes<V>(1.0), twice * c / theta),
+                       select_lanes(tiny, fill_lanes<V>(0.5), twice * s / theta2));
 }
 template <class V>
 CSPACE_INLINE Mat3<V> rotation_of_rotvec(const Vec3<V>& w) {
@@ -66,15 +66,15 @@ CSPACE_INLINE Vec3<V> sine_of(const Mat3<V>& R) {
 // The same of B Aᵀ, from the cross products of the axes: to first order the rotation vector from A to B.
 template <class V>
 CSPACE_INLINE Vec3<V> sine_between(const Mat3<V>& A, const Mat3<V>& B) {
-    Vec3<V> sum = 0.5 * cross(column(A, 0), column(B, 0));
-    for (int k = 1; k < 3; ++k) sum = sum + 0.5 * cross(column(A, k), column(B, k));
+    Vec3<V> sum = 0.5 * cross(matrix_column(A, 0), matrix_column(B, 0));
+    for (int k = 1; k < 3; ++k) sum = sum + 0.5 * cross(matrix_column(A, k), matrix_column(B, k));
     return sum;
 }
 // The trace of B Aᵀ, 1 + 2 cos θ: 3 where they agree, −1 half a turn apart.
 template <class V>
 CSPACE_INLINE V trace_between(const Mat3<V>& A, const Mat3<V>& B) {
-    return dot(column(A, 0), column(B, 0)) + dot(column(A, 1), column(B, 1)) +
-           dot(column(A, 2), column(B, 2));
+    return dot(matrix_column(A, 0), matrix_column(B, 0)) + dot(matrix_column(A, 1), matrix_column(B, 1)) +
+           dot(matrix_column(A, 2), matrix_column(B, 2));
 }
 // The angle θ of B Aᵀ, in [0, π].
 template <class V>
@@ -89,24 +89,26 @@ CSPACE_INLINE Vec3<V> rotvec_of_rotation(const Mat3<V>& R) {
     Vec3<V> w = sine_of(R);
     const V s = norm(w), c = 0.5 * (R.m[0][0] + R.m[1][1] + R.m[2][2] - 1.0);
     const V angle = atan2(s, c);
-    const V scale = select(s > small, angle / select(s > small, s, fill<V>(1.0)), fill<V>(1.0));
+    const V scale =
+        select_lanes(s > small, angle / select_lanes(s > small, s, fill_lanes<V>(1.0)), fill_lanes<V>(1.0));
     w = scale * w;
     const mask_of<V> half = (s <= half_turn) && (c < 0.0);
     if (!any(half)) return w;
     // Near a half turn the axis is the largest column of R + I.
-    Vec3<V> axis = column(R, 0);
+    Vec3<V> axis = matrix_column(R, 0);
     axis.x = axis.x + 1.0;
     V largest = R.m[0][0];
     for (int k = 1; k < 3; ++k) {
-        Vec3<V> other = column(R, k);
+        Vec3<V> other = matrix_column(R, k);
         (k == 1 ? other.y : other.z) = (k == 1 ? other.y : other.z) + 1.0;
         const mask_of<V> better = R.m[k][k] > largest;
-        largest = select(better, R.m[k][k], largest);
-        axis = {select(better, other.x, axis.x), select(better, other.y, axis.y),
-                select(better, other.z, axis.z)};
+        largest = select_lanes(better, R.m[k][k], largest);
+        axis = {select_lanes(better, other.x, axis.x), select_lanes(better, other.y, axis.y),
+                select_lanes(better, other.z, axis.z)};
     }
     axis = (angle / norm(axis)) * axis;
-    return {select(half, axis.x, w.x), select(half, axis.y, w.y), select(half, axis.z, w.z)};
+    return {select_lanes(half, axis.x, w.x), select_lanes(half, axis.y, w.y),
+            select_lanes(half, axis.z, w.z)};
 }
 
 }  // namespace cspace::spatial::inline CSPACE_ISA

@@ -73,12 +73,13 @@ template <class V>
 CSPACE_INLINE VelocityChangeOf<V> select_change(mask_of<V> m, const VelocityChangeOf<V>& a,
                                                 const VelocityChangeOf<V>& b) {
     const AxisLimitsOf<V>&k = a.limits, &l = b.limits;
-    return {select(m, a.v0, b.v0),
-            select(m, a.a0, b.a0),
-            select(m, a.vf, b.vf),
-            select(m, a.af, b.af),
-            {select(m, k.v_max, l.v_max), select(m, k.v_min, l.v_min), select(m, k.a_max, l.a_max),
-             select(m, k.a_min, l.a_min), select(m, k.jerk, l.jerk)}};
+    return {select_lanes(m, a.v0, b.v0),
+            select_lanes(m, a.a0, b.a0),
+            select_lanes(m, a.vf, b.vf),
+            select_lanes(m, a.af, b.af),
+            {select_lanes(m, k.v_max, l.v_max), select_lanes(m, k.v_min, l.v_min),
+             select_lanes(m, k.a_max, l.a_max), select_lanes(m, k.a_min, l.a_min),
+             select_lanes(m, k.jerk, l.jerk)}};
 }
 
 template <class V>

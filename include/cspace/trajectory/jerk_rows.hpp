@@ -77,19 +77,19 @@ CSPACE_INLINE void build_sampled_rows(const JerkPath& path, std::size_t i, doubl
     const std::size_t width = std::size_t(path.padded);
     for (int part = 0; part < 3; ++part)
         for (int j = 0; j < path.padded; j += Lanes<V>::count) {
-            V limit = load<V>(given.limit + j);
-            if (given.margin) limit = limit - load<V>(given.margin + i * width + std::size_t(j));
+            V limit = load_lanes<V>(given.limit + j);
+            if (given.margin) limit = limit - load_lanes<V>(given.margin + i * width + std::size_t(j));
             const auto exists = limit > 0.0;
-            limit = select(exists, limit, fill<V>(1.0));
+            limit = select_lanes(exists, limit, fill_lanes<V>(1.0));
             const std::size_t at = (3 * i + std::size_t(part)) * width + std::size_t(j);
-            const V along = load<V>(given.along + at), across = load<V>(given.across + at);
+            const V along = load_lanes<V>(given.along + at), across = load_lanes<V>(given.across + at);
             double* own = rows + 4 * part * path.padded + j;
             for (int a = 0; a < 3; ++a)
-                store(own + a * path.padded,
-                      (squares[part][a] * across + accelerations[part][a] * along) / limit);
+                store_lanes(own + a * path.padded,
+                            (squares[part][a] * across + accelerations[part][a] * along) / limit);
             // A limit that the margin uses up leaves no motion.
-            const V offset = load<V>(given.offset + at) / limit;
-            store(own + 3 * path.padded, select(exists, offset, fill<V>(2.0)));
+            const V offset = load_lanes<V>(given.offset + at) / limit;
+            store_lanes(own + 3 * path.padded, select_lanes(exists, offset, fill_lanes<V>(2.0)));
         }
 }
 
@@ -114,14 +114,14 @@ inline double build_jerk_rows(const JerkPath& path, std::size_t i, double* rows)
     const double squares[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double accelerations[2][3] = {{-per, per, 0}, {0, -per, per}};
     const double changes[1][3] = {{per * per, -2 * per * per, per * per}};
-    V most = fill<V>(1.0 / no_end);
+    V most = fill_lanes<V>(1.0 / no_end);
     for (int j = 0; j < path.padded; j += Lanes<V>::count) {
         V d[m + 1], e[m], f[m - 1], made[2 * m + 3][3];
         for (auto& row : made)
-            for (V& each : row) each = fill<V>(0.0);
-        for (int k = 0; k <= m; ++k) d[k] = load<V>(slopes + k * path.padded + j);
+            for (V& each : row) each = fill_lanes<V>(0.0);
+        for (int k = 0; k <= m; ++k) d[k] = load_lanes<V>(slopes + k * path.padded + j);
         restrict_to<m>(d, part.from, part.to);
-        const V per_velocity = load<V>(path.inverse_velocity + j);
+        const V per_velocity = load_lanes<V>(path.inverse_velocity + j);
         for (int k = 0; k <= m; ++k) most = max(most, (d[k] * per_velocity) * (d[k] * per_velocity));
         for (int k = 0; k < m; ++k) e[k] = (m * per) * (d[k + 1] - d[k]);
         for (int k = 0; k + 1 < m; ++k) f[k] = ((m - 1) * per) * (e[k + 1] - e[k]);
@@ -130,16 +130,16 @@ inline double build_jerk_rows(const JerkPath& path, std::size_t i, double* rows)
         add_product<m - 2, 2>(f, squares, 1.0, made + m + 2);
         add_product<m - 1, 1>(e, accelerations, 3.0, made + m + 2);
         add_product<m, 0>(d, changes, 1.0, made + m + 2);
-        const V per_acceleration = load<V>(path.inverse_acceleration + j);
-        const V per_jerk = load<V>(path.inverse_jerk + j);
+        const V per_acceleration = load_lanes<V>(path.inverse_acceleration + j);
+        const V per_jerk = load_lanes<V>(path.inverse_jerk + j);
         for (int r = 0; r < 2 * m + 3; ++r)
             for (int a = 0; a < 3; ++a)
-                store(rows + (3 * r + a) * path.padded + j,
-                      made[r][a] * (r < m + 2 ? per_acceleration : per_jerk));
+                store_lanes(rows + (3 * r + a) * path.padded + j,
+                            made[r][a] * (r < m + 2 ? per_acceleration : per_jerk));
     }
     if (path.sampled.along) build_sampled_rows(path, i, rows + path.own_rows());
     if (path.sampled.inverse_square) build_speed_rows(path, i, rows + path.own_rows() + path.torque_rows());
-    return (1.0 - rounding_share) / lane(largest_lanes(most), 0);
+    return (1.0 - rounding_share) / get_lane(largest_lanes(most), 0);
 }
 
 // Adds the terms of the barrier of |c·X| ≤ limit − fall·X for a pack of rows: fall(a) by coefficient a.
@@ -148,8 +148,8 @@ struct BarrierSum {
     V g[3], h[6];
 
     CSPACE_INLINE void clear() {
-        for (V& each : g) each = fill<V>(0.0);
-        for (V& each : h) each = fill<V>(0.0);
+        for (V& each : g) each = fill_lanes<V>(0.0);
+        for (V& each : h) each = fill_lanes<V>(0.0);
     }
     CSPACE_INLINE void add(const V (&row)[3], V slack) {
         const V inverse = 1.0 / slack;
@@ -162,7 +162,7 @@ struct BarrierSum {
 template <class V>
 CSPACE_INLINE double sum_lanes(V v) {
     double sum = 0.0;
-    for (int k = 0; k < Lanes<V>::count; ++k) sum += lane(v, k);
+    for (int k = 0; k < Lanes<V>::count; ++k) sum += get_lane(v, k);
     return sum;
 }
 
@@ -184,16 +184,16 @@ CSPACE_INLINE void visit_rows(const JerkPath& path, const double* rows, const Sq
         }
         for (int j = 0; j < path.padded; j += Lanes<V>::count) {
             V row[3];
-            for (int a = 0; a < 3; ++a) row[a] = load<V>(rows + (3 * r + a) * path.padded + j);
-            visit(row, fill<V>(limit), fill<V>(limit), fall);
+            for (int a = 0; a < 3; ++a) row[a] = load_lanes<V>(rows + (3 * r + a) * path.padded + j);
+            visit(row, fill_lanes<V>(limit), fill_lanes<V>(limit), fall);
         }
     }
     const double still[3] = {0.0, 0.0, 0.0};
     const auto visit_sampled = [&](const double* own, int width) {
         for (int j = 0; j < width; j += Lanes<V>::count) {
             V row[3];
-            for (int a = 0; a < 3; ++a) row[a] = load<V>(own + a * width + j);
-            const V offset = load<V>(own + 3 * width + j);
+            for (int a = 0; a < 3; ++a) row[a] = load_lanes<V>(own + a * width + j);
+            const V offset = load_lanes<V>(own + 3 * width + j);
             visit(row, 1.0 + offset, 1.0 - offset, still);
         }
     };
@@ -228,8 +228,8 @@ template <int m>
 inline double bound_step(const JerkPath& path, const double* rows, const Squares& x, const Squares& change,
                          const Tangent& tangent) {
     using V = Pack<native_width>;
-    V most = fill<V>(0.0);  // of decrease over slack: the inverse of the step
-    V least = fill<V>(1.0);
+    V most = fill_lanes<V>(0.0);  // of decrease over slack: the inverse of the step
+    V least = fill_lanes<V>(1.0);
     visit_rows<m>(path, rows, x, tangent, [&](const V(&row)[3], V low, V high, const double (&fall)[3]) {
         const V value = row[0] * x.at[0] + row[1] * x.at[1] + row[2] * x.at[2];
         const V moved = row[0] * change.at[0] + row[1] * change.at[1] + row[2] * change.at[2];
@@ -238,8 +238,8 @@ inline double bound_step(const JerkPath& path, const double* rows, const Squares
         least = min(least, min(above, below));
         most = max(most, max((lower + moved) / above, (lower - moved) / below));
     });
-    if (lane(largest_lanes(-least), 0) >= 0.0) return 0.0;
-    return 1.0 / max(lane(largest_lanes(most), 0), 1.0 / no_end);
+    if (get_lane(largest_lanes(-least), 0) >= 0.0) return 0.0;
+    return 1.0 / max(get_lane(largest_lanes(most), 0), 1.0 / no_end);
 }
 
 // For each coefficient k of the jerk the largest of its rows at X, into most (m + 1).
@@ -247,14 +247,14 @@ template <int m>
 inline void bound_jerks(const JerkPath& path, const double* rows, const Squares& x, double* most) {
     using V = Pack<native_width>;
     for (int k = 0; k <= m; ++k) {
-        V largest = fill<V>(0.0);
+        V largest = fill_lanes<V>(0.0);
         for (int j = 0; j < path.padded; j += Lanes<V>::count) {
-            V value = fill<V>(0.0);
+            V value = fill_lanes<V>(0.0);
             for (int a = 0; a < 3; ++a)
-                value += load<V>(rows + (3 * (m + 2 + k) + a) * path.padded + j) * x.at[a];
+                value += load_lanes<V>(rows + (3 * (m + 2 + k) + a) * path.padded + j) * x.at[a];
             largest = max(largest, abs(value));
         }
-        most[k] = lane(largest_lanes(largest), 0);
+        most[k] = get_lane(largest_lanes(largest), 0);
     }
 }
 

@@ -52,23 +52,23 @@ CSPACE_INLINE V find_root(V low, V high, mask_of<V> asked, const F& f) {
     for (int i = 0; i < most_steps; ++i) {
         const Value<V> e = f(x);
         const auto above = e.value > 0, met = e.value == 0;
-        high = select(open && above, x, high);
-        low = select(open && !above, x, low);
+        high = select_lanes(open && above, x, high);
+        low = select_lanes(open && !above, x, low);
         const V halley = 2 * e.slope * e.slope - e.value * e.bend;
-        const V step = select(halley > 0, 2 * e.value * e.slope / halley, e.value / e.slope);
+        const V step = select_lanes(halley > 0, 2 * e.value * e.slope / halley, e.value / e.slope);
         V next = x - step;
         const auto inside = next > low && next < high;
         // A step that leaves the bracket by rounding alone has arrived.
         const auto stays = met || (!inside && abs(next - x) <= 2 * epsilon * x);
-        next = select(inside || stays, next, 0.5 * (low + high));
+        next = select_lanes(inside || stays, next, 0.5 * (low + high));
         if (i >= first_steps)  // steps from far above only halve the time
-            next = select(!stays && high > wide * low, halve_magnitudes(low, high), next);
+            next = select_lanes(!stays && high > wide * low, halve_magnitudes(low, high), next);
         const auto arrived = abs(next - x) <= 2 * epsilon * x || high - low <= 2 * epsilon * high;
-        x = select(open && !stays, next, x);
+        x = select_lanes(open && !stays, next, x);
         open = open && !stays && !arrived;
         if (!any(open)) return x;
     }
-    return select(open, high, x);
+    return select_lanes(open, high, x);
 }
 
 // When P_max(T) = P between low, where it is less, and high, where it is not.
@@ -90,11 +90,12 @@ CSPACE_INLINE V end_of_head(const VelocityChangeOf<V>& q) {
     const V p = (w + kappa / w) / 2, l = p - w;
     const auto is_free = !(w > 0) || (p <= q.limits.a_max && l >= q.limits.a_min);
     // p is held at a_max up to where l = p / 4 or p is no longer held; likewise l.
-    const V held = select(kappa > 0, q.limits.a_max, -q.limits.a_min);
+    const V held = select_lanes(kappa > 0, q.limits.a_max, -q.limits.a_min);
     const V until = (held * (9.0 / 16 * held + af - a0) + size) / (J * held);
     const V beyond = held * held - size;  // below zero: it is held for ever
-    const V while_held = select(beyond < 0, until, min(until, time_of(held - reach::root_or_zero(beyond))));
-    return select(is_free, time_of(w), while_held);
+    const V while_held =
+        select_lanes(beyond < 0, until, min(until, time_of(held - reach::root_or_zero(beyond))));
+    return select_lanes(is_free, time_of(w), while_held);
 }
 
 // A time in low … high, within the head, at which P_max ≥ P, if there is one; else where it is largest.
@@ -109,10 +110,10 @@ CSPACE_INLINE V top_of_head(const VelocityChangeOf<V>& q, V P, V low, V high, ma
         const auto rises = r.slope > 0;
         open = open && r.displacement < P;
         if (i == 0) open = open && r.slope < 0;
-        low = select(open && rises, x, low);
-        high = select(open && !rises, x, high);
+        low = select_lanes(open && rises, x, low);
+        high = select_lanes(open && !rises, x, high);
         const V next = x - r.slope / r.bend;
-        x = select(open, select(next > low && next < high, next, 0.5 * (low + high)), x);
+        x = select_lanes(open, select_lanes(next > low && next < high, next, 0.5 * (low + high)), x);
     }
     return x;
 }
@@ -131,7 +132,7 @@ CSPACE_INLINE V displacement_rounding(const AxisTaskOf<V>& x, V T) {
     const VelocityChangeOf<V>& q = x.up;
     const V by_acceleration = max(q.limits.a_max, -q.limits.a_min) * T, by_jerk = q.limits.jerk * T * T;
     // An infinite acceleration times T = 0 is NaN, which min leaves out.
-    const V swing = select(q.limits.jerk < never, min(by_acceleration, by_jerk), by_acceleration);
+    const V swing = select_lanes(q.limits.jerk < never, min(by_acceleration, by_jerk), by_acceleration);
     const V fastest = min(abs(q.v0) + abs(q.vf) + swing, max(q.limits.v_max, -q.limits.v_min));
     return roundings * (abs(x.P) + T * fastest);
 }
@@ -142,14 +143,14 @@ CSPACE_INLINE V displacement_rounding(const AxisTaskOf<V>& x, V T) {
 template <class V>
 inline V first_reached(const VelocityChangeOf<V>& q, V P, V A, V B, V slack, mask_of<V> asked) {
     using namespace crossing;
-    V found = fill<V>(never), low = A, high = B;
+    V found = fill_lanes<V>(never), low = A, high = B;
     auto open = asked, crosses = open && !open;
     // At the end of the head or of the part: a crossing before it, or within the slack.
     const auto decide = [&](mask_of<V> here, V end) {
         const V most = find_farthest(q, end).displacement;
         const auto reached = here && most >= P, nearly = here && !reached && most >= P - slack;
-        high = select(reached, end, high);
-        found = select(nearly, end, found);
+        high = select_lanes(reached, end, high);
+        found = select_lanes(nearly, end, found);
         crosses = crosses || reached;
         open = open && !reached && !nearly;
     };
@@ -158,8 +159,8 @@ inline V first_reached(const VelocityChangeOf<V>& q, V P, V A, V B, V slack, mas
     if (any(head)) {
         const V end = min(max(end_of_head(q), A), B);
         decide(head, top_of_head(q, P, A, end, head));
-        A = select(head && open, end, A);
-        low = select(open, A, low);
+        A = select_lanes(head && open, end, A);
+        low = select_lanes(open, A, low);
         open = open && A < B;
     }
     const auto ends = open && B < never;
@@ -172,21 +173,21 @@ inline V first_reached(const VelocityChangeOf<V>& q, V P, V A, V B, V slack, mas
         const SevenPhasesOf<V> touch = reach::touch_cruise(q);
         const V on = duration_of(touch), at = displace_axis(q, touch), v = q.limits.v_max;
         const auto passed = straight && on <= A, later = straight && !passed && P >= at;
-        if (any(passed)) found = select(passed, A + (P - find_farthest(q, A).displacement) / v, found);
-        found = select(later, on + (P - at) / v, found);
+        if (any(passed)) found = select_lanes(passed, A + (P - find_farthest(q, A).displacement) / v, found);
+        found = select_lanes(later, on + (P - at) / v, found);
         const auto before = straight && !passed && !later;
-        high = select(before, on, high);
+        high = select_lanes(before, on, high);
         crosses = crosses || before;
         open = open && !straight;
     }
     if (any(open)) {
-        V far = select(A > 0, 2 * A, fill<V>(1.0));
-        for (auto shorter = open; any(shorter); far = select(shorter, 2 * far, far))
+        V far = select_lanes(A > 0, 2 * A, fill_lanes<V>(1.0));
+        for (auto shorter = open; any(shorter); far = select_lanes(shorter, 2 * far, far))
             shorter = shorter && find_farthest(q, far).displacement < P;
-        high = select(open, far, high);
+        high = select_lanes(open, far, high);
         crosses = crosses || open;
     }
-    if (any(crosses)) found = select(crosses, find_crossing<V>(q, P, low, high, crosses), found);
+    if (any(crosses)) found = select_lanes(crosses, find_crossing<V>(q, P, low, high, crosses), found);
     return found;
 }
 
@@ -204,7 +205,7 @@ CSPACE_INLINE V first_in_part(const AxisTaskOf<V>& x, V A, V B, V down, V up, ma
     const auto rises = x.P > up + slack, moves = asked && (rises || x.P < down - slack);
     if (!any(moves)) return A;
     const VelocityChangeOf<V> q = select_change<V>(rises, x.up, x.down);
-    return select(moves, first_reached<V>(q, select(rises, x.P, -x.P), A, B, slack, moves), A);
+    return select_lanes(moves, first_reached<V>(q, select_lanes(rises, x.P, -x.P), A, B, slack, moves), A);
 }
 
 // The shortest time.
@@ -216,7 +217,7 @@ CSPACE_INLINE V minimum_time(const AxisTaskOf<V>& x) {
     const V T = first_in_part<V>(x, d.first, d.gap_begin, P0, P0, all_axes);
     const auto later = !(T < never) && d.has_gap;
     if (!any(later)) return T;
-    return select(later, first_in_part<V>(x, d.gap_end, fill<V>(never), P1, P1, later), T);
+    return select_lanes(later, first_in_part<V>(x, d.gap_end, fill_lanes<V>(never), P1, P1, later), T);
 }
 
 // The next time not before T in which P can be attained; the extreme motions for T, if they were needed.
@@ -248,10 +249,10 @@ using Combination = CombinationOf<double>;
 template <class V>
 CSPACE_INLINE CombinationOf<V> combine_motions(const AxisTaskOf<V>& x, const ReachOf<V>& up,
                                                const ReachOf<V>& down) {
-    const V width = up.displacement + down.displacement, one = fill<V>(1.0);
+    const V width = up.displacement + down.displacement, one = fill_lanes<V>(1.0);
     const V share = min(reach::not_negative((x.P + down.displacement) / width), one);
     CombinationOf<V> made;
-    made.theta = select(width > 0, share, one);
+    made.theta = select_lanes(width > 0, share, one);
     for (int i = 0; i < 7; ++i) {
         made.up[i] = up.phases.t[i];
         made.down[i] = down.phases.t[i];

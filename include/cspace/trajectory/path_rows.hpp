@@ -132,9 +132,9 @@ CSPACE_INLINE void write_rows(const Rows& rows, int at, V alpha, V beta, V low, 
     const V size = max(abs(beta), no_row * abs(alpha) + no_size);
     const V inverse = copysign(1.0 / size, beta);
     const V a = low * inverse, b = high * inverse;
-    store(rows.slope + at, -alpha * inverse);
-    store(rows.low + at, min(a, b));
-    store(rows.high + at, max(a, b));
+    store_lanes(rows.slope + at, -alpha * inverse);
+    store_lanes(rows.low + at, min(a, b));
+    store_lanes(rows.high + at, max(a, b));
 }
 
 // The rows of the accelerations of a pack of joints, one less without a rise; d: coefficients of q' over the
@@ -145,7 +145,7 @@ CSPACE_INLINE void write_rows(const Rows& rows, int at, V alpha, V beta, V low, 
 template <int m, class V>
 CSPACE_INLINE void write_acceleration_rows(const Rows& rows, int at, int stride, const V (&d)[m + 1],
                                            double length, double rise) {
-    const V bound = fill<V>(2.0 * length * (1.0 - rounding_share));
+    const V bound = fill_lanes<V>(2.0 * length * (1.0 - rounding_share));
     const auto of_begin = [&](int k) { return k < m ? (2.0 * (m - k)) * (d[k + 1] - d[k]) - d[k] : -d[k]; };
     const auto of_end = [&](int k) { return k > 0 ? d[k] + (2.0 * k) * (d[k] - d[k - 1]) : d[k]; };
     if (rise == 0.0) {
@@ -191,11 +191,11 @@ CSPACE_INLINE void write_upper_rows(Rows& rows, int at, const double (&alpha)[pa
                                     const double (&beta)[padded], const double (&gamma)[padded]) {
     using V = Pack<native_width>;
     for (int k = 0; k < padded; k += Lanes<V>::count) {
-        const V a = load<V>(alpha + k), b = load<V>(beta + k), c = load<V>(gamma + k);
+        const V a = load_lanes<V>(alpha + k), b = load_lanes<V>(beta + k), c = load_lanes<V>(gamma + k);
         const V inverse = 1.0 / max(b, no_row * a + no_size);
-        store(rows.slope + at + k, -a * inverse);
-        store(rows.low + at + k, (-1.0 - c) * inverse);
-        store(rows.high + at + k, (1.0 - rounding_share - c) * inverse);
+        store_lanes(rows.slope + at + k, -a * inverse);
+        store_lanes(rows.low + at + k, (-1.0 - c) * inverse);
+        store_lanes(rows.high + at + k, (1.0 - rounding_share - c) * inverse);
     }
     rows.count = at + padded;
 }
@@ -249,12 +249,12 @@ CSPACE_INLINE void write_sampled_rows(const Rows& rows, int at, const TimedRows&
     const SampledLimits& given = path.sampled;
     const double rise = path.rises[i];
     const std::size_t width = std::size_t(path.padded);
-    V limit = load<V>(given.limit + j);
-    if (given.margin) limit = limit - load<V>(given.margin + i * width + std::size_t(j));
+    V limit = load_lanes<V>(given.limit + j);
+    if (given.margin) limit = limit - load_lanes<V>(given.margin + i * width + std::size_t(j));
     for (int part = 0; part < 3; ++part) {
         const std::size_t row = (3 * i + std::size_t(part)) * width + std::size_t(j);
-        const V along = (0.5 / length) * load<V>(given.along + row);
-        const V across = load<V>(given.across + row), offset = load<V>(given.offset + row);
+        const V along = (0.5 / length) * load_lanes<V>(given.along + row);
+        const V across = load_lanes<V>(given.across + row), offset = load_lanes<V>(given.offset + row);
         const double share = 0.5 * part;
         const V risen = (2.0 * (1 - part) * rise) * along + (part == 1 ? 0.5 * rise : 0.0) * across;
         write_rows(rows, at + part * path.padded, (1.0 - share) * across - along, share * across + along,
@@ -273,21 +273,21 @@ CSPACE_INLINE Rows build_rows(const TimedRows& path, std::size_t i, double* memo
     const double length = path.length(i);
     const double* slopes = path.slopes + std::size_t(part.piece) * std::size_t((m + 1) * padded);
     V squares[2 * m + 1];
-    for (V& each : squares) each = fill<V>(0.0);
+    for (V& each : squares) each = fill_lanes<V>(0.0);
     for (int j = 0; j < padded; j += Lanes<V>::count) {
         V d[m + 1], scaled[m + 1];
-        for (int k = 0; k <= m; ++k) d[k] = load<V>(slopes + k * padded + j);
+        for (int k = 0; k <= m; ++k) d[k] = load_lanes<V>(slopes + k * padded + j);
         restrict_to<m>(d, part.from, part.to);
-        const V per_acceleration = load<V>(path.inverse_acceleration + j);
+        const V per_acceleration = load_lanes<V>(path.inverse_acceleration + j);
         for (int k = 0; k <= m; ++k) scaled[k] = d[k] * per_acceleration;
         write_acceleration_rows<m>(rows, j, padded, scaled, length, rise);
-        const V per_velocity = load<V>(path.inverse_velocity + j);
+        const V per_velocity = load_lanes<V>(path.inverse_velocity + j);
         for (int k = 0; k <= m; ++k) scaled[k] = d[k] * per_velocity;
         raise_squares<m>(scaled, squares);
     }
     double P[2 * m + 1];
     for (int k = 0; k <= 2 * m; ++k)
-        P[k] = max(lane(largest_lanes(squares[k]), 0), path.least_inverse_square[part.piece]);
+        P[k] = max(get_lane(largest_lanes(squares[k]), 0), path.least_inverse_square[part.piece]);
     if (path.sampled.inverse_square) raise_to_quadratic<m>(P, path.sampled.inverse_square + 3 * i);
     write_velocity_rows<m>(rows, (rise == 0.0 ? m + 1 : m + 2) * padded, P, rise);
     if (path.sampled.along) {

@@ -43,7 +43,7 @@ CSPACE_INLINE V duration_of(const SevenPhasesOf<V>& f) {
 // The i-th phase; a0: the acceleration at first.
 template <class V>
 CSPACE_INLINE PhaseOf<V> phase_of(const SevenPhasesOf<V>& f, int i, V a0, V jerk) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     switch (i) {
         case 0:
             return {f.t[0], a0, jerk};
@@ -64,7 +64,7 @@ CSPACE_INLINE PhaseOf<V> phase_of(const SevenPhasesOf<V>& f, int i, V a0, V jerk
 
 template <class V>
 CSPACE_INLINE V displace_axis(const VelocityChangeOf<V>& q, const SevenPhasesOf<V>& phases) {
-    AxisStateOf<V> s{fill<V>(0.0), q.v0, q.a0};
+    AxisStateOf<V> s{fill_lanes<V>(0.0), q.v0, q.a0};
     for (int i = 0; i < 7; ++i) {
         // Phases of no length may have infinite jerks, if there is no limit.
         if constexpr (Lanes<V>::count == 1)
@@ -85,15 +85,15 @@ inline constexpr double acceleration_rounding = 1e-14;
 
 template <class V>
 CSPACE_INLINE V root_or_zero(V x) {
-    return sqrt(max(x, fill<V>(0.0)));
+    return sqrt(max(x, fill_lanes<V>(0.0)));
 }
 template <class V>
 CSPACE_INLINE V not_negative(V x) {
-    return max(x, fill<V>(0.0));
+    return max(x, fill_lanes<V>(0.0));
 }
 template <class V>
 CSPACE_INLINE V number_of(Regime regime) {
-    return fill<V>(double(regime));
+    return fill_lanes<V>(double(regime));
 }
 
 // Peak p and trough l of acceleration, how long they are held, and d²P/dT² without a cruise.
@@ -102,12 +102,12 @@ struct Peaks {
     V p, l, hold_p, hold_l, bend, regime;
 
     CSPACE_INLINE void replace(mask_of<V> m, const Peaks& k) {
-        p = select(m, k.p, p);
-        l = select(m, k.l, l);
-        hold_p = select(m, k.hold_p, hold_p);
-        hold_l = select(m, k.hold_l, hold_l);
-        bend = select(m, k.bend, bend);
-        regime = select(m, k.regime, regime);
+        p = select_lanes(m, k.p, p);
+        l = select_lanes(m, k.l, l);
+        hold_p = select_lanes(m, k.hold_p, hold_p);
+        hold_l = select_lanes(m, k.hold_l, hold_l);
+        bend = select_lanes(m, k.bend, bend);
+        regime = select_lanes(m, k.regime, regime);
     }
 };
 
@@ -130,7 +130,8 @@ CSPACE_INLINE mask_of<V> hold_peak(const VelocityChangeOf<V>& q, V T, mask_of<V>
     const auto fits =
         asked && s2 >= -square_rounding(q, T, p) && l >= q.limits.a_min && hold >= -time_rounding * T;
     const V bend = p * (p - 4 * l) / (4 * (p - l));
-    found.replace(fits, {p, l, not_negative(hold), fill<V>(0.0), bend, number_of<V>(Regime::peak_held)});
+    found.replace(fits,
+                  {p, l, not_negative(hold), fill_lanes<V>(0.0), bend, number_of<V>(Regime::peak_held)});
     return fits;
 }
 
@@ -144,7 +145,8 @@ CSPACE_INLINE mask_of<V> hold_trough(const VelocityChangeOf<V>& q, V T, mask_of<
     const auto fits =
         asked && s2 >= -square_rounding(q, T, l) && p <= q.limits.a_max && hold >= -time_rounding * T;
     const V bend = -l * (4 * p - l) / (4 * (p - l));
-    found.replace(fits, {p, l, fill<V>(0.0), not_negative(hold), bend, number_of<V>(Regime::trough_held)});
+    found.replace(fits,
+                  {p, l, fill_lanes<V>(0.0), not_negative(hold), bend, number_of<V>(Regime::trough_held)});
     return fits;
 }
 
@@ -164,15 +166,15 @@ CSPACE_INLINE Peaks<V> hold_both(const VelocityChangeOf<V>& q, V T) {
 
 template <class V>
 CSPACE_INLINE Peaks<V> find_peaks(const VelocityChangeOf<V>& q, V T) {
-    const V J = q.limits.jerk, a0 = q.a0, af = q.af, zero = fill<V>(0.0);
+    const V J = q.limits.jerk, a0 = q.a0, af = q.af, zero = fill_lanes<V>(0.0);
     const V w = not_negative((J * T + a0 - af) / 2);
     const V kappa = J * (q.vf - q.v0) + (a0 * a0 - af * af) / 2;
     // All phases last zero or more for p between a0 and af + w.
     const V ratio = kappa / w, most = max(af + w, a0);
     const auto lasts = w > 0;
-    const V p = select(lasts, min(max((w + ratio) / 2, a0), most), a0);
-    const V bend = select(lasts, (3 * w - kappa * kappa / (w * w * w)) / 8, zero);
-    Peaks<V> found{p, select(lasts, p - w, a0), zero, zero, bend, number_of<V>(Regime::free)};
+    const V p = select_lanes(lasts, min(max((w + ratio) / 2, a0), most), a0);
+    const V bend = select_lanes(lasts, (3 * w - kappa * kappa / (w * w * w)) / 8, zero);
+    Peaks<V> found{p, select_lanes(lasts, p - w, a0), zero, zero, bend, number_of<V>(Regime::free)};
     const V slack = acceleration_rounding * (abs(found.p) + abs(found.l));
     const auto high = found.p > q.limits.a_max + slack, low = found.l < q.limits.a_min - slack;
     auto open = high || low;
@@ -186,13 +188,13 @@ CSPACE_INLINE Peaks<V> find_peaks(const VelocityChangeOf<V>& q, V T) {
 // From (v, a) to v_max without acceleration, +J, hold, −J: the times into t[0], t[1], t[2]. Returns the peak.
 template <class V>
 CSPACE_INLINE V climb_to_cruise(V v, V a, V v_max, V a_max, V J, V* t) {
-    V p = max(root_or_zero(J * (v_max - v) + a * a / 2), a), hold = fill<V>(0.0);
+    V p = max(root_or_zero(J * (v_max - v) + a * a / 2), a), hold = fill_lanes<V>(0.0);
     const auto is_held = p > a_max;
     if (any(is_held)) {
         const V held = max(a_max, a);
         const V time = not_negative((v_max - v - (2 * held * held - a * a) / (2 * J)) / held);
-        p = select(is_held, held, p);
-        hold = select(is_held, time, hold);
+        p = select_lanes(is_held, held, p);
+        hold = select_lanes(is_held, time, hold);
     }
     t[0] = (p - a) / J;
     t[1] = hold;
@@ -231,12 +233,12 @@ template <class V>
 CSPACE_INLINE void replace_by_cruise(mask_of<V> m, const VelocityChangeOf<V>& q, V T, ReachOf<V>& r) {
     SevenPhasesOf<V> f = touch_cruise(q);
     f.t[3] = not_negative(T - duration_of(f));
-    for (int i = 0; i < 7; ++i) r.phases.t[i] = select(m, f.t[i], r.phases.t[i]);
-    r.phases.peak = select(m, f.peak, r.phases.peak);
-    r.phases.trough = select(m, f.trough, r.phases.trough);
-    r.slope = select(m, q.limits.v_max, r.slope);
-    r.bend = select(m, fill<V>(0.0), r.bend);
-    r.regime = select(m, number_of<V>(Regime::cruise), r.regime);
+    for (int i = 0; i < 7; ++i) r.phases.t[i] = select_lanes(m, f.t[i], r.phases.t[i]);
+    r.phases.peak = select_lanes(m, f.peak, r.phases.peak);
+    r.phases.trough = select_lanes(m, f.trough, r.phases.trough);
+    r.slope = select_lanes(m, q.limits.v_max, r.slope);
+    r.bend = select_lanes(m, fill_lanes<V>(0.0), r.bend);
+    r.regime = select_lanes(m, number_of<V>(Regime::cruise), r.regime);
 }
 
 // With accelerations that jump: a_max up to a velocity, then a_min.
@@ -261,7 +263,7 @@ inline ReachOf<V> find_farthest(const VelocityChangeOf<V>& q, V T) {
     using namespace reach;
     if constexpr (Lanes<V>::count == 1)
         if (!q.limits.has_jerk()) return reach_by_accelerations(q, T);
-    const V J = q.limits.jerk, a0 = q.a0, zero = fill<V>(0.0);
+    const V J = q.limits.jerk, a0 = q.a0, zero = fill_lanes<V>(0.0);
     const Peaks<V> k = find_peaks(q, T);
     const V v_fall = q.v0 + (k.p * k.p - a0 * a0) / (2 * J) + k.p * k.hold_p;  // where −J begins
     ReachOf<V> r{zero, v_fall + k.p * (k.p - k.l) / (2 * J), k.bend, k.regime, {}};
@@ -301,13 +303,13 @@ namespace reach {
 template <class V>
 CSPACE_INLINE SevenPhasesOf<V> change_upwards(const VelocityChangeOf<V>& q) {
     const V J = q.limits.jerk, dv = q.vf - q.v0, a0 = q.a0, af = q.af, higher = max(a0, af);
-    V p = max(root_or_zero(J * dv + (a0 * a0 + af * af) / 2), higher), hold = fill<V>(0.0);
+    V p = max(root_or_zero(J * dv + (a0 * a0 + af * af) / 2), higher), hold = fill_lanes<V>(0.0);
     const auto is_held = p > q.limits.a_max;
     if (any(is_held)) {
         const V held = max(q.limits.a_max, higher);
         const V time = not_negative((dv - (2 * held * held - a0 * a0 - af * af) / (2 * J)) / held);
-        p = select(is_held, held, p);
-        hold = select(is_held, time, hold);
+        p = select_lanes(is_held, held, p);
+        hold = select_lanes(is_held, time, hold);
     }
     SevenPhasesOf<V> f;
     f.peak = p;
@@ -326,7 +328,7 @@ CSPACE_INLINE SevenPhasesOf<V> change_downwards(const VelocityChangeOf<V>& q) {
     g.peak = q.a0;
     g.trough = -f.peak;
     g.t[2] = not_negative(q.a0) / q.limits.jerk;
-    g.t[4] = (min(q.a0, fill<V>(0.0)) - g.trough) / q.limits.jerk;
+    g.t[4] = (min(q.a0, fill_lanes<V>(0.0)) - g.trough) / q.limits.jerk;
     g.t[5] = f.t[1];
     g.t[6] = f.t[2];
     return g;
@@ -348,25 +350,26 @@ inline DomainOf<V> find_domain(const VelocityChangeOf<V>& q) {
     using namespace reach;
     if constexpr (Lanes<V>::count == 1)
         if (!q.limits.has_jerk()) return find_domain_by_acceleration(q);
-    const V J = q.limits.jerk, dv = q.vf - q.v0, a0 = q.a0, af = q.af, zero = fill<V>(0.0);
-    const V ramp = select(af >= a0, fill<V>(1.0), fill<V>(-1.0)) * (af - a0) * (af + a0) / (2 * J);
+    const V J = q.limits.jerk, dv = q.vf - q.v0, a0 = q.a0, af = q.af, zero = fill_lanes<V>(0.0);
+    const V ramp =
+        select_lanes(af >= a0, fill_lanes<V>(1.0), fill_lanes<V>(-1.0)) * (af - a0) * (af + a0) / (2 * J);
     // A single phase is the shortest change both ways, but upwards not between negative accelerations.
     const V gap = J * (dv - ramp), size = J * abs(dv) + a0 * a0 + af * af;
     const auto is_ramp = abs(gap) <= acceleration_rounding * size;
     const auto upwards = (is_ramp && !(a0 < 0 && af < 0)) || (!is_ramp && gap > 0);
     const VelocityChangeOf<V> u = select_change<V>(upwards, q, mirror_change(q));
     const SevenPhasesOf<V> f = change_upwards(u);
-    const V never = fill<V>(infinity), displaced = displace_axis(u, f);
+    const V never = fill_lanes<V>(infinity), displaced = displace_axis(u, f);
     const V room = (u.a0 * u.a0 + u.af * u.af) / 2 - J * (u.vf - u.v0);
     DomainOf<V> d{duration_of(f), never,
-                  never,          select(upwards, displaced, -displaced),
+                  never,          select_lanes(upwards, displaced, -displaced),
                   zero,           u.a0 > 0 && u.af > 0 && room > 0};
     if (any(d.has_gap)) {
         const SevenPhasesOf<V> g = change_downwards(u);
         const V begin = max((u.a0 + u.af - 2 * root_or_zero(room)) / J, d.first), after = displace_axis(u, g);
-        d.gap_begin = select(d.has_gap, begin, never);
-        d.gap_end = select(d.has_gap, duration_of(g), never);
-        d.displacement_after_gap = select(upwards, after, -after);
+        d.gap_begin = select_lanes(d.has_gap, begin, never);
+        d.gap_end = select_lanes(d.has_gap, duration_of(g), never);
+        d.displacement_after_gap = select_lanes(upwards, after, -after);
     }
     return d;
 }

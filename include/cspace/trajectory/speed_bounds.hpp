@@ -67,31 +67,32 @@ CSPACE_INLINE int find_lane(V v, V largest) {
 template <class V>
 CSPACE_INLINE Edge largest_edge(V value, V slope, V offset) {
     double slopes[Lanes<V>::count], offsets[Lanes<V>::count];
-    store(slopes, slope);
-    store(offsets, offset);
+    store_lanes(slopes, slope);
+    store_lanes(offsets, offset);
     const V largest = largest_lanes(value);
     const int k = find_lane(value, largest);
-    return {lane(largest, 0), slopes[k], offsets[k]};
+    return {get_lane(largest, 0), slopes[k], offsets[k]};
 }
 
 // What the rows and the range of the next place leave of y at x.
 CSPACE_INLINE Edges bound_next(const Rows& rows, double x, const SpeedRange& next) {
     using V = Pack<native_width>;
-    V slope = load<V>(rows.slope);
-    V low_slope = slope, high_slope = slope, low_offset = load<V>(rows.low), high_offset = load<V>(rows.high);
+    V slope = load_lanes<V>(rows.slope);
+    V low_slope = slope, high_slope = slope, low_offset = load_lanes<V>(rows.low),
+      high_offset = load_lanes<V>(rows.high);
     V low = slope * x + low_offset, high = slope * x + high_offset;
     for (int r = Lanes<V>::count; r < rows.count; r += Lanes<V>::count) {
-        slope = load<V>(rows.slope + r);
-        const V part = slope * x, offset = load<V>(rows.low + r), other = load<V>(rows.high + r);
+        slope = load_lanes<V>(rows.slope + r);
+        const V part = slope * x, offset = load_lanes<V>(rows.low + r), other = load_lanes<V>(rows.high + r);
         const V below = part + offset, above = part + other;
         const auto higher = below > low;
         const auto lower = above < high;
-        low = select(higher, below, low);
-        low_slope = select(higher, slope, low_slope);
-        low_offset = select(higher, offset, low_offset);
-        high = select(lower, above, high);
-        high_slope = select(lower, slope, high_slope);
-        high_offset = select(lower, other, high_offset);
+        low = select_lanes(higher, below, low);
+        low_slope = select_lanes(higher, slope, low_slope);
+        low_offset = select_lanes(higher, offset, low_offset);
+        high = select_lanes(lower, above, high);
+        high_slope = select_lanes(lower, slope, high_slope);
+        high_offset = select_lanes(lower, other, high_offset);
     }
     Edges edges{largest_edge(low, low_slope, low_offset), largest_edge(-high, high_slope, high_offset)};
     edges.high.value = -edges.high.value;

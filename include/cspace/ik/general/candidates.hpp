@@ -35,7 +35,7 @@ inline void append_candidate(Candidates& out, const double* q, bool close) {
 template <class V>
 inline void put_lane(Candidates& out, const V* q, int k, bool close) {
     double row[6];
-    for (int i = 0; i < 6; ++i) row[i] = lane(q[i], k);
+    for (int i = 0; i < 6; ++i) row[i] = get_lane(q[i], k);
     append_candidate(out, row, close);
 }
 
@@ -47,14 +47,14 @@ inline void polish_candidates(const GeneralPlan& plan, const Posed& goal, int fi
         using V = decltype(pack);
         const int row = first + i, lanes = std::min(all.count - row, Lanes<V>::count);
         const Pose<V> goals = fill_pose<V>(goal);
-        V q[6], step = fill<V>(1.0);
+        V q[6], step = fill_lanes<V>(1.0);
         load_rows(&all.q[row][0], 6, lanes, 6, q);
         for (int k = 0; k < 8 && any(step > last_step); ++k)
             step = newton_step(plan.chain, goals, 1.0, q, 0.3);
         for (int k = 0; k < lanes; ++k) {
-            all.settled[row + k] = lane(step, k) < converged;
+            all.settled[row + k] = get_lane(step, k) < converged;
             if (!all.settled[row + k]) continue;
-            for (int j = 0; j < 6; ++j) all.q[row + k][j] = lane(q[j], k);
+            for (int j = 0; j < 6; ++j) all.q[row + k][j] = get_lane(q[j], k);
         }
     });
 }

@@ -297,13 +297,13 @@ inline Elimination eliminate_angles(const Loop& loop) {
     right_side(loop, e, g);
     left_side(loop, B);
     const Functionals<V> f = functionals_behind(loop.M[5], g);
-    V level[9], across[9], quarter[9], square = fill<V>(0.0);  // Rz(a0) v, as in invariants.hpp
+    V level[9], across[9], quarter[9], square = fill_lanes<V>(0.0);  // Rz(a0) v, as in invariants.hpp
     for (int m = 0; m < 9; ++m) {
         const Vec3d part[4] = {B[m].l, B[m].p, B[m].m, B[m].q};
         level[m] = B[m].pp * f.pp + B[m].pl * f.pl + B[m].one * f.one;
-        across[m] = quarter[m] = fill<V>(0.0);
+        across[m] = quarter[m] = fill_lanes<V>(0.0);
         for (int k = 0; k < 4; ++k) {
-            const V x = fill<V>(part[k].x), y = fill<V>(part[k].y), z = fill<V>(part[k].z);
+            const V x = fill_lanes<V>(part[k].x), y = fill_lanes<V>(part[k].y), z = fill_lanes<V>(part[k].z);
             const auto& [fx, fy, fz] = f.part[k];
             level[m] = mul_add(fz, z, level[m]);
             across[m] = mul_add(fx, x, mul_add(fy, y, across[m]));
@@ -312,13 +312,13 @@ inline Elimination eliminate_angles(const Loop& loop) {
         for (const V& v : {level[m], across[m], quarter[m]}) square = mul_add(v, v, square);
     }
     const V size = sqrt(square),
-            scale = where(size > vanished_equation, 1.0 / max(size, fill<V>(vanished_equation)));
+            scale = keep_lanes(size > vanished_equation, 1.0 / max(size, fill_lanes<V>(vanished_equation)));
     e.faintest = 1e300;
-    for (int i = 0; i < 6; ++i) e.faintest = min(e.faintest, lane(size, i));
+    for (int i = 0; i < 6; ++i) e.faintest = min(e.faintest, get_lane(size, i));
     for (int m = 0; m < 9; ++m) {
-        store(e.level[m], scale * level[m]);
-        store(e.across[m], scale * across[m]);
-        store(e.quarter[m], scale * quarter[m]);
+        store_lanes(e.level[m], scale * level[m]);
+        store_lanes(e.across[m], scale * across[m]);
+        store_lanes(e.quarter[m], scale * quarter[m]);
     }
     return e;
 }
@@ -333,8 +333,8 @@ inline Elimination eliminate_angles(const Loop& loop) {
 
 template <class V>
 CSPACE_INLINE V coefficient_at(const Elimination& e, int i, int monomial, V c, V s) {
-    return mul_add(s, fill<V>(e.quarter[monomial][i]),
-                   mul_add(c, fill<V>(e.across[monomial][i]), fill<V>(e.level[monomial][i])));
+    return mul_add(s, fill_lanes<V>(e.quarter[monomial][i]),
+                   mul_add(c, fill_lanes<V>(e.across[monomial][i]), fill_lanes<V>(e.level[monomial][i])));
 }
 
 template <int reduced, class V>
@@ -354,7 +354,7 @@ CSPACE_NOINLINE V determinant(const Elimination& e, V c, V s) {
                 A[i][3 * block + j] = coefficient_at(e, i, 3 * (2 - block) + j, c, s);
     V d3[3], d6[6], factor3[3], factor6[6];
     linear::factor_qr(A, d3, factor3);  // [R0 b1 b2; 0 a1 a2]
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     V out = product_of(d3);
     V B[6][9];  // [R0 b2 b1; a1 0 a2]
     for (int i = 0; i < 3; ++i)

@@ -67,7 +67,7 @@ inline double width_of(const Arc& arc) { return 4 * arc.quarter * (arc.to - arc.
 // The last arc written is one of the pieces if it may hold roots.
 inline void keep_if_crossed(Pieces& pieces) {
     Piece& last = pieces.piece[pieces.count];
-    last.signs = variations<degree>(last.arc.b, last.arc.noise);
+    last.signs = count_variations<degree>(last.arc.b, last.arc.noise);
     pieces.count += last.signs.most > 0;
 }
 
@@ -87,7 +87,8 @@ inline int order_of_zero(const Function& f, double angle) {
     for (int k = 0; k < 4; ++k) set_lane(at, k, angle + (k < 2 ? -near : near) * (k % 3 ? 1 : ratio));
     sincos(at, s, c);
     const V value = abs(f(c, s));
-    const double outside = lane(value, 0) + lane(value, 3), inside = lane(value, 1) + lane(value, 2);
+    const double outside = get_lane(value, 0) + get_lane(value, 3),
+                 inside = get_lane(value, 1) + get_lane(value, 2);
     const double order = std::round(std::log(outside / inside) / std::log(ratio));
     return order > 0 && order <= degree ? int(order) : 0;
 }
@@ -104,7 +105,7 @@ inline void close_roots(const Function& f, const Arc& arc, const Variations& sig
     sincos(angle, s, c);
     const V value = f(c, s);
     ++out.evaluations;
-    const double left = lane(value, 0), at = lane(value, 1), right = lane(value, 2);
+    const double left = get_lane(value, 0), at = get_lane(value, 1), right = get_lane(value, 2);
     const double slope = (right - left) / (2 * h), bend = (right - 2 * at + left) / (h * h);
     double vertex = middle - slope / bend;
     if (!(std::fabs(vertex - middle) < 2 * (to - from) + 2 * h)) vertex = middle;
@@ -132,7 +133,7 @@ inline void find_simple_roots(const Pieces& simple, double last_step, HiddenAngl
         load_rows(simple.piece[first].arc.b, sizeof(Piece) / sizeof(double), lanes, degree + 1, b);
         const V u = only_roots<degree>(b, last_step);
         for (int k = 0; k < lanes; ++k)
-            append_hidden_angle(out, {angle_at(simple.piece[first + k].arc, lane(u, k)), 0, 1, 0, 0});
+            append_hidden_angle(out, {angle_at(simple.piece[first + k].arc, get_lane(u, k)), 0, 1, 0, 0});
     });
 }
 
@@ -186,8 +187,9 @@ inline void sample_circle(const SamplerTables& t, const Function& f, double* out
     int j = 0;
     if constexpr (std::is_invocable_v<const Function&, Pack<wide>, Pack<wide>>)
         for (; j + wide <= samples; j += wide)
-            store(out + j, f(load<Pack<wide>>(t.cosine + j), load<Pack<wide>>(t.sine + j)));
-    for (; j < samples; j += 4) store(out + j, f(load<Pack<4>>(t.cosine + j), load<Pack<4>>(t.sine + j)));
+            store_lanes(out + j, f(load_lanes<Pack<wide>>(t.cosine + j), load_lanes<Pack<wide>>(t.sine + j)));
+    for (; j < samples; j += 4)
+        store_lanes(out + j, f(load_lanes<Pack<4>>(t.cosine + j), load_lanes<Pack<4>>(t.sine + j)));
 }
 
 // f(c, s) on packs of four: a trigonometric polynomial of degree 8. The roots are as exact as Newton's method

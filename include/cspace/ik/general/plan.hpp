@@ -139,11 +139,11 @@ inline double pose_sensitivity(const GeneralPlan& plan, const Posed& goal, int n
     const SamplerTables& tables = sampler_tables();
     double largest = 0, change = 0;
     for (int j = 0; j < samples; j += 4) {
-        const V c = load<V>(tables.cosine + j), s = load<V>(tables.sine + j);
+        const V c = load_lanes<V>(tables.cosine + j), s = load_lanes<V>(tables.sine + j);
         const V exact = determinant(e, c, s), other = determinant(slipped, c, s);
         for (int k = 0; k < 4; ++k) {
-            largest = max(largest, std::fabs(lane(exact, k)));
-            change = max(change, std::fabs(lane(other, k) - lane(exact, k)));
+            largest = max(largest, std::fabs(get_lane(exact, k)));
+            change = max(change, std::fabs(get_lane(other, k) - get_lane(exact, k)));
         }
     }
     return change / (slip * largest);

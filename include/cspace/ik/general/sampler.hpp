@@ -159,16 +159,16 @@ CSPACE_INLINE void combine_rows(const double (*row)[padded], const double* x, in
     using V = Pack<native_width>;
     constexpr int whole = padded / native_width, rest = padded % native_width;  // rest: none or four
     V sum[whole];
-    Pack<4> last = fill<Pack<4>>(0.0);
-    for (V& v : sum) v = fill<V>(0.0);
+    Pack<4> last = fill_lanes<Pack<4>>(0.0);
+    for (V& v : sum) v = fill_lanes<V>(0.0);
     for (int j = 0; j < count; ++j) {
         for (int i = 0; i < whole; ++i)
-            sum[i] = mul_add(fill<V>(x[j]), load<V>(row[j] + native_width * i), sum[i]);
+            sum[i] = mul_add(fill_lanes<V>(x[j]), load_lanes<V>(row[j] + native_width * i), sum[i]);
         if constexpr (rest > 0)
-            last = mul_add(fill<Pack<4>>(x[j]), load<Pack<4>>(row[j] + padded - rest), last);
+            last = mul_add(fill_lanes<Pack<4>>(x[j]), load_lanes<Pack<4>>(row[j] + padded - rest), last);
     }
-    for (int i = 0; i < whole; ++i) store(out + native_width * i, sum[i]);
-    if constexpr (rest > 0) store(out + padded - rest, last);
+    for (int i = 0; i < whole; ++i) store_lanes(out + native_width * i, sum[i]);
+    if constexpr (rest > 0) store_lanes(out + padded - rest, last);
 }
 
 // The arc that starts at sample 2 k; f: the samples, twice round.
@@ -193,7 +193,7 @@ inline void resample_arc(const SamplerTables& t, const Function& f, double unit,
         V angle, s, c;
         for (int k = 0; k < 4; ++k) set_lane(angle, k, centre + arc_angle(t.node[m + k], quarter));
         sincos(angle, s, c);
-        store(g + m, f(c, s));
+        store_lanes(g + m, f(c, s));
     }
     for (int m = 0; m <= degree; ++m) {
         g[m] *= arc_weight(t.node[m], quarter) / unit;

@@ -15,7 +15,7 @@ inline void mark_self_motions(const GeneralPlan& plan, const Posed& goal, Soluti
         PoseError error;
         measure_error(plan.chain, goal, 1, out.q[k], error);
         if (weak_direction(error.jacobian, hardly).sigma > hardly) continue;
-        decompose(error.jacobian);
+        decompose_matrix(error.jacobian);
         out.self_motion[k] =
             find_self_motion(plan.chain, goal, 1, out.q[k], error.jacobian, out.direction[k]);
         if (out.self_motion[k]) out.status = Status::singular;

@@ -45,7 +45,7 @@ inline void follow_roots(const Loop& loop, const Elimination& e, const double* a
         using V = decltype(pack);
         const int lanes = std::min(count - first, Lanes<V>::count);
         V q[6], second[6];
-        const Turn<V> a0 = turn_by(load<V>(angle + first, lanes));
+        const Turn<V> a0 = turn_by(load_lanes<V>(angle + first, lanes));
         ReducedEquations<V> reduced;
         reduce_equations(e, a0.c, a0.s, reduced);
         V null[12];
@@ -65,7 +65,7 @@ inline void split_planes(const Loop& loop, const Elimination& e, const double* a
     const bool doubled = !(e.a4_rank > firm_rank);
     for (int first = 0; first < count; first += 4) {
         const int lanes = count - first < 4 ? count - first : 4;
-        V at = fill<V>(0.0);
+        V at = fill_lanes<V>(0.0);
         for (int k = 0; k < 4; ++k) set_lane(at, k, angle[first + (k < lanes ? k : lanes - 1)]);
         const Turn<V> a0 = turn_by(at);
         ReducedEquations<V> reduced;
@@ -77,7 +77,7 @@ inline void split_planes(const Loop& loop, const Elimination& e, const double* a
             V q[6], second[6];
             joints_from(loop, e, a0, half_angles(one), q, second);
             for (int k = 0; k < lanes; ++k) {
-                if (!lane(split, k)) continue;
+                if (!get_lane(split, k)) continue;
                 put_lane(out, q, k, true);
                 if (doubled) put_lane(out, second, k, true);
             }

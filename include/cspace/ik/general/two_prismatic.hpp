@@ -55,7 +55,7 @@ inline TwoSheets two_sheets(const Loop& loop) {
     Posed link = identity_pose();
     for (int j = 0; j < 6; ++j) {
         if (loop.slides[j]) {
-            out.u[slides] = column(link.R, 2);
+            out.u[slides] = matrix_column(link.R, 2);
             out.link[slides] = turns - 1;
             out.slide[slides++] = loop.joint[j];
         } else {
@@ -66,13 +66,13 @@ inline TwoSheets two_sheets(const Loop& loop) {
         out.A[turns - 1] = link.R;
         out.t[turns - 1] = link.t;
     }
-    out.row = column(out.A[2], 2);
+    out.row = matrix_column(out.A[2], 2);
     out.end = transpose_times(out.A[2], Vec3d{0, 0, 1});
     const auto square_across = [](const Vec3d& v) { return v.x * v.x + v.y * v.y; };
     out.square_end = square_across(out.end);
     out.square_corner =
-        max(square_across(column(out.A[0], 2)), square_across(column(transpose(out.A[3]), 2))) *
-        square_across(column(out.A[1], 2));
+        max(square_across(matrix_column(out.A[0], 2)), square_across(matrix_column(transpose(out.A[3]), 2))) *
+        square_across(matrix_column(out.A[1], 2));
     return out;
 }
 
@@ -84,7 +84,7 @@ CSPACE_INLINE Vec3<V> rotate_about_z(const Turn<V>& t, const Vec3<V>& v) {
 template <class V>
 CSPACE_INLINE OnSheets<V> rotate_about_z(const TurnOnSheets<V>& t, const Vec3<V>& v) {
     Vec3<V> odd = rotate_about_z(t.odd, v);
-    odd.z = fill<V>(0.0);
+    odd.z = fill_lanes<V>(0.0);
     return {rotate_about_z(t.even, v), odd};
 }
 template <class V>
@@ -102,24 +102,26 @@ CSPACE_INLINE Turn<V> turn_between(const Vec3<V>& w, const Vec3<V>& x, double n2
 template <class V>
 CSPACE_INLINE OnSheets<V> from_link(const TwoSheets& s, const AtHiddenAngle<V>& at, const Mat3<V>& R0A0,
                                     int i, const Vec3d& fixed) {
-    const Vec3<V> none = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)}, v = fill3<V>(fixed);
+    const Vec3<V> none = {fill_lanes<V>(0.0), fill_lanes<V>(0.0), fill_lanes<V>(0.0)},
+                  v = fill_vec3<V>(fixed);
     if (i == 0) return {rotate_about_z(at.a0, v), none};
     if (i == 1) return rotate_sheets(R0A0, rotate_about_z(at.a1, v));
-    if (i == 3) return {fill3<V>(transpose_times(s.A[3], fixed)), none};
+    if (i == 3) return {fill_vec3<V>(transpose_times(s.A[3], fixed)), none};
     const TurnOnSheets<V> back = {{at.a3.even.c, -at.a3.even.s}, {at.a3.odd.c, -at.a3.odd.s}};
-    return rotate_sheets(fill33<V>(transpose(s.A[3])),
-                         rotate_about_z(back, fill3<V>(transpose_times(s.A[2], fixed))));
+    return rotate_sheets(fill_mat3<V>(transpose(s.A[3])),
+                         rotate_about_z(back, fill_vec3<V>(transpose_times(s.A[2], fixed))));
 }
 
 template <class V>
 CSPACE_INLINE AtHiddenAngle<V> at_hidden_angle(const TwoSheets& s, const Turn<V>& a0) {
     AtHiddenAngle<V> at;
     at.a0 = a0;
-    const Vec3<V> end = fill3<V>(column(s.A[1], 2));
-    Mat3<V> R0A0 = fill33<V>(s.A[0]);
-    R0A0 = from_columns(rotate_about_z(a0, column(R0A0, 0)), rotate_about_z(a0, column(R0A0, 1)),
-                        rotate_about_z(a0, column(R0A0, 2)));
-    const Mat3<V> B = fill33<V>(s.A[3]) * R0A0;
+    const Vec3<V> end = fill_vec3<V>(matrix_column(s.A[1], 2));
+    Mat3<V> R0A0 = fill_mat3<V>(s.A[0]);
+    R0A0 =
+        from_columns(rotate_about_z(a0, matrix_column(R0A0, 0)), rotate_about_z(a0, matrix_column(R0A0, 1)),
+                     rotate_about_z(a0, matrix_column(R0A0, 2)));
+    const Mat3<V> B = fill_mat3<V>(s.A[3]) * R0A0;
     const Vec3<V> row = {B.m[2][0], B.m[2][1], B.m[2][2]};
     const V a = row.x * end.x + row.y * end.y, b = row.y * end.x - row.x * end.y;
     const V k = s.row.z - row.z * end.z;
@@ -129,7 +131,7 @@ CSPACE_INLINE AtHiddenAngle<V> at_hidden_angle(const TwoSheets& s, const Turn<V>
     at.a1 = {{scale * a * k, scale * b * k}, {-scale * b, scale * a}};
     const OnSheets<V> x = rotate_sheets(B, rotate_about_z(at.a1, end));
     // x = Rz(−a3) A2ᵀ z
-    const Vec3<V> w = fill3<V>(s.end);
+    const Vec3<V> w = fill_vec3<V>(s.end);
     at.a3 = {turn_between(x.even, w, s.square_end), turn_between(x.odd, w, s.square_end)};
     at.p = from_link(s, at, R0A0, 0, s.t[0]);
     for (int i = 1; i < 4; ++i) {

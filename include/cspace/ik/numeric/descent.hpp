@@ -74,24 +74,25 @@ inline constexpr double never_zero = 1e-30;  // damping that bounds the step whe
 // Evaluates the trial. It becomes the current iterate if it is better, or if it must be accepted.
 template <class V>
 CSPACE_INLINE void take_trial(const Path& path, const Rows& rows, bool always, Descent<V>& d) {
-    V cost = fill<V>(0.0);
+    V cost = fill_lanes<V>(0.0);
     for (int r = 0; r < rows.m; ++r) cost = mul_add(0.5 * d.there.e[r], d.there.e[r], cost);
     const mask_of<V> begun = d.fresh > 0.5;
     const mask_of<V> better = begun || (cost < d.cost), taken = always ? cost == cost : better;
     const mask_of<V> gains = begun || (cost < descent::nothing * d.cost);
-    d.slow = where(!gains, d.slow + 1.0);
-    const V mu = select(taken, max(descent::gained * d.mu, fill<V>(descent::least_mu)), descent::lost * d.mu);
-    d.mu = select(begun, fill<V>(descent::first_mu), mu);
-    d.cost = select(taken, cost, d.cost);
-    d.at.position = select(taken, d.there.position, d.at.position);
-    d.at.rotation = select(taken, d.there.rotation, d.at.rotation);
-    for (int j = 0; j < path.n; ++j) d.q[j] = select(taken, d.trial[j], d.q[j]);
+    d.slow = keep_lanes(!gains, d.slow + 1.0);
+    const V mu = select_lanes(taken, max(descent::gained * d.mu, fill_lanes<V>(descent::least_mu)),
+                              descent::lost * d.mu);
+    d.mu = select_lanes(begun, fill_lanes<V>(descent::first_mu), mu);
+    d.cost = select_lanes(taken, cost, d.cost);
+    d.at.position = select_lanes(taken, d.there.position, d.at.position);
+    d.at.rotation = select_lanes(taken, d.there.rotation, d.at.rotation);
+    for (int j = 0; j < path.n; ++j) d.q[j] = select_lanes(taken, d.trial[j], d.q[j]);
     for (int r = 0; r < rows.m; ++r) {
-        d.at.e[r] = select(taken, d.there.e[r], d.at.e[r]);
-        for (int j = 0; j < path.n; ++j) d.at.J[r][j] = select(taken, d.there.J[r][j], d.at.J[r][j]);
+        d.at.e[r] = select_lanes(taken, d.there.e[r], d.at.e[r]);
+        for (int j = 0; j < path.n; ++j) d.at.J[r][j] = select_lanes(taken, d.there.J[r][j], d.at.J[r][j]);
     }
-    d.steps = where(!begun, d.steps + 1.0);
-    d.fresh = fill<V>(0.0);
+    d.steps = keep_lanes(!begun, d.steps + 1.0);
+    d.fresh = fill_lanes<V>(0.0);
 }
 
 // The lanes that have finished. A descent within the tolerance continues while it makes good progress: the
@@ -103,7 +104,7 @@ CSPACE_INLINE mask_of<V> find_ended(const Path& path, const Task& task, Descent<
     const mask_of<V> settled =
         inside &&
         ((d.near > 0.5) || (max(d.at.position * (1 / path.length), d.at.rotation) <= descent::rounding));
-    d.near = where(inside, fill<V>(1.0));
+    d.near = keep_lanes(inside, fill_lanes<V>(1.0));
     const mask_of<V> stalled = (d.slow >= descent::patience) || (d.mu > descent::largest_mu);
     return settled || stalled || (d.steps >= double(task.most_steps));
 }
@@ -112,7 +113,7 @@ CSPACE_INLINE mask_of<V> find_ended(const Path& path, const Task& task, Descent<
 template <class V>
 CSPACE_INLINE void next_trial(const Path& path, const Task& task, const Rows& rows, Descent<V>& d) {
     V loose[max_joints], dx[max_joints];
-    const V one = fill<V>(1.0), zero = fill<V>(0.0);
+    const V one = fill_lanes<V>(1.0), zero = fill_lanes<V>(0.0);
     for (int j = 0; j < path.n; ++j) {
         loose[j] = one;
         if (!task.limited) continue;
@@ -120,20 +121,20 @@ CSPACE_INLINE void next_trial(const Path& path, const Task& task, const Rows& ro
         for (int r = 0; r < rows.m; ++r) pull = mul_add(d.at.J[r][j], d.at.e[r], pull);
         const mask_of<V> active =
             ((d.q[j] <= task.lower[j]) && (pull < 0.0)) || ((d.q[j] >= task.upper[j]) && (pull > 0.0));
-        loose[j] = select(active, zero, one);
+        loose[j] = select_lanes(active, zero, one);
     }
     V damping = 2.0 * d.mu * d.cost + descent::never_zero;
     if (task.method == Method::newton) {
-        damping = fill<V>(descent::never_zero);
+        damping = fill_lanes<V>(descent::never_zero);
         for (int r = 0; r < rows.m; ++r)
             for (int j = 0; j < path.n; ++j)
                 damping = mul_add(descent::newton_floor * d.at.J[r][j], d.at.J[r][j], damping);
     }
     damped_step(rows.m, path.n, d.at.J, d.at.e, loose, damping, dx);
-    const V keep = shortening(largest_of(dx, path.n), descent::stride);
+    const V keep = shortening_factor(largest_of(dx, path.n), descent::stride);
     for (int j = 0; j < path.n; ++j) {
         V to = mul_add(keep * unit_of(path, j), dx[j], d.q[j]);
-        if (task.limited) to = min(max(to, fill<V>(task.lower[j])), fill<V>(task.upper[j]));
+        if (task.limited) to = min(max(to, fill_lanes<V>(task.lower[j])), fill_lanes<V>(task.upper[j]));
         d.trial[j] = to;
     }
 }
@@ -157,16 +158,17 @@ void begin_lane(const DescentRows& rows, std::size_t row, int l, Descent<V>& d) 
 // Writes the result of lane l to row `row`; true if it reaches the goal.
 template <class V>
 bool end_lane(const DescentRows& rows, std::size_t row, int l, const Descent<V>& d) {
-    const double position = lane(d.at.position, l), rotation = lane(d.at.rotation, l), cost = lane(d.cost, l);
+    const double position = get_lane(d.at.position, l), rotation = get_lane(d.at.rotation, l),
+                 cost = get_lane(d.cost, l);
     const bool reached = position <= rows.task->tolerance && rotation <= rows.task->tolerance;
     DescentEnd& end = rows.ends[row];
     const bool known = end.ending != Ending::unknown;
     if (known && (end.ending == Ending::reached || !(cost < end.cost))) return reached;
-    const auto steps = std::int32_t(lane(d.steps, l));
+    const auto steps = std::int32_t(get_lane(d.steps, l));
     const Ending missed = steps >= rows.task->most_steps ? Ending::exhausted : Ending::stalled;
     end = {reached ? Ending::reached : missed, steps, cost, position, rotation};
     for (int j = 0; j < rows.path->n; ++j)
-        rows.q[row * std::size_t(rows.path->n) + std::size_t(j)] = lane(d.q[j], l);
+        rows.q[row * std::size_t(rows.path->n) + std::size_t(j)] = get_lane(d.q[j], l);
     return reached;
 }
 
@@ -176,10 +178,10 @@ void run_descents(const DescentRows& rows) {
     const Rows counted = rows_of(*rows.task);
     const bool always = rows.task->method == Method::newton;
     Descent<V> d;
-    for (V& x : d.trial) x = fill<V>(0.0);
+    for (V& x : d.trial) x = fill_lanes<V>(0.0);
     d.T_goal_first = fill_pose<V>(rows.path->T_base_first);
-    d.cost = d.mu = d.slow = d.steps = d.near = fill<V>(0.0);
-    d.fresh = fill<V>(1.0);
+    d.cost = d.mu = d.slow = d.steps = d.near = fill_lanes<V>(0.0);
+    d.fresh = fill_lanes<V>(1.0);
     std::size_t item[lanes], next = 0, stop = rows.count;
     bool live[lanes];
     const auto row_of = [&](std::size_t k) { return rows.pick ? std::size_t(rows.pick[k]) : k; };
@@ -198,7 +200,7 @@ void run_descents(const DescentRows& rows) {
         if (!any(done)) continue;
         bool alive = false;
         for (int l = 0; l < lanes; ++l) {
-            if (live[l] && lane(done, l)) {
+            if (live[l] && get_lane(done, l)) {
                 if (end_lane(rows, row_of(item[l]), l, d) && rows.first_only && item[l] < stop)
                     stop = item[l];
                 refill(l);

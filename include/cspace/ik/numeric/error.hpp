@@ -80,9 +80,9 @@ CSPACE_INLINE LogRate<V> log_rate(const Vec3<V>& w) {
     constexpr double series2 = 1e-4;  // square of the angle up to which two terms of the series are exact
     // 1/θ² − cot(θ/2) / 2θ; its series where the difference cancels.
     const mask_of<V> small = square < series2;
-    const V safe = select(small, fill<V>(1.0), square);
-    const V exact = (1.0 - 0.5 * angle * c / select(small, fill<V>(1.0), s)) / safe;
-    return {w, select(small, 1.0 / 12.0 + square * (1.0 / 720.0), exact)};
+    const V safe = select_lanes(small, fill_lanes<V>(1.0), square);
+    const V exact = (1.0 - 0.5 * angle * c / select_lanes(small, fill_lanes<V>(1.0), s)) / safe;
+    return {w, select_lanes(small, 1.0 / 12.0 + square * (1.0 / 720.0), exact)};
 }
 template <class V>
 CSPACE_INLINE Vec3<V> operator*(const LogRate<V>& rate, const Vec3<V>& omega) {
@@ -97,7 +97,7 @@ CSPACE_INLINE void measure_gap(const Path& path, const Rows& rows, const Pose<V>
     V s[max_path + 3], c[max_path + 3];
     kinematics::Axis<V> axes[max_path];
     const Pose<V> T = kinematics::place_axes(view_of(path), T_goal_first, q, s, c, axes);
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Vec3<V> w = rows.turns ? spatial::rotvec_of_rotation(T.R) : Vec3<V>{zero, zero, zero};
     const V error[6] = {T.t.x, T.t.y, T.t.z, w.x, w.y, w.z};
     const double per_length = 1 / path.length;
@@ -121,7 +121,7 @@ CSPACE_INLINE void measure_gap(const Path& path, const Rows& rows, const Pose<V>
         V column[6];
         write_twist(twist, per_length, column);
         for (int r = 0; r < rows.m; ++r)
-            out.J[r][j] = mul_add(fill<V>(unit * rows.weight[r]), column[rows.row[r]], out.J[r][j]);
+            out.J[r][j] = mul_add(fill_lanes<V>(unit * rows.weight[r]), column[rows.row[r]], out.J[r][j]);
     }
 }
 

@@ -89,7 +89,7 @@ inline void singular_rate(const double* J, int dof, const double* twist, const R
     svd.columns = 6;
     for (int r = 0; r < 6; ++r)
         for (int j = 0; j < dof; ++j) svd.us[r][j] = J[r * dof + j];
-    decompose(svd);
+    decompose_matrix(svd);
     for (int i = 0; i < 6; ++i) {
         const double sigma = svd.sigma[i];
         if (sigma <= tolerance::always_singular) continue;

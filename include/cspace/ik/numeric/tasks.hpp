@@ -129,7 +129,7 @@ inline double add_rows(const Mat3d& Q, const Vec3d& error, const double* weight,
     for (int k = 0; k < 3; ++k) {
         const double w2 = weight[k] * weight[k];
         if (!(w2 > 0)) continue;
-        const Vec3d axis = column(Q, k);
+        const Vec3d axis = matrix_column(Q, k);
         const double e = dot(axis, error);
         counted += e * e;
         at.cost += 0.5 * w2 * e * e;

@@ -33,7 +33,7 @@ struct PoseGap {
             axes[i] = prismatic[i] ? Vec3d{0, 0, 0} : tip.axis[i];
             if (prismatic[i]) continue;
             const Turn<double> t = turn_by(q[i]);
-            for (int j = i + 1; j < n; ++j) axes[j] = rotate(tip.axis[i], t, axes[j]);
+            for (int j = i + 1; j < n; ++j) axes[j] = rotate_about(tip.axis[i], t, axes[j]);
             R = spatial::rotation_about(tip.axis[i], t.c, t.s) * R;
         }
         const Vec3d turn = spatial::sine_between(R_goal, R);

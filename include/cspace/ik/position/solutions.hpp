@@ -72,7 +72,7 @@ bool is_free(const System& g, const double* q, double* along, bool& close, bool&
     SmallSvd<System::equations, n> J{System::equations, n, {}, {}, {}};
     for (int j = 0; j < n; ++j)
         for (int k = 0; k < System::equations; ++k) J.us[j][k] = at.slope[k][j];
-    decompose(J);
+    decompose_matrix(J);
     largest = largest_of(J.sigma, n);
     const double floor = std::fmax(tolerance::degenerate_pair * largest, tolerance::rounding);
     bool free = false;

@@ -25,8 +25,8 @@ struct TipGap {
                 continue;
             }
             const Turn<double> t = turn_by(q[i]);
-            for (int j = i + 1; j < n; ++j) columns[j] = rotate(axis[i], t, columns[j]);
-            const Vec3d r = rotate(axis[i], t, x - point[i]);
+            for (int j = i + 1; j < n; ++j) columns[j] = rotate_about(axis[i], t, columns[j]);
+            const Vec3d r = rotate_about(axis[i], t, x - point[i]);
             columns[i] = cross(axis[i], r);
             x = point[i] + r;
         }
@@ -91,7 +91,7 @@ double joint_between(const TipGap<n>& g, int joint, const Vec3d& from, const Vec
 template <int n>
 Vec3d move_point(const TipGap<n>& g, int i, double q, const Vec3d& x) {
     if (g.prismatic[i]) return x + q * g.axis[i];
-    return g.point[i] + rotate(g.axis[i], turn_by(q), x - g.point[i]);
+    return g.point[i] + rotate_about(g.axis[i], turn_by(q), x - g.point[i]);
 }
 
 namespace nearest {

@@ -98,10 +98,10 @@ CSPACE_INLINE SphericalTurns<V> three_turns(const Vec3d* axis, const Mat3<V>& R)
     const Care care;
     const Vec3d along = dot(axis[1], axis[2]) * axis[1];  // the part of h3 that q2 does not change
     const Vec3d lean = axis[2] - along, turned = cross(axis[1], axis[2]);
-    const Vec3<V> goal = R * fill3<V>(axis[2]);
+    const Vec3<V> goal = R * fill_vec3<V>(axis[2]);
     const TwoAngles<V> middle =
-        linear_equation<V>(fill<V>(dot(axis[0], lean)), fill<V>(dot(axis[0], turned)),
-                           dot(fill3<V>(axis[0]), goal) - dot(axis[0], along), 1.0, care, {1, 0});
+        linear_equation<V>(fill_lanes<V>(dot(axis[0], lean)), fill_lanes<V>(dot(axis[0], turned)),
+                           dot(fill_vec3<V>(axis[0]), goal) - dot(axis[0], along), 1.0, care, {1, 0});
     SphericalTurns<V> out;
     out.ok = middle.ok;
     for (int k = 0; k < 2; ++k) {
@@ -116,7 +116,7 @@ template <class V>
 CSPACE_INLINE Mat3<V> frame_towards(const Vec3<V>& w, const Vec3<V>& e) {
     const Vec3<V> n = (1.0 / norm(w)) * w;
     const Vec3<V> off = e - dot(e, n) * n;
-    const Vec3<V> u = (1.0 / max(norm(off), fill<V>(tolerance::nonzero))) * off;
+    const Vec3<V> u = (1.0 / max(norm(off), fill_lanes<V>(tolerance::nonzero))) * off;
     return from_columns(n, u, cross(n, u));
 }
 
@@ -146,26 +146,26 @@ CSPACE_NOINLINE void solve_swivel(const SwivelArm& arm, const Posed& goal, V swi
     const Vec3d zero = reaches ? swivel_zero(arm, w) : Vec3d{1, 0, 0};
     const Vec3d n = reaches ? (1 / norm(w)) * w : Vec3d{0, 0, 1};
     const Turn<V> psi = turn_by(swivel);
-    const Vec3<V> towards = rotate(fill3<V>(n), psi, fill3<V>(zero));
-    const Mat3<V> there = from_columns(fill3<V>(n), towards, cross(fill3<V>(n), towards));
+    const Vec3<V> towards = rotate_about(fill_vec3<V>(n), psi, fill_vec3<V>(zero));
+    const Mat3<V> there = from_columns(fill_vec3<V>(n), towards, cross(fill_vec3<V>(n), towards));
     const Mat3d goal_R = goal.R * transpose(chain.tip.R);
     for (int i = 0; i < 2; ++i) {
-        const Vec3d bent = rotate(h4, bend.root[i], fore);
+        const Vec3d bent = rotate_about(h4, bend.root[i], fore);
         const Mat3d here = frame_towards(upper + bent, upper);
-        const Mat3<V> R03 = there * fill33<V>(transpose(here));
+        const Mat3<V> R03 = there * fill_mat3<V>(transpose(here));
         const Mat3d R34 = spatial::rotation_about(h4, bend.root[i].c, bend.root[i].s);
-        const Mat3<V> R47 = fill33<V>(transpose(R34)) * transpose(R03) * fill33<V>(goal_R);
+        const Mat3<V> R47 = fill_mat3<V>(transpose(R34)) * transpose(R03) * fill_mat3<V>(goal_R);
         const SphericalTurns<V> first = three_turns(&chain.axis[0], R03),
                                 last = three_turns(&chain.axis[4], R47);
         for (int j = 0; j < 2; ++j)
             for (int k = 0; k < 2; ++k) {
                 const int b = 4 * i + 2 * j + k;
-                out.ok[b] = first.ok && last.ok && (fill<V>(reaches ? 1.0 : 0.0) > 0.0);
+                out.ok[b] = first.ok && last.ok && (fill_lanes<V>(reaches ? 1.0 : 0.0) > 0.0);
                 for (int m = 0; m < 3; ++m) {
                     out.q[b][m] = angle_of(first.turn[j][m]);
                     out.q[b][4 + m] = angle_of(last.turn[k][m]);
                 }
-                out.q[b][3] = fill<V>(angle_of(bend.root[i]));
+                out.q[b][3] = fill_lanes<V>(angle_of(bend.root[i]));
             }
     }
 }

@@ -48,7 +48,7 @@ inline void find_freest_joint(const Redundant& arm, LimitArms& out) {
         spread_configuration(look, arm.chain.n, q);
         PoseError at;
         measure_error(arm.chain, arm.chain.tip, arm.length, q, at);
-        decompose(at.jacobian);
+        decompose_matrix(at.jacobian);
         const double* const along = at.jacobian.v[weakest_direction(at.jacobian)];
         for (int i = 0; i < arm.chain.n; ++i) moves[i] += std::fabs(along[i]);
     }

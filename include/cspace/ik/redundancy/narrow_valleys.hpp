@@ -31,7 +31,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 // The sum of the squared joint differences, on four branches. difference(i): of joint i.
 template <class Difference>
 CSPACE_INLINE Pack<4> squared_way(const Redundant& arm, const Difference& difference) {
-    Pack<4> sum = fill<Pack<4>>(0.0);
+    Pack<4> sum = fill_lanes<Pack<4>>(0.0);
     for (int i = 0; i < arm.chain.n; ++i) {
         const Pack<4> way = joint_difference(arm.chain, i, difference(i));
         sum = mul_add(arm.weight[i] * way, way, sum);
@@ -58,10 +58,12 @@ inline bool may_hide(const Redundant& arm, const CurveSample& a, const CurveSamp
     if (!(b.value - a.value > least_gap)) return false;
     unsigned hidden = 0;
     for (int k = 0; k < max_branches; k += 4) {
-        const V way =
-            detour * sqrt(squared_way(arm, [&](int i) { return load<V>(a.q[i] + k) - load<V>(b.q[i] + k); }));
-        const V from = load<V>(a.distance + k), to = load<V>(b.distance + k), least = min(from, to);
-        const V sum = select(abs(to - from) > way, 2.0 * least - way, from + to);
+        const V way = detour * sqrt(squared_way(arm, [&](int i) {
+                          return load_lanes<V>(a.q[i] + k) - load_lanes<V>(b.q[i] + k);
+                      }));
+        const V from = load_lanes<V>(a.distance + k), to = load_lanes<V>(b.distance + k),
+                least = min(from, to);
+        const V sum = select_lanes(abs(to - from) > way, 2.0 * least - way, from + to);
         hidden |= bits_of(way > short_way_between && sum - way < 2 * best) << k;
     }
     return (hidden & a.there & b.there) != 0;
@@ -70,12 +72,12 @@ inline bool may_hide(const Redundant& arm, const CurveSample& a, const CurveSamp
 inline void measure_sample(const Redundant& arm, const Target& target, CurveSample& at) {
     using V = Pack<4>;
     for (int k = 0; k < max_branches; k += 4) {
-        V square = fill<V>(0.0);
+        V square = fill_lanes<V>(0.0);
         for (int i = 0; i < arm.chain.n; ++i) {
-            const V gap = gap_from_seed(arm.chain, target, i, load<V>(at.q[i] + k));
+            const V gap = gap_from_seed(arm.chain, target, i, load_lanes<V>(at.q[i] + k));
             square = mul_add(arm.weight[i] * gap, gap, square);
         }
-        store(at.distance + k, sqrt(square));
+        store_lanes(at.distance + k, sqrt(square));
     }
 }
 

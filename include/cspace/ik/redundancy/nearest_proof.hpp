@@ -43,24 +43,24 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 template <int n, class V>
 CSPACE_INLINE Vec3<V> load_vector(const double (&values)[n][2]) {
-    return {load<V>(values[0]), load<V>(values[1]), load<V>(values[2])};
+    return {load_lanes<V>(values[0]), load_lanes<V>(values[1]), load_lanes<V>(values[2])};
 }
 template <class V>
 CSPACE_INLINE Mat3<V> load_matrix(const double (&values)[9][2]) {
     Mat3<V> out;
-    for (int j = 0; j < 9; ++j) out.m[j / 3][j % 3] = load<V>(values[j]);
+    for (int j = 0; j < 9; ++j) out.m[j / 3][j % 3] = load_lanes<V>(values[j]);
     return out;
 }
 
 template <class V>
 CSPACE_INLINE Vec3d vector_of_half(const Vec3<V>& a, int half) {
-    return {lane(a.x, half), lane(a.y, half), lane(a.z, half)};
+    return {get_lane(a.x, half), get_lane(a.y, half), get_lane(a.z, half)};
 }
 
 // 1 for the half that moves with its joints, −1 for the half that moves against them.
 template <class V>
 CSPACE_INLINE V there_and_back() {
-    V out = fill<V>(1.0);
+    V out = fill_lanes<V>(1.0);
     set_lane(out, 1, -1.0);
     return out;
 }
@@ -69,16 +69,16 @@ CSPACE_INLINE V there_and_back() {
 template <class V>
 CSPACE_INLINE void turns_of(const Halves& arm, const V* q, V* s, V* c) {
     double angle[8], sine[8], cosine[8];
-    for (int k = 0; k < 4; ++k) store(angle + 2 * k, load<V>(arm.turning[k]) * q[k]);
+    for (int k = 0; k < 4; ++k) store_lanes(angle + 2 * k, load_lanes<V>(arm.turning[k]) * q[k]);
     for (int k = 0; k < 8; k += 4) {
         Pack<4> four[2];
-        sincos(load<Pack<4>>(angle + k), four[0], four[1]);
-        store(sine + k, four[0]);
-        store(cosine + k, four[1]);
+        sincos(load_lanes<Pack<4>>(angle + k), four[0], four[1]);
+        store_lanes(sine + k, four[0]);
+        store_lanes(cosine + k, four[1]);
     }
     for (int k = 0; k < 4; ++k) {
-        s[k] = there_and_back<V>() * load<V>(sine + 2 * k);
-        c[k] = load<V>(cosine + 2 * k);
+        s[k] = there_and_back<V>() * load_lanes<V>(sine + 2 * k);
+        c[k] = load_lanes<V>(cosine + 2 * k);
     }
 }
 
@@ -93,25 +93,26 @@ CSPACE_INLINE void move_halves(const Halves& arm, const Posed& goal, double per_
     for (int k = 0; k < 4; ++k) {
         T.t = T * load_vector<3, V>(arm.at[k]);
         T.R = T.R * load_matrix<V>(arm.frame[k]);
-        const Vec3<V> x = column(T.R, 0), y = column(T.R, 1), z = column(T.R, 2);
+        const Vec3<V> x = matrix_column(T.R, 0), y = matrix_column(T.R, 1), z = matrix_column(T.R, 2);
         out.axis[k] = z;
-        if (arm.slides) T.t = T.t + (there_and_back<V>() * load<V>(arm.sliding[k]) * q[k]) * z;
+        if (arm.slides) T.t = T.t + (there_and_back<V>() * load_lanes<V>(arm.sliding[k]) * q[k]) * z;
         point[k] = T.t;
         T.R = from_columns(c[k] * x + s[k] * y, c[k] * y - s[k] * x, z);
     }
     const Vec3<V> middle = T * load_vector<3, V>(arm.middle);
     const Mat3<V> meeting = T.R * load_matrix<V>(arm.meeting);
     for (int k = 0; k < 4; ++k) {
-        const V turning = load<V>(arm.turning[k]);
+        const V turning = load_lanes<V>(arm.turning[k]);
         out.linear[k] = turning * cross(out.axis[k], middle - point[k]);
-        if (arm.slides) out.linear[k] = out.linear[k] + load<V>(arm.sliding[k]) * out.axis[k];
+        if (arm.slides) out.linear[k] = out.linear[k] + load_lanes<V>(arm.sliding[k]) * out.axis[k];
         out.axis[k] = turning * out.axis[k];
     }
     const Vec3d gap = vector_of_half(middle, 1) - vector_of_half(middle, 0);
     Mat3d half[2];
     for (int k = 0; k < 2; ++k)
-        half[k] = from_columns(vector_of_half(column(meeting, 0), k), vector_of_half(column(meeting, 1), k),
-                               vector_of_half(column(meeting, 2), k));
+        half[k] = from_columns(vector_of_half(matrix_column(meeting, 0), k),
+                               vector_of_half(matrix_column(meeting, 1), k),
+                               vector_of_half(matrix_column(meeting, 2), k));
     const Vec3d turn = spatial::sine_between(half[0], half[1]);
     out.aligned = spatial::trace_between(half[0], half[1]);
     const double error[6] = {gap.x, gap.y, gap.z, turn.x, turn.y, turn.z};
@@ -151,7 +152,7 @@ CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
     bend_halves(motion, at.lambda, at.bent);
     if (!factor_halves(at.bent, 0, flat, factor)) {
         for (int a = 0; a < 4; ++a)
-            for (int b = a; b < 4; ++b) at.bent[a][b] = fill<V>(a == b);
+            for (int b = a; b < 4; ++b) at.bent[a][b] = fill_lanes<V>(a == b);
         factor_halves(at.bent, 0, flat, factor);
     }
     // With y = L⁻¹ [Jᵀ, gap]: J (1 − φ″)⁻¹ Jᵀ λ = error + J (1 − φ″)⁻¹ gap.
@@ -170,21 +171,21 @@ CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
     }
     double S[6][6];
     for (int k = 0; k < 6; ++k) {
-        for (int j = k; j < 6; ++j) S[k][j] = lane(sum[k][j], 0) + lane(sum[k][j], 1);
-        at.lambda[k] = motion.error[k] + lane(sum[k][6], 0) + lane(sum[k][6], 1);
+        for (int j = k; j < 6; ++j) S[k][j] = get_lane(sum[k][j], 0) + get_lane(sum[k][j], 1);
+        at.lambda[k] = motion.error[k] + get_lane(sum[k][6], 0) + get_lane(sum[k][6], 1);
     }
     if (!solve_positive(S, 6, at.lambda)) return std::numeric_limits<double>::quiet_NaN();
-    V step[4], largest = fill<V>(0.0);
+    V step[4], largest = fill_lanes<V>(0.0);
     for (int b = 3; b >= 0; --b) {
         V along = -y[b][6];
-        for (int k = 0; k < 6; ++k) along = mul_add(y[b][k], fill<V>(at.lambda[k]), along);
+        for (int k = 0; k < 6; ++k) along = mul_add(y[b][k], fill_lanes<V>(at.lambda[k]), along);
         for (int m = b + 1; m < 4; ++m) along = along - factor[b][m] * step[m];
         step[b] = along * factor[b][b];
         largest = max(largest, abs(step[b]));
         at.q[b] = at.q[b] + step[b];
         at.gap[b] = at.gap[b] + step[b];
     }
-    return max(lane(largest, 0), lane(largest, 1));
+    return max(get_lane(largest, 0), get_lane(largest, 1));
 }
 
 // Whether no solution is nearer to the seed than this point. Third derivatives: see halves_at. The bound
@@ -192,16 +193,16 @@ CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
 CSPACE_INLINE bool is_proven_nearest(const Halves& arm, const HalvesPoint& at) {
     using V = Pack<2>;
     constexpr double margin = 0.02;  // what the last step, and rounding, may change
-    V square = fill<V>(0.0);
+    V square = fill_lanes<V>(0.0);
     for (int k = 0; k < 4; ++k) square = mul_add(at.gap[k], at.gap[k], square);
-    const double distance = std::sqrt(lane(square, 0) + lane(square, 1));
+    const double distance = std::sqrt(get_lane(square, 0) + get_lane(square, 1));
     const double* l = at.lambda;
     const double force = norm(Vec3d{l[0], l[1], l[2]}), moment = norm(Vec3d{l[3], l[4], l[5]});
-    V reach = load<V>(arm.reach);
+    V reach = load_lanes<V>(arm.reach);
     for (int k = 0; k < 4 && arm.slides; ++k)
-        reach = reach + load<V>(arm.slid[k]) * (abs(at.q[k]) + 2 * distance);
-    const V third = force * reach + moment * load<V>(arm.turn);
-    const double most = max(lane(third, 0), lane(third, 1));
+        reach = reach + load_lanes<V>(arm.slid[k]) * (abs(at.q[k]) + 2 * distance);
+    const V third = force * reach + moment * load_lanes<V>(arm.turn);
+    const double most = max(get_lane(third, 0), get_lane(third, 1));
     HalvesMatrix factor;
     return factor_halves(at.bent, most * distance * (2.0 / 3.0) + margin, 0, factor);
 }
@@ -209,7 +210,7 @@ CSPACE_INLINE bool is_proven_nearest(const Halves& arm, const HalvesPoint& at) {
 CSPACE_INLINE void put_joints(const Halves& arm, const HalvesPoint& at, double* q) {
     for (int k = 0; k < 4; ++k)
         for (int half = 0; half < 2; ++half)
-            if (arm.joint[k][half] >= 0) q[arm.joint[k][half]] = lane(at.q[k], half);
+            if (arm.joint[k][half] >= 0) q[arm.joint[k][half]] = get_lane(at.q[k], half);
 }
 
 // Newton's method from a seed close to the manifold, and the proof; false if either fails. All joints must
@@ -221,7 +222,7 @@ CSPACE_INLINE bool nearest_by_proof(const Halves& arm, const Posed& goal, double
     constexpr int most_steps = 7;
     HalvesPoint at;
     for (int k = 0; k < 4; ++k) {
-        at.gap[k] = at.q[k] = fill<V>(0.0);
+        at.gap[k] = at.q[k] = fill_lanes<V>(0.0);
         for (int half = 0; half < 2; ++half)
             if (arm.joint[k][half] >= 0) set_lane(at.q[k], half, seed[arm.joint[k][half]]);
     }

@@ -61,7 +61,7 @@ inline void keep_start(const Redundant& arm, Starts& starts, const double* q, do
 template <int N, class V>
 inline void settle_abreast(const Redundant& arm, int rank, const Posed& goal, const Target& target,
                            const double* const* starts, int count, Nearest& best) {
-    V q[max_joints], step = fill<V>(1.0);
+    V q[max_joints], step = fill_lanes<V>(1.0);
     for (int i = 0; i < arm.chain.n; ++i)
         for (int l = 0; l < Lanes<V>::count; ++l) set_lane(q[i], l, starts[l < count ? l : 0][i]);
     const Pose<V> goals = fill_pose<V>(goal);
@@ -73,11 +73,11 @@ inline void settle_abreast(const Redundant& arm, int rank, const Posed& goal, co
     double row[max_joints];
     for (int l = 0; l < count; ++l) {
         double error = 0;
-        for (const V& e : motion.error) error = max(error, std::fabs(lane(e, l)));
-        if (!(lane(step, l) <= settled_step) || !(error < tolerance::reached) ||
-            !(lane(motion.aligned, l) > 2))
+        for (const V& e : motion.error) error = max(error, std::fabs(get_lane(e, l)));
+        if (!(get_lane(step, l) <= settled_step) || !(error < tolerance::reached) ||
+            !(get_lane(motion.aligned, l) > 2))
             continue;
-        for (int i = 0; i < arm.chain.n; ++i) row[i] = lane(q[i], l);
+        for (int i = 0; i < arm.chain.n; ++i) row[i] = get_lane(q[i], l);
         if (is_acceptable(arm, target, row))
             keep_nearer(arm, row, distance_from_seed(arm, target, row), best);
     }

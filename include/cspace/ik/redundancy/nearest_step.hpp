@@ -41,7 +41,7 @@ CSPACE_INLINE void lagrangian_times(const Chain& chain, const TipMotion<V>& moti
     const Vec3<V> moment = {0.5 * lambda[3], 0.5 * lambda[4], 0.5 * lambda[5]};
     // force · (h_i × v_j) = v_j · (force × h_i), so that one running sum serves the rows above and one those
     // below.
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     Vec3<V> lever[max_joints], twist[max_joints], turned = {zero, zero, zero}, twisted = turned;
     for (int j = 0; j < n; ++j) {
         const V* c = motion.column[j];
@@ -68,7 +68,7 @@ inline constexpr int max_free = max_joints - 1;
 template <class V>
 CSPACE_INLINE void freeze_joints(TipMotion<V>& motion, int n, unsigned frozen) {
     for (int i = 0; frozen && i < n; ++i)
-        for (int k = 0; k < 6 && frozen >> i & 1; ++k) motion.column[i][k] = fill<V>(0.0);
+        for (int k = 0; k < 6 && frozen >> i & 1; ++k) motion.column[i][k] = fill_lanes<V>(0.0);
 }
 
 // One step of q to the nearest point. Returns the largest joint change of the full step. motion, lambda: the
@@ -92,13 +92,13 @@ CSPACE_NOINLINE V step_to_nearest(const Chain& chain, int rank, const Pose<V>& g
     for (int k = 0; k < free; ++k) {
         free_direction<N>(split, n, k, along[k]);
         lagrangian_times<N>(chain, motion, weight, lambda, along[k], bent);
-        newton[k] = plain[k] = fill<V>(0.0);
+        newton[k] = plain[k] = fill_lanes<V>(0.0);
         for (int i = 0; i < n; ++i) {
             newton[k] = newton[k] - along[k][i] * gap[i] - bent[i] * step[i];
             plain[k] = plain[k] - along[k][i] * (gap[i] + weight[i] * step[i]);
         }
         for (int m = 0; m <= k; ++m) {
-            H[m][k] = G[m][k] = fill<V>(0.0);
+            H[m][k] = G[m][k] = fill_lanes<V>(0.0);
             for (int i = 0; i < n; ++i) {
                 H[m][k] = mul_add(along[m][i], bent[i], H[m][k]);
                 G[m][k] = mul_add(weight[i] * along[m][i], along[k][i], G[m][k]);
@@ -109,11 +109,11 @@ CSPACE_NOINLINE V step_to_nearest(const Chain& chain, int rank, const Pose<V>& g
     const mask_of<V> curved = solve_positive(H, free, newton, 0.05);
     if (!all(curved)) {
         solve_positive(G, free, plain);
-        for (int k = 0; k < free; ++k) newton[k] = select(curved, newton[k], plain[k]);
+        for (int k = 0; k < free; ++k) newton[k] = select_lanes(curved, newton[k], plain[k]);
     }
     for (int i = 0; i < n; ++i)
         for (int k = 0; k < free; ++k) step[i] = mul_add(newton[k], along[k][i], step[i]);
-    const V largest = largest_of(step, n), keep = shortening(largest, stride);
+    const V largest = largest_of(step, n), keep = shortening_factor(largest, stride);
     for (int i = 0; i < n; ++i) q[i] = mul_add(keep, step[i], q[i]);
     return largest;
 }

@@ -32,7 +32,7 @@ inline Target make_target(const Redundant& arm, const double* seed, bool within_
 
 template <class V>
 CSPACE_INLINE V gap_from_seed(const Chain& chain, const Target& target, int i, V q) {
-    return joint_difference(chain, i, q - fill<V>(target.at[i])) + target.shift[i];
+    return joint_difference(chain, i, q - fill_lanes<V>(target.at[i])) + target.shift[i];
 }
 
 // Whether a configuration counts: within limits where they are kept; otherwise only joints without weight

@@ -101,7 +101,8 @@ CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, int rank
 template <int N, class V>
 CSPACE_INLINE void turn_out(const SplitJacobian<V>& split, int size, V* b) {
     const int n = size_or<N>(size);
-    for (int k = rank_in<N>(split) - 1; k >= 0; --k) linear::reflect(split.A, n, k, split.factor[k], b);
+    for (int k = rank_in<N>(split) - 1; k >= 0; --k)
+        linear::reflect_vector(split.A, n, k, split.factor[k], b);
 }
 
 // A pivot of a Jacobian (lengths over the arm's length) that rounding alone leaves.
@@ -109,14 +110,14 @@ inline constexpr double least_pivot = 1e-14;
 
 template <class V>
 CSPACE_INLINE V away_from_zero(V x) {
-    return select(abs(x) < least_pivot, copysign(fill<V>(least_pivot), x), x);
+    return select_lanes(abs(x) < least_pivot, copysign(fill_lanes<V>(least_pivot), x), x);
 }
 
 // The shortest joint step that moves the tip by e: Rᵀ y = e, Q y.
 template <int N, class V>
 CSPACE_INLINE void shortest_step(const SplitJacobian<V>& split, int size, const V* e, V* step) {
     const int n = size_or<N>(size), rank = rank_in<N>(split);
-    for (int i = rank; i < n; ++i) step[i] = fill<V>(0.0);
+    for (int i = rank; i < n; ++i) step[i] = fill_lanes<V>(0.0);
     for (int k = 0; k < rank; ++k) {
         step[k] = e[N ? k : split.chosen[k]];
         for (int j = 0; j < k; ++j) step[k] = mul_add(-split.A[j][k], step[j], step[k]);
@@ -128,7 +129,7 @@ CSPACE_INLINE void shortest_step(const SplitJacobian<V>& split, int size, const 
 template <int N, class V>
 CSPACE_INLINE void free_direction(const SplitJacobian<V>& split, int size, int k, V* direction) {
     const int n = size_or<N>(size);
-    for (int i = 0; i < n; ++i) direction[i] = fill<V>(i == rank_in<N>(split) + k ? 1.0 : 0.0);
+    for (int i = 0; i < n; ++i) direction[i] = fill_lanes<V>(i == rank_in<N>(split) + k ? 1.0 : 0.0);
     turn_out<N>(split, n, direction);
 }
 // The λ that minimises |Jᵀ λ − g|.
@@ -137,8 +138,8 @@ CSPACE_INLINE void find_multipliers(const SplitJacobian<V>& split, int size, con
     const int n = size_or<N>(size), rank = rank_in<N>(split);
     V b[max_joints];
     for (int i = 0; i < n; ++i) b[i] = g[i];
-    for (int k = 0; k < rank; ++k) linear::reflect(split.A, n, k, split.factor[k], b);
-    for (int k = rank; k < 6; ++k) lambda[N ? k : split.chosen[k]] = fill<V>(0.0);
+    for (int k = 0; k < rank; ++k) linear::reflect_vector(split.A, n, k, split.factor[k], b);
+    for (int k = rank; k < 6; ++k) lambda[N ? k : split.chosen[k]] = fill_lanes<V>(0.0);
     for (int k = rank - 1; k >= 0; --k) {
         for (int j = k + 1; j < rank; ++j) b[k] = mul_add(-split.A[k][j], b[j], b[k]);
         b[k] = b[k] / away_from_zero(split.diagonal[k]);
@@ -173,7 +174,7 @@ CSPACE_INLINE void step_onto_curve(const Chain& chain, int rank, const Posed& go
     shortest_step<N>(split, n, back, at.bend);
     shortest_step<N>(split, n, motion.error, step);
     at.error = largest_of(motion.error, 6);
-    const double keep = shortening(largest_of(step, n), 0.3);
+    const double keep = shortening_factor(largest_of(step, n), 0.3);
     for (int i = 0; i < n; ++i) at.q[i] += keep * step[i];
 }
 // One Newton step from q back onto the curve, and the quantities of the curve at q before the step.
@@ -198,7 +199,7 @@ inline void descend_abreast(const Chain& chain, const Posed& goal, double length
         active += start[l] >= 0;
         for (int i = 0; i < n; ++i) set_lane(at[i], l, q[start[l] < 0 ? 0 : start[l]][i]);
     };
-    for (int i = 0; i < n; ++i) at[i] = fill<V>(0.0);
+    for (int i = 0; i < n; ++i) at[i] = fill_lanes<V>(0.0);
     for (int l = 0; l < lanes; ++l) take_next(l);
     while (active > 0) {
         TipMotion<V> motion;
@@ -206,13 +207,13 @@ inline void descend_abreast(const Chain& chain, const Posed& goal, double length
         tip_motion<N>(chain, goals, length, at, motion);
         split_jacobian<N>(motion, n, 6, split);
         shortest_step<N>(split, n, motion.error, step);
-        const V keep = shortening(largest_of(step, n), stride);
+        const V keep = shortening_factor(largest_of(step, n), stride);
         for (int i = 0; i < n; ++i) at[i] = mul_add(keep, step[i], at[i]);
         const unsigned there = bits_of(largest_of(motion.error, 6) <= tolerance::reached);
         for (int l = 0; l < lanes; ++l) {
             if (start[l] < 0 || !(there >> l & 1 || ++steps[l] == most_steps)) continue;
             reached[start[l]] = there >> l & 1;
-            for (int i = 0; i < n; ++i) q[start[l]][i] = lane(at[i], l);
+            for (int i = 0; i < n; ++i) q[start[l]][i] = get_lane(at[i], l);
             --active;
             take_next(l);
         }

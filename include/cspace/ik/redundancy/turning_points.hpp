@@ -83,7 +83,7 @@ inline MovingGoal moving_goal(bool slides, const GoalAt& goal_at) {
 template <class V>
 CSPACE_INLINE Pose<V> goal_at(const MovingGoal& goal, V c, V s) {
     const auto entry = [&](double still, double cosine, double sine) {
-        return mul_add(s, fill<V>(sine), mul_add(c, fill<V>(cosine), fill<V>(still)));
+        return mul_add(s, fill_lanes<V>(sine), mul_add(c, fill_lanes<V>(cosine), fill_lanes<V>(still)));
     };
     Pose<V> out;
     for (int i = 0; i < 3; ++i)
@@ -98,7 +98,7 @@ template <class V>
 CSPACE_INLINE void value_on_circle(const MovingGoal& goal, V value, V& c, V& s) {
     if (goal.slides) {
         c = value;
-        s = fill<V>(0.0);
+        s = fill_lanes<V>(0.0);
     } else {
         sincos(value, s, c);
     }
@@ -165,9 +165,9 @@ inline void sweep_values(const Sweep& sweep, const double* values, int n, const 
     for (int first = 0; first < n; first += 4) {
         const int lanes = n - first < 4 ? n - first : 4;
         Branches<V> b;
-        if (sweep.on_lanes) branches_at(sweep, load<V>(values + first, lanes), b);
+        if (sweep.on_lanes) branches_at(sweep, load_lanes<V>(values + first, lanes), b);
         for (int l = 0; l < lanes; ++l) {
-            if (!sweep.on_lanes || lane(b.doubt, l)) {
+            if (!sweep.on_lanes || get_lane(b.doubt, l)) {
                 near_singular_rows(sweep, values[first + l], rows);
                 visit(first + l, rows);
                 continue;
@@ -175,12 +175,12 @@ inline void sweep_values(const Sweep& sweep, const double* values, int n, const 
             rows.count = 0;
             rows.complete = true;
             for (int k = 0; k < max_branches; ++k) {
-                if (!lane(b.ok[k], l)) continue;
+                if (!get_lane(b.ok[k], l)) continue;
                 double* q = rows.q[rows.count];
                 for (int i = 0; i < locked.n_locked; ++i)
                     q[locked.locked_joint[i]] = sweep.at[locked.locked_joint[i]];
                 q[sweep.parameter] = values[first + l];
-                for (int i = 0; i < 6; ++i) q[locked.moving[i]] = lane(b.t[k][i], l);
+                for (int i = 0; i < 6; ++i) q[locked.moving[i]] = get_lane(b.t[k][i], l);
                 rows.branch[rows.count++] = k;
             }
             visit(first + l, rows);
@@ -205,7 +205,7 @@ CSPACE_INLINE Rooms<V> rooms_of(const ThreeJoints& g, const Vec3<V>& p) {
         return Vec3<V>{x, g.ca2 * y, g.sa2 * y};
     };
     const Vec3<V> level = behind(r * (a / n2), r * (b / n2));
-    const Vec3<V> tilt = behind(fill<V>(-b / n2), fill<V>(a / n2));
+    const Vec3<V> tilt = behind(fill_lanes<V>(-b / n2), fill_lanes<V>(a / n2));
     const Vec3<V> middle = {level.x + g.a2, level.y - g.sa2 * g.w.z, level.z + (g.ca2 * g.w.z + g.d2)};
     // room of t2 = sin²α1 (v_x² + v_y²) − (p_z − cos α1 v_z)²
     const double sa2 = g.sa1 * g.sa1;
@@ -258,11 +258,12 @@ template <class Function>
 inline double settled_root(const Function& f, double value) {
     constexpr double h = 1e-5, farthest = 1e-6;
     for (int step = 0; step < 2; ++step) {
-        Pack<4> at = fill<Pack<4>>(value), c, s;
+        Pack<4> at = fill_lanes<Pack<4>>(value), c, s;
         for (int k = 0; k < 4; k += 2) set_lane(at, k, value + (k - 1) * h);
         sincos(at, s, c);
         const Pack<4> there = f(c, s);
-        const double slope = (lane(there, 2) - lane(there, 0)) / (2 * h), change = lane(there, 1) / slope;
+        const double slope = (get_lane(there, 2) - get_lane(there, 0)) / (2 * h),
+                     change = get_lane(there, 1) / slope;
         if (!(std::fabs(change) < farthest)) break;
         value -= change;
     }

@@ -65,7 +65,7 @@ inline double measure_constrained(const Chain& chain, const TipConstraint& const
         for (int k = 0; k < 6; ++k)
             at.jacobian.us[i][k] *=
                 !constraint.whole_pose && k >= 3 ? 0 : unit_of(chain, i, constraint.length);
-    decompose(at.jacobian, near_by);
+    decompose_matrix(at.jacobian, near_by);
     return size_of_error(at);
 }
 
@@ -81,7 +81,7 @@ inline bool tangent_at(const Chain& chain, const PoseSvd& J, const double* along
     for (int j = 0; j < J.columns; ++j)
         if (J.sigma[j] <= still) basis[k++] = J.v[j];
     for (int i = 0; i < chain.n; ++i) tangent[i] = along[i];
-    return project(basis, k, chain.n, tangent) > leading;
+    return project_vector(basis, k, chain.n, tangent) > leading;
 }
 
 // Of the singular values other than that of the curve the smallest, and the smallest that does not vanish.

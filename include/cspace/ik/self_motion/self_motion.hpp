@@ -106,7 +106,7 @@ inline bool led_away(const Chain& chain, const Posed& goal, double length, const
         trial[i] = moved[i] - q[i];
         away += trial[i] * trial[i];
     }
-    return away > 0.25 * stride * stride && project(basis, k, chain.n, trial) > 0;
+    return away > 0.25 * stride * stride && project_vector(basis, k, chain.n, trial) > 0;
 }
 
 // The vectors of a null space of dimension 2 or 3 in which one or two joints do not move. Self-motions of

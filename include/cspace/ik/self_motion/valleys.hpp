@@ -19,7 +19,7 @@ inline bool lies_in_valley(const Chain& chain, const Posed& goal, double length,
     PoseError at;
     measure_error(chain, goal, length, q, at);
     if (chain.n == 6 && weak_direction(at.jacobian, hardly).sigma > hardly) return false;
-    decompose(at.jacobian);
+    decompose_matrix(at.jacobian);
     const int weak = weakest_direction(at.jacobian);
     if (at.jacobian.sigma[weak] > hardly || leaves_goal(chain, goal, length, q, at.jacobian, next_to_nothing))
         return false;
@@ -84,7 +84,7 @@ inline bool turn_into_valley(const Chain& chain, const Posed& goal, double lengt
     constexpr double flat = 1e-12;
     PoseError at;
     measure_error(chain, goal, length, out.q[k], at);
-    decompose(at.jacobian);
+    decompose_matrix(at.jacobian);
     if (at.jacobian.sigma[weakest_direction(at.jacobian)] < flat) return false;
     double q[max_joints], direction[max_joints];
     for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i], direction[i] = out.direction[k][i];

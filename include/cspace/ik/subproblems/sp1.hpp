@@ -37,7 +37,7 @@ CSPACE_INLINE Sp1<V> subproblem_1(const Vec3<V>& k, const Vec3<V>& p1, const Vec
     Sp1<V> r;
     r.free = rho1 <= tolerance::rounding * size || rho2 <= tolerance::rounding * size;
     const V x = dot(a, b), y = dot(k, cross(a, b));
-    r.theta = direction(x, y, sqrt(x * x + y * y), r.free);
+    r.theta = turn_towards(x, y, sqrt(x * x + y * y), r.free);
     r.error = sqrt(along * along + across * across);
     r.exact = r.error <= tolerance::exact * size;
     return r;

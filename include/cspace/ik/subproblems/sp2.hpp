@@ -38,37 +38,39 @@ namespace cspace::ik::inline CSPACE_ISA {
 template <class V>
 CSPACE_INLINE Sp2<V> subproblem_2(const Vec3<V>& k1, const Vec3<V>& k2, const Vec3<V>& p1,
                                   const Vec3<V>& p2) {
-    const V one = fill<V>(1.0), zero = fill<V>(0.0);
+    const V one = fill_lanes<V>(1.0), zero = fill_lanes<V>(0.0);
     const V length1 = norm(p1), length2 = norm(p2);
     const auto nothing = length1 == zero || length2 == zero;
-    const Vec3<V> u1 = (1.0 / select(length1 == zero, one, length1)) * p1;
-    const Vec3<V> u2 = (1.0 / select(length2 == zero, one, length2)) * p2;
+    const Vec3<V> u1 = (1.0 / select_lanes(length1 == zero, one, length1)) * p1;
+    const Vec3<V> u2 = (1.0 / select_lanes(length2 == zero, one, length2)) * p2;
 
     Sp2<V> r;
     const Vec3<V> k1_k2 = cross(k1, k2);
     const V c = dot(k1, k2), s = norm(k1_k2), c1 = dot(k1, u1), c2 = dot(k2, u2);
     const V rho1 = norm(cross(k1, u1)), rho2 = norm(cross(k2, u2));
     r.parallel = s <= tolerance::rounding * one;
-    const V inverse = 1.0 / select(r.parallel, one, s);
+    const V inverse = 1.0 / select_lanes(r.parallel, one, s);
     const Vec3<V> n = inverse * k1_k2;
     // Seen from the smaller circle: γ² = (ρ − y)(ρ + y) then loses least.
     const auto second = rho2 < rho1;
-    const V y = select(second, c1 - c * c2, c2 - c * c1) * inverse, rho = select(second, rho2, rho1);
+    const V y = select_lanes(second, c1 - c * c2, c2 - c * c1) * inverse,
+            rho = select_lanes(second, rho2, rho1);
     const V inside = (rho - y) * (rho + y);
     r.two = inside > tolerance::rounding * rho && !r.parallel && !nothing;
-    const V gamma = select(r.two, sqrt(max(inside, zero)), zero);
-    const Vec3<V> in_plane = select(second, c2 * k2 + y * cross(k2, n), c1 * k1 + y * cross(n, k1));
+    const V gamma = select_lanes(r.two, sqrt(max(inside, zero)), zero);
+    const Vec3<V> in_plane = select_lanes(second, c2 * k2 + y * cross(k2, n), c1 * k1 + y * cross(n, k1));
 
     const Sp1<V> coaxial = subproblem_1(k1, u1, u2);
     for (int i = 0; i < 2; ++i) {
         const Vec3<V> z = i ? in_plane - gamma * n : in_plane + gamma * n;
         const Sp1<V> onto1 = subproblem_1(k1, u1, z), onto2 = subproblem_1(k2, u2, z);
-        r.theta1[i] = select(nothing, no_turn<V>(), select(r.parallel, coaxial.theta, onto1.theta));
-        r.theta2[i] = select(nothing || r.parallel, no_turn<V>(), onto2.theta);
+        r.theta1[i] =
+            select_lanes(nothing, no_turn<V>(), select_lanes(r.parallel, coaxial.theta, onto1.theta));
+        r.theta2[i] = select_lanes(nothing || r.parallel, no_turn<V>(), onto2.theta);
     }
     r.free1 = nothing || rho1 <= tolerance::rounding * one;
     r.free2 = nothing || rho2 <= tolerance::rounding * one;
-    r.error = norm(rotate(k1, r.theta1[0], p1) - rotate(k2, r.theta2[0], p2));
+    r.error = norm(rotate_about(k1, r.theta1[0], p1) - rotate_about(k2, r.theta2[0], p2));
     r.exact = r.error <= tolerance::exact * max(length1, length2);
     return r;
 }

@@ -29,7 +29,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Sp3<V> subproblem_3(const Vec3<V>& k, const Vec3<V>& p1, const Vec3<V>& p2, V d) {
-    const V zero = fill<V>(0.0), one = fill<V>(1.0);
+    const V zero = fill_lanes<V>(0.0), one = fill_lanes<V>(1.0);
     const Sp1<V> towards = subproblem_1(k, p1, p2);
     const V along = dot(k, p1) - dot(k, p2), outer = norm(cross(k, p1)) + norm(cross(k, p2));
     const V nearest = towards.error, farthest = sqrt(along * along + outer * outer);
@@ -41,12 +41,12 @@ CSPACE_INLINE Sp3<V> subproblem_3(const Vec3<V>& k, const Vec3<V>& p1, const Vec
     r.error = max(max(nearest - d, d - farthest), zero);
     r.exact = r.error <= tolerance::exact * size;
     r.two = d - nearest > tolerance::rounding * size && farthest - d > tolerance::rounding * size && !r.free;
-    const V inverse = 1.0 / select(r.two, C + S, one);
-    const V end = select(d + d < nearest + farthest, one, -one);
-    const Turn<V> aside = {select(r.two, (C - S) * inverse, end),
-                           select(r.two, 2.0 * sqrt(S) * sqrt(C) * inverse, zero)};
-    r.theta[0] = select(r.free, no_turn<V>(), towards.theta + aside);
-    r.theta[1] = select(r.free, no_turn<V>(), towards.theta - aside);
+    const V inverse = 1.0 / select_lanes(r.two, C + S, one);
+    const V end = select_lanes(d + d < nearest + farthest, one, -one);
+    const Turn<V> aside = {select_lanes(r.two, (C - S) * inverse, end),
+                           select_lanes(r.two, 2.0 * sqrt(S) * sqrt(C) * inverse, zero)};
+    r.theta[0] = select_lanes(r.free, no_turn<V>(), towards.theta + aside);
+    r.theta[1] = select_lanes(r.free, no_turn<V>(), towards.theta - aside);
     return r;
 }
 

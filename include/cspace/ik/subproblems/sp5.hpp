@@ -42,10 +42,10 @@ struct Gap {
     static constexpr int angles = 3, equations = 3;
     const Sp5Problem& s;
     void operator()(const Turn<double>* t, double* value, double (*slope)[3]) const {
-        const Vec3d turned1 = rotate(s.k1, t[0], s.p1), turned4 = rotate(s.k3, t[2], s.p4);
-        const Vec3d turned2 = rotate(s.k2, t[1], s.p3 + turned4);
+        const Vec3d turned1 = rotate_about(s.k1, t[0], s.p1), turned4 = rotate_about(s.k3, t[2], s.p4);
+        const Vec3d turned2 = rotate_about(s.k2, t[1], s.p3 + turned4);
         const Vec3d columns[4] = {s.p0 + turned1 - s.p2 - turned2, cross(s.k1, turned1),
-                                  -cross(s.k2, turned2), -rotate(s.k2, t[1], cross(s.k3, turned4))};
+                                  -cross(s.k2, turned2), -rotate_about(s.k2, t[1], cross(s.k3, turned4))};
         for (int j = 0; j < 4; ++j) {
             const double rows[3] = {columns[j].x, columns[j].y, columns[j].z};
             for (int i = 0; i < 3; ++i) (j ? slope[i][j - 1] : value[i]) = rows[i];
@@ -76,8 +76,8 @@ inline TwoTurnEquations two_turn_equations(const Sp5Problem& s) {
 // Writes θ1 and θ3, with the best θ2 between them.
 inline Sp1<double> complete_turns(const Sp5Problem& s, const Turn<double>& first, const Turn<double>& third,
                                   Turn<double>* theta) {
-    const Sp1<double> second =
-        subproblem_1(s.k2, s.p3 + rotate(s.k3, third, s.p4), s.p0 - s.p2 + rotate(s.k1, first, s.p1));
+    const Sp1<double> second = subproblem_1(s.k2, s.p3 + rotate_about(s.k3, third, s.p4),
+                                            s.p0 - s.p2 + rotate_about(s.k1, first, s.p1));
     theta[0] = first, theta[1] = second.theta, theta[2] = third;
     return second;
 }

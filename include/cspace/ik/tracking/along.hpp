@@ -68,12 +68,12 @@ CSPACE_INLINE void store_path_rows(const PathRows& rows, std::size_t first, cons
         for (int j = 0; j < rows.path->n; ++j) {
             const std::size_t at = k * rows.dof + std::size_t(rows.column[j]);
             const double unit = unit_of(*rows.path, j);
-            rows.q[at] = lane(lanes.q[j], l);
-            rows.slope[at] = unit * lane(motion.slope[j], l);
-            rows.bend[at] = unit * lane(motion.bend[j], l);
+            rows.q[at] = get_lane(lanes.q[j], l);
+            rows.slope[at] = unit * get_lane(motion.slope[j], l);
+            rows.bend[at] = unit * get_lane(motion.bend[j], l);
         }
-        rows.info[path_row_info * k] = lane(motion.error, l);
-        rows.info[path_row_info * k + 1] = lane(motion.weakest, l);
+        rows.info[path_row_info * k] = get_lane(motion.error, l);
+        rows.info[path_row_info * k + 1] = get_lane(motion.weakest, l);
     }
 }
 
@@ -85,7 +85,8 @@ CSPACE_INLINE void correct_rows(const Path& path, int locked, RowLanes<V>& lanes
         const mask_of<V> off = motion.error > track::met;
         if (k == track::most_corrections || !any(off)) return;
         for (int j = 0; j < path.n; ++j)
-            lanes.q[j] = mul_add(where(off, fill<V>(unit_of(path, j))), motion.correction[j], lanes.q[j]);
+            lanes.q[j] =
+                mul_add(keep_lanes(off, fill_lanes<V>(unit_of(path, j))), motion.correction[j], lanes.q[j]);
     }
 }
 

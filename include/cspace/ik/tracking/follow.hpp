@@ -207,12 +207,12 @@ inline bool evaluate_trial(const Track& t, Walker& w, const Motion<double>& at) 
 template <class V>
 CSPACE_INLINE Motion<double> lane_of(const Motion<V>& motion, int n, int l) {
     Motion<double> out;
-    out.error = lane(motion.error, l);
-    out.weakest = lane(motion.weakest, l);
+    out.error = get_lane(motion.error, l);
+    out.weakest = get_lane(motion.weakest, l);
     for (int j = 0; j < n; ++j) {
-        out.correction[j] = lane(motion.correction[j], l);
-        out.slope[j] = lane(motion.slope[j], l);
-        out.bend[j] = lane(motion.bend[j], l);
+        out.correction[j] = get_lane(motion.correction[j], l);
+        out.slope[j] = get_lane(motion.slope[j], l);
+        out.bend[j] = get_lane(motion.bend[j], l);
     }
     return out;
 }

@@ -71,12 +71,12 @@ CSPACE_INLINE void add_twist(double unit, double per_length, const kinematics::T
                              Twist<V>& to) {
     V entry[6];
     write_twist(twist, per_length, entry);
-    for (int r = 0; r < 6; ++r) to.entry[r] = mul_add(fill<V>(unit), entry[r], to.entry[r]);
+    for (int r = 0; r < 6; ++r) to.entry[r] = mul_add(fill_lanes<V>(unit), entry[r], to.entry[r]);
 }
 
 template <class V>
 CSPACE_INLINE void clear_twist(Twist<V>& twist) {
-    for (V& x : twist.entry) x = fill<V>(0.0);
+    for (V& x : twist.entry) x = fill_lanes<V>(0.0);
 }
 
 // The columns of J, one twist per coordinate.
@@ -97,7 +97,7 @@ CSPACE_INLINE void columns_of(const Path& path, int n, const PlacedJoints<V>& at
 template <class V>
 CSPACE_INLINE void column_rates(const Path& path, int n, const PlacedJoints<V>& at, const V* slope,
                                 Twist<V>* J) {
-    const V zero = fill<V>(0.0);
+    const V zero = fill_lanes<V>(0.0);
     const Vec3<V> none = {zero, zero, zero};
     const double per_length = 1 / path.length;
     kinematics::Axis<V> rates[max_path];
@@ -121,21 +121,21 @@ CSPACE_INLINE void factor_columns(int n, const Twist<V>* J, Factors<V>& f) {
     f.wide = n >= 6;
     f.k = f.wide ? 6 : n;
     f.width = f.wide ? n : 6;
-    f.weakest = fill<V>(1e300);
+    f.weakest = fill_lanes<V>(1e300);
     for (int r = 0; r < f.k; ++r) {
         V a[max_joints];
         for (int j = 0; j < f.width; ++j) a[j] = f.wide ? J[j].entry[r] : J[r].entry[j];
         for (int s = 0; s < r; ++s) {
-            V along = fill<V>(0.0);
+            V along = fill_lanes<V>(0.0);
             for (int j = 0; j < f.width; ++j) along = mul_add(f.Q[s][j], a[j], along);
             for (int j = 0; j < f.width; ++j) a[j] = mul_add(-along, f.Q[s][j], a[j]);
             f.L[r][s] = along;
         }
-        V square = fill<V>(0.0);
+        V square = fill_lanes<V>(0.0);
         for (int j = 0; j < f.width; ++j) square = mul_add(a[j], a[j], square);
         const V left = sqrt(square);
         const mask_of<V> lost = left < lost_direction;
-        f.inverse[r] = where(!lost, 1.0 / select(lost, fill<V>(1.0), left));
+        f.inverse[r] = keep_lanes(!lost, 1.0 / select_lanes(lost, fill_lanes<V>(1.0), left));
         f.weakest = min(f.weakest, left);
         for (int j = 0; j < f.width; ++j) f.Q[r][j] = f.inverse[r] * a[j];
     }
@@ -166,14 +166,14 @@ CSPACE_INLINE void solve_for(const Factors<V>& f, const V* e, V* x, V* y) {
     if (!f.wide) {
         V b[6];
         for (int r = 0; r < f.k; ++r) {
-            b[r] = fill<V>(0.0);
+            b[r] = fill_lanes<V>(0.0);
             for (int j = 0; j < 6; ++j) b[r] = mul_add(f.Q[r][j], e[j], b[r]);
         }
         return backward_solve(f, b, x);
     }
     forward_solve(f, e, y);
     for (int j = 0; j < f.width; ++j) {
-        x[j] = fill<V>(0.0);
+        x[j] = fill_lanes<V>(0.0);
         for (int r = 0; r < 6; ++r) x[j] = mul_add(y[r], f.Q[r][j], x[j]);
     }
 }
@@ -184,11 +184,11 @@ CSPACE_INLINE void add_rate_of_inverse(const Factors<V>& f, const Twist<V>* J_ra
     V z[6], g[max_joints];
     backward_solve(f, y, z);
     for (int j = 0; j < f.width; ++j) {
-        g[j] = fill<V>(0.0);
+        g[j] = fill_lanes<V>(0.0);
         for (int r = 0; r < 6; ++r) g[j] = mul_add(J_rate[j].entry[r], z[r], g[j]);
     }
     for (int r = 0; r < 6; ++r) {
-        V along = fill<V>(0.0);
+        V along = fill_lanes<V>(0.0);
         for (int j = 0; j < f.width; ++j) along = mul_add(f.Q[r][j], g[j], along);
         for (int j = 0; j < f.width; ++j) g[j] = mul_add(-along, f.Q[r][j], g[j]);
     }

@@ -44,7 +44,7 @@ CSPACE_INLINE void add_to_tile(double* const (&to)[panels], const double* X, con
         FrontPack x[panels];
         for (int i = 0; i < panels; ++i) x[i] = load_pack(X + panel_rows * i);
         for (int c = 0; c < panel_rows; ++c) {
-            const FrontPack y = fill<FrontPack>(Y[c]);
+            const FrontPack y = fill_lanes<FrontPack>(Y[c]);
             for (int i = 0; i < panels; ++i) sum[i][c] = mul_add(x[i], y, sum[i][c]);
         }
     }
@@ -91,7 +91,7 @@ CSPACE_INLINE void add_weighted_to(double* const* to, const WeightedVectors& fro
         const double *x = from.X + c, *factor = from.factors;
         for (int k = 0; k < from.rank; ++k, x += from.stride, factor += from.step) {
             const FrontPack own = load_pack(x);
-            for (int i = 0; i < count; ++i) sum[i] = mul_add(own, fill<FrontPack>(factor[i]), sum[i]);
+            for (int i = 0; i < count; ++i) sum[i] = mul_add(own, fill_lanes<FrontPack>(factor[i]), sum[i]);
         }
         for (int i = 0; i < count; ++i) store_pack(to[i] + c, sum[i]);
     }

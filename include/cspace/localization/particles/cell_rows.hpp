@@ -80,7 +80,7 @@ CSPACE_INLINE void mix_number_rows(const double* const* rows, const double* weig
 CSPACE_INLINE double weigh_number_row(const CellWeights& weights, const double* from,
                                       const std::int32_t* sums, double* to, std::ptrdiff_t count) {
     constexpr int n = number_chunk;
-    FourNumbers total = fill<FourNumbers>(0.0);
+    FourNumbers total = fill_lanes<FourNumbers>(0.0);
     std::ptrdiff_t i = 0;
     for (; i + n <= count; i += n) {
         double factors[n];
@@ -102,7 +102,7 @@ CSPACE_INLINE double weigh_number_row(const CellWeights& weights, const double* 
 }
 
 CSPACE_INLINE double sum_number_row(const double* numbers, std::ptrdiff_t count) {
-    FourNumbers total = fill<FourNumbers>(0.0);
+    FourNumbers total = fill_lanes<FourNumbers>(0.0);
     std::ptrdiff_t i = 0;
     for (; i + number_chunk <= count; i += number_chunk) total = total + load_four(numbers + i);
     double parts[number_chunk];
@@ -117,7 +117,7 @@ CSPACE_INLINE void scale_number_row(double factor, double least, double* numbers
     std::ptrdiff_t i = 0;
     for (; i + number_chunk <= count; i += number_chunk) {
         const FourNumbers x = factor * load_four(numbers + i);
-        store_four(numbers + i, select(x < least, fill<FourNumbers>(0.0), x));
+        store_four(numbers + i, select_lanes(x < least, fill_lanes<FourNumbers>(0.0), x));
     }
     for (; i < count; ++i) {
         const double x = factor * numbers[i];

@@ -32,13 +32,13 @@ CSPACE_INLINE void subtract_block(double* C, std::ptrdiff_t stride_c, const doub
                                   std::ptrdiff_t stride, int count) {
     FrontPack sum[columns][packs];
     for (int c = 0; c < columns; ++c) {
-        for (int i = 0; i < packs; ++i) sum[c][i] = fill<FrontPack>(0.0);
+        for (int i = 0; i < packs; ++i) sum[c][i] = fill_lanes<FrontPack>(0.0);
     }
     for (int k = 0; k < count; ++k, A += stride, B += stride) {
         FrontPack a[packs];
         for (int i = 0; i < packs; ++i) a[i] = load_pack(A + front_lanes * i);
         for (int c = 0; c < columns; ++c) {
-            const FrontPack b = fill<FrontPack>(B[c]);
+            const FrontPack b = fill_lanes<FrontPack>(B[c]);
             for (int i = 0; i < packs; ++i) sum[c][i] = mul_add(a[i], b, sum[c][i]);
         }
     }
@@ -94,8 +94,8 @@ CSPACE_INLINE void solve_head(const double (&head)[columns][columns], const doub
     V x[columns];
     for (int c = 0; c < columns; ++c) {
         V sum = load(c);
-        for (int k = 0; k < c; ++k) sum = mul_add(fill<V>(-head[c][k]), x[k], sum);
-        x[c] = sum * fill<V>(inverse[c]);
+        for (int k = 0; k < c; ++k) sum = mul_add(fill_lanes<V>(-head[c][k]), x[k], sum);
+        x[c] = sum * fill_lanes<V>(inverse[c]);
         store(c, x[c]);
     }
 }
@@ -168,7 +168,7 @@ CSPACE_INLINE void solve_lower(const double* panel, int stride, int pivots, doub
         x[k] = pivot;
         int r = k + 1;
         for (; (stride - r) % front_lanes; ++r) x[r] -= pivot * column[r];
-        const FrontPack factor = fill<FrontPack>(-pivot);
+        const FrontPack factor = fill_lanes<FrontPack>(-pivot);
         for (; r < stride; r += front_lanes)
             store_pack(x + r, mul_add(factor, load_pack(column + r), load_pack(x + r)));
     }
@@ -181,9 +181,9 @@ CSPACE_INLINE void solve_upper(const double* panel, int stride, int pivots, doub
         double sum = x[k];
         int r = k + 1;
         for (; (stride - r) % front_lanes; ++r) sum -= column[r] * x[r];
-        FrontPack part = fill<FrontPack>(0.0);
+        FrontPack part = fill_lanes<FrontPack>(0.0);
         for (; r < stride; r += front_lanes) part = mul_add(load_pack(column + r), load_pack(x + r), part);
-        for (int i = 0; i < front_lanes; ++i) sum -= lane(part, i);
+        for (int i = 0; i < front_lanes; ++i) sum -= get_lane(part, i);
         x[k] = sum / column[k];
     }
 }

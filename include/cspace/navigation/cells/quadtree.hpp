@@ -147,7 +147,7 @@ class Quadtree {
 
     Box square_of(const QuadCell& cell) const { return {low(cell), high(cell)}; }
     BoxPart part_met(maps::Index wall, const Box& square) const {
-        return meets(world_.walls.begin(wall), world_.walls.end(wall), square);
+        return met_part(world_.walls.begin(wall), world_.walls.end(wall), square);
     }
 
     void classify(QuadCell& cell, bool is_entered) {
