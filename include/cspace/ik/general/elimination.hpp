@@ -85,7 +85,7 @@ inline Invariants pulled_back(const Posed& T, const Invariants& g) {
             g.one + dot(g.p, t) + g.pp * tt};
 }
 
-// Rz(a) v = level + cos a · across + sin a · quarter.
+// Rz(a) v = level_part + cos a · across_part + sin a · quarter_part.
 inline Vec3d across_part(const Vec3d& a) { return {a.x, a.y, 0}; }
 inline Vec3d quarter_part(const Vec3d& a) { return {-a.y, a.x, 0}; }
 inline Invariants across_part(const Invariants& v) {
@@ -96,7 +96,7 @@ inline Invariants quarter_part(const Invariants& v) {
     return {quarter_part(v.l), quarter_part(v.p), quarter_part(v.m), quarter_part(v.q), 0, 0, 0};
 }
 
-// Tz(d) v = v + d · once + d² · twice.
+// Tz(d) v = v + d · first_order_part + d² · second_order_part.
 inline Invariants first_order_part(const Invariants& v) {
     const Vec3d z = {0, 0, 1};
     return {{0, 0, 0}, v.one * z, cross(z, v.l), -2.0 * cross(z, v.m) - (2 * v.pl) * z, 2 * v.p.z, v.l.z, 0};
