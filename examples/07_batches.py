@@ -7,6 +7,7 @@ import time
 import numpy as np
 
 import cspace as cs
+from cspace.ik import SolutionsBatch
 
 
 def main() -> None:
@@ -19,7 +20,7 @@ def main() -> None:
     print(f"fk {T.shape}, jacobian {J.shape}: {1e3 * (time.perf_counter() - start):.1f} ms")
 
     start = time.perf_counter()
-    answer = robot.ik(T)
+    answer: SolutionsBatch = robot.ik(T)
     print(f"ik, every solution {answer.q.shape}: {1e3 * (time.perf_counter() - start):.1f} ms")
 
     # Rows are padded with NaN behind the last solution; `count` says how many there are.

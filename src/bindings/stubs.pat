@@ -28,8 +28,9 @@ cspace._core.KinematicsBase.fk_jacobian:
 
 cspace._core.RobotBase.ik$:
     \from collections.abc import Mapping, Sequence
+    \from cspace.ik.solutions import Solutions
     \from cspace.model import Limits
-    def ik(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions | Any:
         \doc
 
 cspace._core.RobotBase.collides$:
@@ -92,8 +93,9 @@ cspace._core.RobotBase._solver:
 
 cspace._core.SolverBase.solve$:
     \from collections.abc import Mapping, Sequence
+    \from cspace.ik.solutions import Solutions
     \from cspace.model import Limits
-    def solve(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def solve(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions | Any:
         \doc
 
 cspace._core.AXIS_RELATION:

@@ -8,6 +8,7 @@ import numpy
 import numpy.typing
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from cspace.ik.solutions import Solutions
 from cspace.model import Limits
 
 
@@ -148,7 +149,7 @@ def subproblem_6(h: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 3), o
 class SolverBase(KinematicsBase):
     """The compiled half of cspace.ik.Solver."""
 
-    def solve(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def solve(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions | Any:
         """
         Every configuration q with fk(q) = goal.
 
@@ -182,7 +183,7 @@ class SolverBase(KinematicsBase):
 class RobotBase(KinematicsBase):
     """The compiled half of cspace.Robot."""
 
-    def ik(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions | Any:
         """
         Every configuration q with fk(q) = goal.
 

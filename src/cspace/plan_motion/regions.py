@@ -19,6 +19,7 @@ from cspace.planning.region import DIMENSIONS
 from cspace.search.halton import halton_points
 
 if TYPE_CHECKING:
+    from cspace.ik.solutions_batch import SolutionsBatch
     from cspace.robot import Robot
 
 ENOUGH_GOALS: Final = 16
@@ -88,7 +89,9 @@ def solve_poses(
     if robot.solver.is_redundant:
         u = halton_points(first, count, DIMENSIONS + len(robot.solver.redundant_joints))[:, DIMENSIONS:]
         return solve_locked_redundant(robot.solver, poses, scale_redundant(robot, space, u))
-    found = robot.ik(poses) if space.dof >= POSE_JOINTS else robot.ik(**parts_of(region, poses))
+    found: SolutionsBatch = (
+        robot.ik(poses) if space.dof >= POSE_JOINTS else robot.ik(**parts_of(region, poses))
+    )
     return found.q, found.count
 
 
