@@ -20,7 +20,8 @@ def main() -> None:
     print(f"fk {T.shape}, jacobian {J.shape}: {1e3 * (time.perf_counter() - start):.1f} ms")
 
     start = time.perf_counter()
-    answer: SolutionsBatch = robot.ik(T)
+    answer = robot.ik(T)
+    assert isinstance(answer, SolutionsBatch)  # many goals; type checkers do not know how many axes T has
     print(f"ik, every solution {answer.q.shape}: {1e3 * (time.perf_counter() - start):.1f} ms")
 
     # Rows are padded with NaN behind the last solution; `count` says how many there are.

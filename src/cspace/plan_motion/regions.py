@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ from cspace.arrays import Array
 from cspace.collision.checks import explain_contacts
 from cspace.ik.near_rows import solve_locked_redundant, sort_near
 from cspace.ik.on_limits import keep_within
+from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.plan_motion.goals import Goals
 from cspace.plan_motion.poses import scale_redundant
 from cspace.planning import ArmSpace, Region
@@ -19,7 +20,6 @@ from cspace.planning.region import DIMENSIONS
 from cspace.search.halton import halton_points
 
 if TYPE_CHECKING:
-    from cspace.ik.solutions_batch import SolutionsBatch
     from cspace.robot import Robot
 
 ENOUGH_GOALS: Final = 16
@@ -89,10 +89,9 @@ def solve_poses(
     if robot.solver.is_redundant:
         u = halton_points(first, count, DIMENSIONS + len(robot.solver.redundant_joints))[:, DIMENSIONS:]
         return solve_locked_redundant(robot.solver, poses, scale_redundant(robot, space, u))
-    found: SolutionsBatch = (
-        robot.ik(poses) if space.dof >= POSE_JOINTS else robot.ik(**parts_of(region, poses))
-    )
-    return found.q, found.count
+    found = robot.ik(poses) if space.dof >= POSE_JOINTS else robot.ik(**parts_of(region, poses))
+    batch = cast(SolutionsBatch, found)
+    return batch.q, batch.count
 
 
 def draw_positions(robot: Robot, region: Region, first: int, count: int) -> Array | None:
