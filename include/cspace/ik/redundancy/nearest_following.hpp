@@ -72,21 +72,31 @@ inline void add_solved_starts(const Redundant& arm, const Posed& goal, const Tar
     });
 }
 
-// What Newton's method reaches from configurations around the seed, more and more of them close to it. Small
-// arcs that no value above meets have a large basin of attraction.
-inline void add_reached_starts(const Redundant& arm, const Posed& goal, const Target& target,
-                               ArcStarts& starts) {
-    constexpr int looks = 48;
+// What Newton's method reaches from `looks` configurations around the seed, more and more of them close to it.
+// Small arcs that no value above meets have a large basin of attraction. first: number of the first one.
+inline void add_reached_starts(const Redundant& arm, const Posed& goal, const Target& target, int first,
+                               int looks, ArcStarts& starts) {
+    constexpr int most = 96;
     constexpr Descent rule = {24, 0.8};
-    double q[looks][max_joints];
-    bool reached[looks];
+    double q[most][max_joints];
+    bool reached[most];
     for (int k = 0; k < looks; ++k) {
-        spread_configuration(k, arm.chain.n, q[k]);
+        spread_configuration(first + k, arm.chain.n, q[k]);
         for (int i = 0; i < arm.chain.n; ++i) q[k][i] = target.seed[i] + k / (looks - 1.0) * q[k][i];
     }
     descend_to_manifold(arm.chain, arm.rank, goal, arm.length, q, looks, reached, rule);
     for (int k = 0; k < looks; ++k)
         if (reached[k]) add_arc_start(arm, q[k], distance_from_seed(arm, target, q[k]), starts);
+}
+
+// Starts on all arcs around the seed. Close to the end of the arm's reach, the arcs are small and there are
+// few starts at first.
+inline void find_arc_starts(const Redundant& arm, const Posed& goal, const Target& target,
+                            const Nearest& best, ArcStarts& starts) {
+    constexpr int looks = 48, more = 96, few = 32;
+    add_solved_starts(arm, goal, target, best, starts);
+    add_reached_starts(arm, goal, target, 0, looks, starts);
+    if (starts.count < few) add_reached_starts(arm, goal, target, looks, more, starts);
 }
 
 // Settles the starts nearest to the seed. What they lead to says how far the arcs are followed.
@@ -134,8 +144,7 @@ inline void nearest_by_following(const Redundant& arm, const LimitArms* arms, co
     ArcStarts starts;
     ArcMinima minima;
     settle_around(arm, goal, target, best);
-    add_solved_starts(arm, goal, target, best, starts);
-    add_reached_starts(arm, goal, target, starts);
+    find_arc_starts(arm, goal, target, best, starts);
     settle_nearest_starts(arm, goal, target, starts, best);
     if (arms)
         find_ends(arm, *arms, goal, target, best,

@@ -35,8 +35,8 @@ inline void sample_window(const Redundant& arm, const Sweep& sweep, const Target
     divide_samples(arm, sweep, best.distance, target, samples);
     // Beside a limit there may be a nearer point.
     const bool is_minimum = std::isfinite(best.distance) && !target.within_limits;
-    lowest_samples(arm.chain, samples, is_minimum ? best.q : nullptr,
-                   [&](const double* q, double d) { add_start(arm, starts, q, d); });
+    lowest_samples(arm, samples, is_minimum ? best.q : nullptr,
+                   [&](const double* q, double d, double bound) { add_start(arm, starts, q, d, bound); });
 }
 
 // One redundant joint: starts at the seed, then at parameter values around the seed within the bound of the
@@ -182,6 +182,23 @@ inline bool nearest_from(const Redundant& arm, const Posed& goal, const double* 
     return copy_wrapped(arm, best, q);
 }
 
+// From a configuration with a joint at a limit the curve may lead nearer to the seed inside the limits: where
+// the arm is almost singular, no sample of the parameter may lie on that part of it.
+inline void leave_limit(const Redundant& arm, const Posed& goal, const Target& target, Nearest& best) {
+    constexpr double inwards = 1e-3;
+    const int n = arm.chain.n;
+    CurvePoint at;
+    double gap[max_joints], next[max_joints];
+    for (int i = 0; i < n; ++i) at.q[i] = best.q[i];
+    onto_curve(arm.chain, arm.rank, goal, arm.length, at);
+    from_seed(arm.chain, target, arm.weight, at.q, gap);
+    const double step = -std::copysign(inwards, dot_n(gap, at.tangent, n));
+    predict_along(at.q, at.tangent, at.bend, step, n, next);
+    if (!is_acceptable(arm, target, next)) return;
+    const Nearest end = best;
+    descend_along_curve(arm, goal, target, end.q, best);
+}
+
 // The nearest of all configurations within limits. arms, trail: null unless one joint is redundant.
 inline bool nearest_within_limits(const Redundant& arm, const LimitArms* arms, const Posed& goal,
                                   const double* seed, Trail* trail, double* q) {
@@ -191,10 +208,14 @@ inline bool nearest_within_limits(const Redundant& arm, const LimitArms* arms, c
         nearest_by_following(arm, arms, goal, target, best);
         return copy_wrapped(arm, best, q);
     }
-    if (arms) find_ends(arm, *arms, goal, target, best, [](const double*, double) {});
+    const auto ignore = [](const double*, double) {};
+    if (arms) find_ends(arm, *arms, goal, target, best, ignore);
+    const double end = best.distance;
     const bool is_complete = trail && nearest_of_arcs(arm, *arms, goal, target, *trail, best);
-    return is_complete && std::isfinite(best.distance) ? copy_wrapped(arm, best, q)
-                                                       : search_nearest(arm, goal, target, best, q);
+    if (is_complete && std::isfinite(best.distance)) return copy_wrapped(arm, best, q);
+    if (!search_nearest(arm, goal, target, best, q)) return false;
+    if (!(best.distance < end)) leave_limit(arm, goal, target, best);
+    return copy_wrapped(arm, best, q);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

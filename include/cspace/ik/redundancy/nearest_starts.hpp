@@ -10,20 +10,24 @@
 
 namespace cspace::ik {
 
-// The best starts so far, by distance from the seed.
+// The best starts so far, by distance from the seed. What a start leads to is hardly nearer than its bound.
 struct Starts {
     static constexpr int room = 32;
     int count = 0;
     double q[room][max_joints];
-    double distance[room];
+    double distance[room], bound[room];
 };
 
 }  // namespace cspace::ik
 
 namespace cspace::ik::inline CSPACE_ISA {
 
+// Whether the valley of a start may contain a point nearer than `nearest`, by its distance alone.
+inline bool is_low_enough(double distance, double nearest) { return distance <= 1.5 * nearest + 0.2; }
+
 // Adds a start. If there is no room, it replaces the worst one.
-inline void add_start(const Redundant& arm, Starts& starts, const double* q, double distance) {
+inline void add_start(const Redundant& arm, Starts& starts, const double* q, double distance,
+                      double bound = 0) {
     int at = starts.count;
     if (at == Starts::room) {
         at = 0;
@@ -35,6 +39,7 @@ inline void add_start(const Redundant& arm, Starts& starts, const double* q, dou
     }
     for (int i = 0; i < arm.chain.n; ++i) starts.q[at][i] = q[i];
     starts.distance[at] = distance;
+    starts.bound[at] = bound;
 }
 
 // Keeps a start unless it is worse than all others, or lies in the valley of a better one.
@@ -46,6 +51,7 @@ inline void keep_start(const Redundant& arm, Starts& starts, const double* q, do
         if (distance >= starts.distance[k]) return;
         for (int i = 0; i < arm.chain.n; ++i) starts.q[k][i] = q[i];
         starts.distance[k] = distance;
+        starts.bound[k] = 0;
         return;
     }
     add_start(arm, starts, q, distance);
@@ -125,23 +131,40 @@ inline void descend_along_curve(const Redundant& arm, const Posed& goal, const T
     if (at.error < tolerance::reached && is_acceptable(arm, target, at.q)) keep_nearer(arm, at.q, here, best);
 }
 
+// Settles starts in the order of their distances, unless their bounds are above the best one.
+inline void settle_in_order(const Redundant& arm, const Posed& goal, const Target& target,
+                            const Starts& starts, double nearest, Nearest& best) {
+    constexpr int abreast = 4;
+    int order[Starts::room];
+    for (int k = 0; k < starts.count; ++k) order[k] = k;
+    std::sort(order, order + starts.count,
+              [&](int a, int b) { return starts.distance[a] < starts.distance[b]; });
+    for (int next = 0; next < starts.count;) {
+        const double* chosen[abreast];
+        int count = 0;
+        for (; next < starts.count && count < abreast; ++next)
+            if (is_low_enough(starts.distance[order[next]], nearest) &&
+                starts.bound[order[next]] < best.distance)
+                chosen[count++] = starts.q[order[next]];
+        settle_all(arm, goal, target, chosen, count, best);
+    }
+}
+
 // Refines the starts whose valley may contain a point below the best one. `also`: an additional start, on the
 // manifold or off it. Within limits the bound is a limit's, and several redundant joints may end at limits.
 inline void settle_starts(const Redundant& arm, const Posed& goal, const Target& target, const Starts& starts,
                           const double* also, Nearest& best) {
-    const double* chosen[Starts::room + 1];
-    int count = 0;
     double nearest = best.distance;
-    if (also) chosen[count++] = also;
     for (int k = 0; k < starts.count && !target.within_limits; ++k)
         nearest = min(nearest, starts.distance[k]);
-    for (int k = 0; k < starts.count; ++k)
-        if (starts.distance[k] <= 1.5 * nearest + 0.2) chosen[count++] = starts.q[k];
     if (target.within_limits && arm.redundancy_degree != 1) {
-        for (int k = 0; k < count; ++k) settle_within_limits(arm, goal, target, chosen[k], best);
+        if (also) settle_within_limits(arm, goal, target, also, best);
+        for (int k = 0; k < starts.count; ++k)
+            if (is_low_enough(starts.distance[k], nearest)) settle_within_limits(arm, goal, target, starts.q[k], best);
         return;
     }
-    settle_all(arm, goal, target, chosen, count, best);
+    if (also) settle_all(arm, goal, target, &also, 1, best);
+    settle_in_order(arm, goal, target, starts, nearest, best);
     for (int k = 0; k < starts.count && arm.redundancy_degree == 1; ++k)
         if (starts.distance[k] < best.distance && is_acceptable(arm, target, starts.q[k]))
             descend_along_curve(arm, goal, target, starts.q[k], best);
