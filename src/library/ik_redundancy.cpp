@@ -245,8 +245,7 @@ RedundantSolver::NearestFound RedundantSolver::find_nearest_within(const double*
     if (!kernels::ik_nearest(arm, read.T, seed, q)) return {};
     if (is_kept()) return {true, true, true};
     const auto trail = arms && !is_sampled_quickly(arm) ? std::make_unique_for_overwrite<Trail>() : nullptr;
-    if (!arms || trail)
-        found = kernels::ik_nearest_within(arm, arms, read.T, seed, trail.get(), within);
+    if (!arms || trail) found = kernels::ik_nearest_within(arm, arms, read.T, seed, trail.get(), within);
     bool complete = found;
     if (!found) {
         double start[max_joints];

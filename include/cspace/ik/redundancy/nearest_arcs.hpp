@@ -181,8 +181,8 @@ CSPACE_INLINE void look_ahead(ArcLanes<V>& arcs, int size, mask_of<V> moved) {
     }
 }
 
-// Tries a step of every lane. Returns the lanes in which it stayed close to the arc, as in step_along; shorter: the factor of
-// the others' next strides.
+// Tries a step of every lane. Returns the lanes in which it stayed close to the arc, as in step_along;
+// shorter: the factor of the others' next strides.
 template <int N, class V>
 CSPACE_INLINE mask_of<V> try_steps(const ArcSearch& search, const Pose<V>& goal, ArcLanes<V>& arcs,
                                    mask_of<V> begins, V& shorter) {
@@ -295,9 +295,8 @@ CSPACE_NOINLINE void find_arc_minima(const ArcSearch& search, const Posed& goal)
     ArcLanes<V> arcs = {};
     arcs.count = search.starts->count;
     for (int k = 0; k < arcs.count; ++k) arcs.order[k] = k;
-    std::sort(arcs.order, arcs.order + arcs.count, [&](int a, int b) {
-        return search.starts->distance[a] < search.starts->distance[b];
-    });
+    std::sort(arcs.order, arcs.order + arcs.count,
+              [&](int a, int b) { return search.starts->distance[a] < search.starts->distance[b]; });
     const Pose<V> goals = fill_pose<V>(goal);
     follow_arcs<N>(search, goals, arcs, 1.0);
     follow_arcs<N>(search, goals, arcs, -1.0);

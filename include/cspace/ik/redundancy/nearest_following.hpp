@@ -1,6 +1,6 @@
-// The nearest configuration of an arm with one redundant joint and no closed form on lanes. Solutions at a few
-// values of that joint, and points that Newton's method reaches from around the seed, are starts. The arcs
-// through them are followed around the seed, and Newton's method settles every local minimum along them.
+// The nearest configuration of an arm with one redundant joint and no closed form on lanes. Solutions at a
+// few values of that joint, and points that Newton's method reaches from around the seed, are starts. The
+// arcs through them are followed around the seed, and Newton's method settles every local minimum along them.
 #pragma once
 
 #include <algorithm>
@@ -64,16 +64,15 @@ inline void add_solved_starts(const Redundant& arm, const Posed& goal, const Tar
     const Window window = window_of(arm, target, p, goal, best);
     const Sweep sweep = make_sweep(arm.locked, p, goal, target.seed);
     double values[looks];
-    for (int k = 0; k < looks; ++k)
-        values[k] = window.middle + window.half * ((2 * k + 1.0) / looks - 1);
+    for (int k = 0; k < looks; ++k) values[k] = window.middle + window.half * ((2 * k + 1.0) / looks - 1);
     sweep_values(sweep, values, looks, [&](int, const SweptRows& rows) {
         for (int k = 0; k < rows.count; ++k)
             add_arc_start(arm, rows.q[k], distance_from_seed(arm, target, rows.q[k]), starts);
     });
 }
 
-// What Newton's method reaches from `looks` configurations around the seed, more and more of them close to it.
-// Small arcs that no value above meets have a large basin of attraction. first: number of the first one.
+// What Newton's method reaches from `looks` configurations around the seed, more and more of them close to
+// it. Small arcs that no value above meets have a large basin of attraction. first: number of the first one.
 inline void add_reached_starts(const Redundant& arm, const Posed& goal, const Target& target, int first,
                                int looks, ArcStarts& starts) {
     constexpr int most = 96;

@@ -160,7 +160,8 @@ inline void settle_starts(const Redundant& arm, const Posed& goal, const Target&
     if (target.within_limits && arm.redundancy_degree != 1) {
         if (also) settle_within_limits(arm, goal, target, also, best);
         for (int k = 0; k < starts.count; ++k)
-            if (is_low_enough(starts.distance[k], nearest)) settle_within_limits(arm, goal, target, starts.q[k], best);
+            if (is_low_enough(starts.distance[k], nearest))
+                settle_within_limits(arm, goal, target, starts.q[k], best);
         return;
     }
     if (also) settle_all(arm, goal, target, &also, 1, best);
