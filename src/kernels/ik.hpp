@@ -74,6 +74,9 @@ CSPACE_KERNEL(cspace::ik, void, locked_rows,
 // The configuration on the self-motion of a goal nearest to a seed; false where nothing reaches the goal.
 CSPACE_NARROW_KERNEL(cspace::ik, bool, ik_nearest,
                      (const Redundant& arm, const Posed& goal, const double* seed, double* q))
+// The same, where it is proven to be the nearest; false elsewhere.
+CSPACE_NARROW_KERNEL(cspace::ik, bool, ik_nearest_proven,
+                     (const Redundant& arm, const Posed& goal, const double* seed, double* q))
 // The same within limits; false where none was found. arms: null unless one joint is redundant. trail: memory
 // to follow arcs in, where samples of that joint are too few; null without.
 CSPACE_NARROW_KERNEL(cspace::ik, bool, ik_nearest_within,

@@ -11,6 +11,9 @@ extern template void intervals_by_arcs(const Redundant&, const LockedArm&, int, 
 bool ik_nearest(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
     return nearest_configuration(arm, goal, seed, q);
 }
+bool ik_nearest_proven(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
+    return nearest_proven(arm, goal, seed, q);
+}
 bool ik_nearest_within(const Redundant& arm, const LimitArms* arms, const Posed& goal, const double* seed,
                        Trail* trail, double* q) {
     return nearest_within_limits(arm, arms, goal, seed, trail, q);

@@ -32,12 +32,6 @@ double unit_of(const Redundant& arm) {
     return slides && !usual ? std::exp2(std::round(std::log2(arm.length))) : 1.0;
 }
 
-// Whether the solutions at many values of the redundant joint come from a closed form on lanes.
-bool has_fast_samples(const Redundant& arm) {
-    return arm.locked.at_ends && rank_of(arm.locked.arm) == 3 &&
-           !arm.chain.prismatic[arm.locked.locked_joint[0]];
-}
-
 // Whether the limits leave the configuration as near to the seed as it is without them: turned, its copy
 // inside the limits, is the nearest of all copies and inside.
 bool is_kept_by_limits(const Redundant& arm, const double* seed, const double* nearest,
@@ -228,18 +222,31 @@ RedundantSolver::NearestFound RedundantSolver::find_nearest_within(const double*
     const Redundant& arm = state_->arm;
     const int n = arm.chain.n;
     const ReadGoal<double> read = read_goal(goal);
-    if (!read.is_pose || !kernels::ik_nearest(arm, read.T, seed, q)) return {};
+    if (!read.is_pose) return {};
     const auto turn = [&](double* row) {
         turn_to_seed(arm.chain.prismatic, n, arm.lower, arm.upper, seed, row);
     };
-    double nearest[max_joints];
-    std::copy(q, q + n, nearest);
-    turn(q);
-    if (is_kept_by_limits(arm, seed, nearest, q)) return {true, true, true};
+    const auto is_kept = [&] {
+        double nearest[max_joints];
+        std::copy(q, q + n, nearest);
+        turn(q);
+        return is_kept_by_limits(arm, seed, nearest, q);
+    };
+    if (kernels::ik_nearest_proven(arm, read.T, seed, q) && is_kept()) return {true, true, true};
     const LimitArms* const arms = redundant_joints() == 1 ? &state_->limit_arms() : nullptr;
-    const auto trail = arms && !has_fast_samples(arm) ? std::make_unique_for_overwrite<Trail>() : nullptr;
     double within[max_joints];
-    bool found = kernels::ik_nearest_within(arm, arms, read.T, seed, trail.get(), within), complete = found;
+    const bool is_quick = is_sampled_quickly(arm) || has_arcs_to_follow(arm);
+    bool found = arms && is_quick && kernels::ik_nearest_within(arm, arms, read.T, seed, nullptr, within);
+    if (found) {
+        std::copy(within, within + n, q);
+        turn(q);
+        return {true, true, true};
+    }
+    if (!kernels::ik_nearest(arm, read.T, seed, q)) return {};
+    if (is_kept()) return {true, true, true};
+    const auto trail = arms && !is_sampled_quickly(arm) ? std::make_unique_for_overwrite<Trail>() : nullptr;
+    if (!arms || trail) found = kernels::ik_nearest_within(arm, arms, read.T, seed, trail.get(), within);
+    bool complete = found;
     if (!found) {
         double start[max_joints];
         found = find_one_within(goal, start, complete) &&

@@ -128,6 +128,88 @@ static ik::Chain random_chain(arms::Rng& rng, int k) {
     return chain;
 }
 
+// An arm of seven revolute joints in general position, within limits of up to half a turn and more.
+static ik::Redundant random_general_arm(arms::Rng& rng, int k) {
+    double lower[7], upper[7], weight[7];
+    for (int i = 0; i < 7; ++i) {
+        lower[i] = -arms::uniform(rng, 1.2, 3.6);
+        upper[i] = arms::uniform(rng, 1.2, 3.6);
+        weight[i] = 1;
+    }
+    return ik::make_redundant(random_chain(rng, 4 * (k % 2)), lower, upper, weight);
+}
+
+// Each joint by the multiple of 2π within limits that is nearest to the seed.
+static double distance_within(const ik::Redundant& arm, const double* seed, const double* q) {
+    double sum = 0;
+    for (int i = 0; i < arm.chain.n; ++i) {
+        double least = std::numeric_limits<double>::infinity();
+        for (int turns = -1; turns <= 1; ++turns) {
+            const double at = q[i] + 2 * pi * turns;
+            if (at >= arm.lower[i] - limit_slack && at <= arm.upper[i] + limit_slack)
+                least = std::min(least, std::fabs(at - seed[i]));
+        }
+        sum += least * least;
+    }
+    return std::sqrt(sum);
+}
+
+TEST(following_the_arcs_around_a_seed_finds_what_tracing_all_of_them_finds) {
+    arms::Rng rng(11);
+    const auto limits = std::make_unique<ik::LimitArms>();
+    const auto trail = std::make_unique<Trail>();
+    for (int k = 0; k < 12; ++k) {
+        const ik::Redundant arm = random_general_arm(rng, k);
+        CHECK(has_arcs_to_follow(arm));
+        *limits = {};
+        make_limit_arms(arm, *limits);
+        for (int j = 0; j < 4; ++j) {
+            double q[7], seed[7], near_by[7], of_all[7];
+            random_within(rng, arm, q);
+            random_within(rng, arm, seed);
+            const Posed goal = forward(arm.chain, q);
+            CHECK(nearest_within_limits(arm, limits.get(), goal, seed, nullptr, near_by));
+            CHECK(nearest_within_limits(arm, limits.get(), goal, seed, trail.get(), of_all));
+            CHECK(is_within(arm, near_by, limit_slack));
+            CHECK(pose_difference(forward(arm.chain, near_by), goal, arm.length) < 1e-8);
+            const double distance = distance_within(arm, seed, near_by);
+            CHECK(distance <= distance_within(arm, seed, of_all) + 1e-8);
+            CHECK(distance <= distance_within(arm, seed, q) + 1e-8);
+        }
+    }
+}
+
+// An arc is followed to where it closes or meets the next start.
+TEST(the_least_distance_along_a_closed_arc_does_not_depend_on_where_it_is_entered) {
+    arms::Rng rng(12);
+    const double far = std::numeric_limits<double>::infinity();
+    int arcs = 0;
+    for (int k = 0; k < 12; ++k) {
+        const ik::Redundant arm = random_general_arm(rng, k);
+        double q[7], seed[7];
+        random_within(rng, arm, q);
+        random_within(rng, arm, seed);
+        const Posed goal = forward(arm.chain, q);
+        const ik::Target target = make_target(arm, seed, false);
+        const auto nearest_from = [&](const double* start, ik::Nearest& best) {
+            const auto starts = std::make_unique<ik::ArcStarts>();
+            const auto minima = std::make_unique<ik::ArcMinima>();
+            const ik::Nearest none = {};
+            add_arc_start(arm, start, distance_from_seed(arm, target, start), *starts);
+            find_arc_minima<7, Pack<4>>({&arm, &target, starts.get(), minima.get(), &none, {far, far}}, goal);
+            settle_minima(arm, goal, target, *minima, best);
+            return starts->is_reached[0];
+        };
+        ik::Nearest first, again;
+        if (!nearest_from(q, first) || !std::isfinite(first.distance)) continue;
+        ++arcs;
+        CHECK(first.distance <= distance_from_seed(arm, target, q) + 1e-12);
+        CHECK(nearest_from(first.q, again));
+        CHECK_NEAR(first.distance, again.distance, 1e-9);
+    }
+    CHECK(arcs > 4);
+}
+
 // The derivative of the frames' points, and the angular velocity, as the joints q of the halves move along x.
 struct HalvesSpeed {
     Vec3d linear[2] = {}, angular[2] = {};

@@ -5,6 +5,8 @@
 // the distance between the samples.
 #pragma once
 
+#include <limits>
+
 #include "cspace/ik/redundancy/target.hpp"
 #include "cspace/ik/redundancy/turning_points.hpp"
 
@@ -150,11 +152,28 @@ inline bool lies_between(const Chain& chain, const CurveSample& a, const CurveSa
     return off2 < aside2 * length2;
 }
 
-// Calls visit(q, distance) for the local minima: samples below the adjacent samples of their branch, unless
-// `found` is close to them.
+// Half of the detour over a point between two samples of a branch that may be that near to the seed: see
+// may_hide. −∞ where the branch ends in between, or may bend more.
+inline double bound_between(const Redundant& arm, const CurveSample& a, const CurveSample* b, int branch) {
+    constexpr double detour = 1.2, longest = 0.2;
+    if (!b) return std::numeric_limits<double>::infinity();
+    if (!(b->there >> branch & 1)) return -std::numeric_limits<double>::infinity();
+    double square = 0;
+    for (int i = 0; i < arm.chain.n; ++i) {
+        const double gap = joint_difference(arm.chain, i, a.q[i][branch] - b->q[i][branch]);
+        square += arm.weight[i] * gap * gap;
+    }
+    const double way = detour * std::sqrt(square), from = a.distance[branch], to = b->distance[branch];
+    if (way > longest) return -std::numeric_limits<double>::infinity();
+    return 0.5 * ((std::fabs(to - from) > way ? 2 * min(from, to) : from + to) - way);
+}
+
+// Calls visit(q, distance, bound) for the local minima: samples below the adjacent samples of their branch,
+// unless `found` is close to them. bound: no point between the adjacent samples is nearer.
 template <class Visit>
-inline void lowest_samples(const Chain& chain, const CurveSamples& all, const double* found,
+inline void lowest_samples(const Redundant& arm, const CurveSamples& all, const double* found,
                            const Visit& visit) {
+    const Chain& chain = arm.chain;
     const CurveSample* before = nullptr;
     for (int k = all.count ? 0 : -1; k >= 0;) {
         const CurveSample& at = all.sample[k];
@@ -170,7 +189,8 @@ inline void lowest_samples(const Chain& chain, const CurveSamples& all, const do
             if (!wanted) continue;
             double q[max_joints];
             copy_branch(chain, at, b, q);
-            visit(q, at.distance[b]);
+            visit(q, at.distance[b],
+                  min(bound_between(arm, at, beside[0], b), bound_between(arm, at, beside[1], b)));
         }
         before = &at;
         k = at.next;

@@ -5,192 +5,14 @@
 
 #include <algorithm>
 
-#include "cspace/ik/redundancy/active_set.hpp"
 #include "cspace/ik/redundancy/arcs.hpp"
 #include "cspace/ik/redundancy/narrow_valleys.hpp"
+#include "cspace/ik/redundancy/nearest_following.hpp"
 #include "cspace/ik/redundancy/nearest_proof.hpp"
-#include "cspace/ik/redundancy/nearest_step.hpp"
+#include "cspace/ik/redundancy/nearest_starts.hpp"
 #include "cspace/ik/redundancy/turning_points.hpp"
-#include "cspace/math/turn.hpp"
-
-namespace cspace::ik {
-
-// The best starts so far, by distance from the seed.
-struct Starts {
-    static constexpr int room = 32;
-    int count = 0;
-    double q[room][max_joints];
-    double distance[room];
-};
-
-}  // namespace cspace::ik
 
 namespace cspace::ik::inline CSPACE_ISA {
-
-// Adds a start. If there is no room, it replaces the worst one.
-inline void add_start(const Redundant& arm, Starts& starts, const double* q, double distance) {
-    int at = starts.count;
-    if (at == Starts::room) {
-        at = 0;
-        for (int k = 1; k < Starts::room; ++k)
-            if (starts.distance[k] > starts.distance[at]) at = k;
-        if (distance >= starts.distance[at]) return;
-    } else {
-        ++starts.count;
-    }
-    for (int i = 0; i < arm.chain.n; ++i) starts.q[at][i] = q[i];
-    starts.distance[at] = distance;
-}
-
-// Keeps a start unless it is worse than all others, or lies in the valley of a better one.
-inline void keep_start(const Redundant& arm, Starts& starts, const double* q, double distance) {
-    constexpr double valley = 0.4;
-    if (!is_allowed(arm, q)) return;
-    for (int k = 0; k < starts.count; ++k) {
-        if (joint_gap(arm.chain, starts.q[k], q) > valley) continue;
-        if (distance >= starts.distance[k]) return;
-        for (int i = 0; i < arm.chain.n; ++i) starts.q[k][i] = q[i];
-        starts.distance[k] = distance;
-        return;
-    }
-    add_start(arm, starts, q, distance);
-}
-
-// Newton's method on as many starts as V has lanes; keeps the best result that converges. rank: of the
-// Jacobian along the iterates.
-template <int N, class V>
-inline void settle_abreast(const Redundant& arm, int rank, const Posed& goal, const Target& target,
-                           const double* const* starts, int count, Nearest& best) {
-    V q[max_joints], step = fill_lanes<V>(1.0);
-    for (int i = 0; i < arm.chain.n; ++i)
-        for (int l = 0; l < Lanes<V>::count; ++l) set_lane(q[i], l, starts[l < count ? l : 0][i]);
-    const Pose<V> goals = fill_pose<V>(goal);
-    TipMotion<V> motion;
-    V lambda[6];
-    for (int k = 0; k < most_nearest_steps && any(step > settled_step); ++k)
-        step = step_to_nearest<N>(arm.chain, rank, goals, arm.length, target, arm.weight, q, motion, lambda);
-    tip_motion<N>(arm.chain, goals, arm.length, q, motion);
-    double row[max_joints];
-    for (int l = 0; l < count; ++l) {
-        double error = 0;
-        for (const V& e : motion.error) error = max(error, std::fabs(get_lane(e, l)));
-        if (!(get_lane(step, l) <= settled_step) || !(error < tolerance::reached) ||
-            !(get_lane(motion.aligned, l) > 2))
-            continue;
-        for (int i = 0; i < arm.chain.n; ++i) row[i] = get_lane(q[i], l);
-        if (is_acceptable(arm, target, row))
-            keep_nearer(arm, row, distance_from_seed(arm, target, row), best);
-    }
-}
-
-// On lanes where the rank is full. Otherwise the selected pose coordinates differ from start to start.
-inline void settle_all(const Redundant& arm, const Posed& goal, const Target& target,
-                       const double* const* starts, int count, Nearest& best) {
-    const bool full = arm.rank == 6;
-    const int lanes = full ? 4 : 1;
-    const auto settle = !full              ? settle_abreast<0, double>
-                        : arm.chain.n == 7 ? settle_abreast<7, Pack<4>>
-                                           : settle_abreast<0, Pack<4>>;
-    for (int first = 0; first < count; first += lanes)
-        settle(arm, arm.rank, goal, target, starts + first, std::min(lanes, count - first), best);
-}
-
-// Descends along the curve from a start, where Newton's method on the distance and the pose does not settle:
-// in a valley that is narrow beside a singularity. Each step shortens the distance.
-inline void descend_along_curve(const Redundant& arm, const Posed& goal, const Target& target,
-                                const double* start, Nearest& best) {
-    constexpr int most_steps = 60;
-    constexpr double longest = 0.1, shortest = 1e-9, curved = 0.05;  // [rad, arm's lengths], curvature
-    const int n = arm.chain.n;
-    const auto onto = [&](CurvePoint& at) {
-        for (int k = 0; k < 3; ++k) onto_curve(arm.chain, arm.rank, goal, arm.length, at);
-    };
-    CurvePoint at;
-    for (int i = 0; i < n; ++i) at.q[i] = start[i];
-    onto(at);
-    double here = distance_from_seed(arm, target, at.q), stride = longest;
-    for (int k = 0; k < most_steps && stride > shortest; ++k) {
-        double gap[max_joints], along2 = 0;
-        from_seed(arm.chain, target, arm.weight, at.q, gap);
-        for (int i = 0; i < n; ++i) along2 += arm.weight[i] * at.tangent[i] * at.tangent[i];
-        const double slope = dot_n(gap, at.tangent, n), curve = along2 + dot_n(gap, at.bend, n);
-        const double newton = curve > curved ? -slope / curve : -std::copysign(stride, slope);
-        const double step = max(-stride, min(stride, newton));
-        if (std::fabs(step) < shortest) break;
-        CurvePoint next;
-        predict_along(at.q, at.tangent, at.bend, step, n, next.q);
-        onto(next);
-        const double there = distance_from_seed(arm, target, next.q);
-        const bool shorter = next.error < tolerance::reached && there < here;
-        stride = shorter ? min(2 * stride, longest) : 0.5 * std::fabs(step);
-        if (!shorter) continue;
-        at = next;
-        here = there;
-    }
-    if (at.error < tolerance::reached && is_acceptable(arm, target, at.q)) keep_nearer(arm, at.q, here, best);
-}
-
-// Refines the starts whose valley may contain a point below the best one. `also`: an additional start, on the
-// manifold or off it. Within limits the bound is a limit's, and several redundant joints may end at limits.
-inline void settle_starts(const Redundant& arm, const Posed& goal, const Target& target, const Starts& starts,
-                          const double* also, Nearest& best) {
-    const double* chosen[Starts::room + 1];
-    int count = 0;
-    double nearest = best.distance;
-    if (also) chosen[count++] = also;
-    for (int k = 0; k < starts.count && !target.within_limits; ++k)
-        nearest = min(nearest, starts.distance[k]);
-    for (int k = 0; k < starts.count; ++k)
-        if (starts.distance[k] <= 1.5 * nearest + 0.2) chosen[count++] = starts.q[k];
-    if (target.within_limits && arm.redundancy_degree != 1) {
-        for (int k = 0; k < count; ++k) settle_within_limits(arm, goal, target, chosen[k], best);
-        return;
-    }
-    settle_all(arm, goal, target, chosen, count, best);
-    for (int k = 0; k < starts.count && arm.redundancy_degree == 1; ++k)
-        if (starts.distance[k] < best.distance && is_acceptable(arm, target, starts.q[k]))
-            descend_along_curve(arm, goal, target, starts.q[k], best);
-}
-
-// Starts at the seed and at two points along the curve on either side of it. Their distance from the seed is
-// about that of the curve, because near a singularity the curve doubles back. Returns that distance.
-inline double settle_around(const Redundant& arm, const Posed& goal, const Target& target, Nearest& best) {
-    const int n = arm.chain.n;
-    const double* const seed = target.seed;
-    TipMotion<double> motion;
-    SplitJacobian<double> split;
-    double step[max_joints], along[max_joints], beside[3][max_joints];
-    tip_motion<0>(arm.chain, goal, arm.length, seed, motion);
-    split_jacobian<0>(motion, n, arm.rank, split);
-    shortest_step<0>(split, n, motion.error, step);
-    free_direction<0>(split, n, 0, along);
-    const double off = std::sqrt(dot_n(step, step, n)), far = min(0.5, 1.5 * off);
-    const double* starts[4] = {seed, beside[0], beside[1], beside[2]};
-    for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < n; ++i)
-            beside[k][i] = seed[i] + (k == 0 ? far : k == 1 ? -far : 2 * far) * along[i];
-    settle_all(arm, goal, target, starts, 4, best);
-    return off;
-}
-
-// Values of the parameter, or those up to 2π from them.
-struct Window {
-    double middle, half;
-};
-
-// The values around the seed that the bound of the best solution and the limits leave.
-inline Window window_of(const Redundant& arm, const Target& target, int p, const Posed& goal,
-                        const Nearest& best) {
-    const Domain domain = domain_of(arm, p, goal);
-    const double seed = target.seed[p],
-                 bound = arm.weight[p] > 0 ? best.distance : domain.upper - domain.lower;
-    if (target.within_limits && !domain.is_circle) {
-        const double from = max(domain.lower, seed - bound), to = min(domain.upper, seed + bound);
-        return {0.5 * (from + to), 0.5 * max(to - from, 0.0)};
-    }
-    const double far = arm.chain.prismatic[p] ? max(domain.upper - seed, seed - domain.lower) : pi;
-    return {seed, arm.weight[p] > 0 ? min(bound, far) : far};
-}
 
 // The lowest samples of a curve within a window of the parameter, by a closed form on lanes.
 inline void sample_window(const Redundant& arm, const Sweep& sweep, const Target& target,
@@ -213,8 +35,8 @@ inline void sample_window(const Redundant& arm, const Sweep& sweep, const Target
     divide_samples(arm, sweep, best.distance, target, samples);
     // Beside a limit there may be a nearer point.
     const bool is_minimum = std::isfinite(best.distance) && !target.within_limits;
-    lowest_samples(arm.chain, samples, is_minimum ? best.q : nullptr,
-                   [&](const double* q, double d) { add_start(arm, starts, q, d); });
+    lowest_samples(arm, samples, is_minimum ? best.q : nullptr,
+                   [&](const double* q, double d, double bound) { add_start(arm, starts, q, d, bound); });
 }
 
 // One redundant joint: starts at the seed, then at parameter values around the seed within the bound of the
@@ -302,6 +124,9 @@ inline bool copy_wrapped(const Redundant& arm, const Nearest& best, double* q) {
 inline bool search_nearest(const Redundant& arm, const Posed& goal, const Target& target, Nearest& best,
                            double* q) {
     if (rank_of(arm.locked.arm) > 0 && arm.redundancy_degree > 0) {
+        const bool follows = has_arcs_to_follow(arm) && !target.within_limits;
+        if (follows) nearest_by_following(arm, nullptr, goal, target, best);
+        if (follows && std::isfinite(best.distance)) return copy_wrapped(arm, best, q);
         if (arm.redundancy_degree == 1)
             nearest_of_curve(arm, goal, target, best);
         else
@@ -311,32 +136,18 @@ inline bool search_nearest(const Redundant& arm, const Posed& goal, const Target
     return copy_wrapped(arm, best, q);
 }
 
-// The nearest of all configurations, limits aside.
-inline bool nearest_configuration(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
-    if (arm.halves.exist && nearest_by_proof(arm.halves, goal, arm.length, seed, q)) {
-        for (int i = 0; i < arm.chain.n; ++i) q[i] = wrap_joint(arm.chain, i, q[i]);
-        return true;
-    }
-    Nearest best;
-    return search_nearest(arm, goal, make_target(arm, seed, false), best, q);
+// The nearest of all configurations, limits aside, where one close to the seed is proven to be it.
+inline bool nearest_proven(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
+    if (!arm.halves.exist || !nearest_by_proof(arm.halves, goal, arm.length, seed, q)) return false;
+    for (int i = 0; i < arm.chain.n; ++i) q[i] = wrap_joint(arm.chain, i, q[i]);
+    return true;
 }
 
-// The points of the curve where a joint is at a limit. They include those where a joint that the limits do
-// not stop would have to go on by a revolution.
-inline void find_ends(const Redundant& arm, const LimitArms& arms, const Posed& goal, const Target& target,
-                      Nearest& best) {
-    LimitPoints points;
-    find_limit_points(arm, arms, goal, points, [&](int joint, int side) {
-        return has_limit(arm, joint, side) ||
-               (target.shift[joint] != 0 && (target.shift[joint] < 0) == bool(side));
-    });
-    for (int k = 0; k < points.count; ++k) {
-        LimitPoint at = points.point[k];
-        at.q[at.joint] += at.side ? -limit_slack : limit_slack;  // on the side where it is measured
-        const double distance = distance_from_seed(arm, target, at.q);
-        at.q[at.joint] = limit_of(arm, at.joint, at.side);
-        if (is_acceptable(arm, target, at.q)) keep_nearer(arm, at.q, distance, best);
-    }
+// The nearest of all configurations, limits aside.
+inline bool nearest_configuration(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
+    if (nearest_proven(arm, goal, seed, q)) return true;
+    Nearest best;
+    return search_nearest(arm, goal, make_target(arm, seed, false), best, q);
 }
 
 // The lowest points of all arcs within limits. Samples of the parameter may miss a short arc. Returns false
@@ -371,15 +182,40 @@ inline bool nearest_from(const Redundant& arm, const Posed& goal, const double* 
     return copy_wrapped(arm, best, q);
 }
 
+// From a configuration with a joint at a limit the curve may lead nearer to the seed inside the limits: where
+// the arm is almost singular, no sample of the parameter may lie on that part of it.
+inline void leave_limit(const Redundant& arm, const Posed& goal, const Target& target, Nearest& best) {
+    constexpr double inwards = 1e-3;
+    const int n = arm.chain.n;
+    CurvePoint at;
+    double gap[max_joints], next[max_joints];
+    for (int i = 0; i < n; ++i) at.q[i] = best.q[i];
+    onto_curve(arm.chain, arm.rank, goal, arm.length, at);
+    from_seed(arm.chain, target, arm.weight, at.q, gap);
+    const double step = -std::copysign(inwards, dot_n(gap, at.tangent, n));
+    predict_along(at.q, at.tangent, at.bend, step, n, next);
+    if (!is_acceptable(arm, target, next)) return;
+    const Nearest end = best;
+    descend_along_curve(arm, goal, target, end.q, best);
+}
+
 // The nearest of all configurations within limits. arms, trail: null unless one joint is redundant.
 inline bool nearest_within_limits(const Redundant& arm, const LimitArms* arms, const Posed& goal,
                                   const double* seed, Trail* trail, double* q) {
     const Target target = make_target(arm, seed, true);
     Nearest best;
-    if (arms) find_ends(arm, *arms, goal, target, best);
+    if (arms && !trail && has_arcs_to_follow(arm)) {
+        nearest_by_following(arm, arms, goal, target, best);
+        return copy_wrapped(arm, best, q);
+    }
+    const auto ignore = [](const double*, double) {};
+    if (arms) find_ends(arm, *arms, goal, target, best, ignore);
+    const double end = best.distance;
     const bool is_complete = trail && nearest_of_arcs(arm, *arms, goal, target, *trail, best);
-    return is_complete && std::isfinite(best.distance) ? copy_wrapped(arm, best, q)
-                                                       : search_nearest(arm, goal, target, best, q);
+    if (is_complete && std::isfinite(best.distance)) return copy_wrapped(arm, best, q);
+    if (!search_nearest(arm, goal, target, best, q)) return false;
+    if (!(best.distance < end)) leave_limit(arm, goal, target, best);
+    return copy_wrapped(arm, best, q);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

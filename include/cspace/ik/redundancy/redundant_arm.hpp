@@ -169,6 +169,18 @@ inline int rank_of(const Arm& arm) {
     if (arm.has_few_joints) return 2;
     return is_solvable(arm) ? 1 : 0;
 }
+// Whether the solutions at many values of the locked joint come from a closed form on lanes.
+inline bool is_sampled_quickly(const Redundant& arm) {
+    return arm.locked.at_ends && rank_of(arm.locked.arm) == 3 &&
+           !arm.chain.prismatic[arm.locked.locked_joint[0]];
+}
+// Whether the nearest configuration is looked for along arcs that are followed: those of revolute joints, all
+// of one scale.
+inline bool has_arcs_to_follow(const Redundant& arm) {
+    bool slides = false;
+    for (int i = 0; i < arm.chain.n; ++i) slides = slides || arm.chain.prismatic[i];
+    return arm.rank == 6 && arm.redundancy_degree == 1 && !slides && !is_sampled_quickly(arm);
+}
 // The arm with all joints locked except a basis.
 inline LockedArm lock_outside(const Redundant& arm, unsigned basis, const double* typical,
                               bool with_general) {

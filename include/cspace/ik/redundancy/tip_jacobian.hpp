@@ -31,11 +31,19 @@ struct SplitJacobian {
 };
 
 // A point of the curve of n = chain.n joints: q(s) = q + tangent s + ½ bend s² + …
-struct CurvePoint {
-    double q[max_joints], tangent[max_joints], bend[max_joints];
-    double error;  // what is left of the goal [rad, m over the arm's length]
-    TipMotion<double> motion;
-    SplitJacobian<double> split;
+template <class V>
+struct CurvePoints {
+    V q[max_joints], tangent[max_joints], bend[max_joints];
+    V error;  // what is left of the goal [rad, m over the arm's length]
+    TipMotion<V> motion;
+    SplitJacobian<V> split;
+};
+using CurvePoint = CurvePoints<double>;
+
+// How far Newton's method goes towards the manifold.
+struct Descent {
+    int most_steps = 60;
+    double stride = 0.3;  // the longest change of a joint in a step [rad, m]
 };
 
 }  // namespace cspace::ik
@@ -101,8 +109,7 @@ CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, int rank
 template <int N, class V>
 CSPACE_INLINE void turn_out(const SplitJacobian<V>& split, int size, V* b) {
     const int n = size_or<N>(size);
-    for (int k = rank_in<N>(split) - 1; k >= 0; --k)
-        linear::reflect_vector(split.A, n, k, split.factor[k], b);
+    for (int k = rank_in<N>(split) - 1; k >= 0; --k) linear::reflect_vector(split.A, n, k, split.factor[k], b);
 }
 
 // A pivot of a Jacobian (lengths over the arm's length) that rounding alone leaves.
@@ -150,32 +157,33 @@ CSPACE_INLINE void find_multipliers(const SplitJacobian<V>& split, int size, con
 // The self-motion curve of an arm with one redundant joint: tangent, curvature, Newton's method back onto the
 // curve, and the folds, where a joint reverses its direction.
 
-template <int N>
-CSPACE_INLINE void step_onto_curve(const Chain& chain, int rank, const Posed& goal, double length,
-                                   CurvePoint& at) {
-    TipMotion<double>& motion = at.motion;
-    SplitJacobian<double>& split = at.split;
+template <int N, class V>
+CSPACE_INLINE void step_onto_curve(const Chain& chain, int rank, const Pose<V>& goal, double length,
+                                   CurvePoints<V>& at) {
+    TipMotion<V>& motion = at.motion;
+    SplitJacobian<V>& split = at.split;
     const int n = size_or<N>(chain.n);
-    double step[max_joints];
+    V step[max_joints];
     tip_motion<N>(chain, goal, length, at.q, motion);
     split_jacobian<N>(motion, n, rank, split);
     free_direction<N>(split, n, 0, at.tangent);
     // The pose's second derivative along the tangent; what bends the curve takes it back.
-    Vec3d linear = {0, 0, 0}, angular = {0, 0, 0}, turned = {0, 0, 0};
+    const V zero = fill_lanes<V>(0.0);
+    Vec3<V> linear = {zero, zero, zero}, angular = linear, turned = linear;
     for (int j = 0; j < n; ++j) {
-        const double* c = motion.column[j];
-        const double t = at.tangent[j];
-        const Vec3d v = {c[0], c[1], c[2]}, h = {c[3], c[4], c[5]};
-        linear = linear + t * cross(2 * turned + t * h, v);
+        const V* c = motion.column[j];
+        const V t = at.tangent[j];
+        const Vec3<V> v = {c[0], c[1], c[2]}, h = {c[3], c[4], c[5]};
+        linear = linear + t * cross(turned + turned + t * h, v);
         angular = angular + t * cross(turned, h);
         turned = turned + t * h;
     }
-    const double back[6] = {-linear.x, -linear.y, -linear.z, -angular.x, -angular.y, -angular.z};
+    const V back[6] = {-linear.x, -linear.y, -linear.z, -angular.x, -angular.y, -angular.z};
     shortest_step<N>(split, n, back, at.bend);
     shortest_step<N>(split, n, motion.error, step);
     at.error = largest_of(motion.error, 6);
-    const double keep = shortening_factor(largest_of(step, n), 0.3);
-    for (int i = 0; i < n; ++i) at.q[i] += keep * step[i];
+    const V keep = shortening_factor(largest_of(step, n), 0.3);
+    for (int i = 0; i < n; ++i) at.q[i] = mul_add(keep, step[i], at.q[i]);
 }
 // One Newton step from q back onto the curve, and the quantities of the curve at q before the step.
 CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, double length, CurvePoint& at) {
@@ -186,9 +194,8 @@ CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, dou
 // Newton's method onto the manifold on lanes. A lane that has finished takes the next start.
 template <int N, class V>
 inline void descend_abreast(const Chain& chain, const Posed& goal, double length, double (*q)[max_joints],
-                            int starts, bool* reached) {
-    constexpr int most_steps = 60, lanes = Lanes<V>::count;
-    constexpr double stride = 0.3;  // [rad, m]
+                            int starts, bool* reached, const Descent& rule) {
+    constexpr int lanes = Lanes<V>::count;
     const int n = size_or<N>(chain.n);
     const Pose<V> goals = fill_pose<V>(goal);
     V at[max_joints], step[max_joints];
@@ -207,11 +214,11 @@ inline void descend_abreast(const Chain& chain, const Posed& goal, double length
         tip_motion<N>(chain, goals, length, at, motion);
         split_jacobian<N>(motion, n, 6, split);
         shortest_step<N>(split, n, motion.error, step);
-        const V keep = shortening_factor(largest_of(step, n), stride);
+        const V keep = shortening_factor(largest_of(step, n), rule.stride);
         for (int i = 0; i < n; ++i) at[i] = mul_add(keep, step[i], at[i]);
         const unsigned there = bits_of(largest_of(motion.error, 6) <= tolerance::reached);
         for (int l = 0; l < lanes; ++l) {
-            if (start[l] < 0 || !(there >> l & 1 || ++steps[l] == most_steps)) continue;
+            if (start[l] < 0 || !(there >> l & 1 || ++steps[l] == rule.most_steps)) continue;
             reached[start[l]] = there >> l & 1;
             for (int i = 0; i < n; ++i) q[start[l]][i] = get_lane(at[i], l);
             --active;
@@ -222,18 +229,18 @@ inline void descend_abreast(const Chain& chain, const Posed& goal, double length
 // Moves `starts` configurations q by Newton's method onto the curve; `reached` says which of them it led
 // there.
 CSPACE_ONCE void descend_to_manifold(const Chain& chain, int rank, const Posed& goal, double length,
-                                     double (*q)[max_joints], int starts, bool* reached) {
+                                     double (*q)[max_joints], int starts, bool* reached,
+                                     const Descent& rule = {}) {
     if (rank == 6) {
         (chain.n == 7 ? descend_abreast<7, Pack<8>> : descend_abreast<0, Pack<4>>)(chain, goal, length, q,
-                                                                                   starts, reached);
+                                                                                   starts, reached, rule);
         return;
     }
-    constexpr int most_steps = 60;
     for (int k = 0; k < starts; ++k) {
         CurvePoint at;
         for (int i = 0; i < chain.n; ++i) at.q[i] = q[k][i];
         at.error = 1;
-        for (int step = 0; step < most_steps && at.error > tolerance::reached; ++step)
+        for (int step = 0; step < rule.most_steps && at.error > tolerance::reached; ++step)
             onto_curve(chain, rank, goal, length, at);
         reached[k] = at.error <= tolerance::reached;
         for (int i = 0; i < chain.n; ++i) q[k][i] = at.q[i];
@@ -242,18 +249,21 @@ CSPACE_ONCE void descend_to_manifold(const Chain& chain, int rank, const Posed& 
 
 // ‖J⁺ (J′ − J)‖ for the Jacobian J at `at` and J′ at `other`. If it is below 1 on a convex set, every
 // solution in that set lies on one arc. Two solutions then differ in their component along the tangent.
-inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int n) {
-    const SplitJacobian<double>& split = at.split;
-    double square = 0, y[6];
+template <int N = 0, class V>
+inline V jacobian_change(const CurvePoints<V>& at, const CurvePoints<V>& other, int size) {
+    const SplitJacobian<V>& split = at.split;
+    const int n = size_or<N>(size), rank = rank_in<N>(split);
+    V square = fill_lanes<V>(0.0), y[6], per[6];
+    for (int k = 0; k < rank; ++k) per[k] = 1.0 / away_from_zero(split.diagonal[k]);
     for (int i = 0; i < n; ++i)
-        for (int k = 0; k < split.rank; ++k) {
-            const int c = split.chosen[k];
+        for (int k = 0; k < rank; ++k) {
+            const int c = N ? k : split.chosen[k];
             y[k] = other.motion.column[i][c] - at.motion.column[i][c];
-            for (int j = 0; j < k; ++j) y[k] -= split.A[j][k] * y[j];
-            y[k] /= away_from_zero(split.diagonal[k]);
-            square += y[k] * y[k];
+            for (int j = 0; j < k; ++j) y[k] = mul_add(-split.A[j][k], y[j], y[k]);
+            y[k] = y[k] * per[k];
+            square = mul_add(y[k], y[k], square);
         }
-    return std::sqrt(square);
+    return sqrt(square);
 }
 
 // Moves q along the curve to the fold of joint p, by Newton's method on component p of the tangent. Returns
