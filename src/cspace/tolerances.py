@@ -32,8 +32,8 @@ LARGEST_RIGHT_ANGLE: Final = 0.01
 nobody prints fewer digits; beyond are angles that are meant."""
 
 ROUNDED_AXES: Final = 1e-9
-"""Deviation of axes from a closed form (rad, or lengths of the arm) above which a robot says that its file may
-round right angles: files with ten digits stay below it."""
+"""Deviation of axes from a closed form (rad, or lengths of the arm) above which a robot says that its file
+may round right angles: files with ten digits stay below it."""
 
 INERTIA_ROUNDING: Final = 1e-5
 """Share of the largest moment of inertia by which the others may fall short of the laws of rigid bodies:

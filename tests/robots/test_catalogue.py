@@ -106,7 +106,7 @@ def squared_here(description):
 
 @pytest.mark.parametrize("name", names())
 def test_right_angles_are_exact_or_the_source_is_further_off(name):
-    """No axis is a rounding of the file away from a right angle with the one before, unless files say how much."""
+    """No axis of the catalogue is almost, but not quite, at a right angle to the one before."""
     robot = load_description(name)
     squared = with_right_angles(robot)
     tolerance = 1e-15 if squared_here(robot) else 1e-8  # of nine digits and more, as of UR arms
@@ -139,7 +139,7 @@ TWELVE_DIGITS = 2e-11
 """How far an axis [rad] or a point [m] is moved by that."""
 
 FIVE_DIGITS = 3e-5
-"""How far an axis [rad] or a point [m] is moved where right angles printed with five digits are exact here."""
+"""How far an axis [rad] or a point [m] is moved where right angles of five digits are exact here."""
 
 TURNED_TIPS = {
     **{name: [[0, 0, 1], [-1, 0, 0], [0, -1, 0]] for name in OLDER_UR},
