@@ -24,6 +24,17 @@ INERTIA_SYMMETRY: Final = 1e-6
 """Largest difference of opposite inertia entries, relative to the largest entry (at least 1 kg·m²): tables
 are printed with six digits; more is a typing error."""
 
+RIGHT_ANGLE: Final = 1e-5
+"""[rad] How far files round right angles: 1.5708, 3.14159 and 3.1416 are off by 3.7e-6, 2.7e-6 and 7.3e-6."""
+
+LARGEST_RIGHT_ANGLE: Final = 0.01
+"""[rad] Largest rounding of right angles that can be asked for: 1.57 and 3.14 are off by 8e-4 and 1.6e-3, and
+nobody prints fewer digits; beyond are angles that are meant."""
+
+ROUNDED_AXES: Final = 1e-9
+"""Deviation of axes from a closed form (rad, or lengths of the arm) above which a robot says that its file
+may round right angles: files with ten digits stay below it."""
+
 INERTIA_ROUNDING: Final = 1e-5
 """Share of the largest moment of inertia by which the others may fall short of the laws of rigid bodies:
 tables are printed with five or six digits, and the tensor of a flat plate lies on the border."""

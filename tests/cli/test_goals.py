@@ -10,6 +10,8 @@ import pytest
 import cspace as cs
 from cli import schema
 from cli.run import cspace
+from cspace.model import to_urdf
+from model.rounding import print_right_angles
 
 POSE = "--xyz 0.4 0.1 0.4 --rpy 3 0.1 0.2"
 T = cs.pose([0.4, 0.1, 0.4], rpy=[3, 0.1, 0.2])
@@ -259,10 +261,13 @@ def test_a_reason_is_in_the_unit_that_was_asked_for():
     assert cspace(f"{line} --deg --json").json["reason"].endswith(" rad")  # radians whatever --deg says
 
 
-def test_a_reason_names_the_option_that_answers():
-    line = "ik so101 --xyz 0.2 0.05 0.1 --direction 0 0 -1"
+def test_a_reason_names_the_option_that_answers(tmp_path):
+    path = tmp_path / "so101.urdf"
+    path.write_text(to_urdf(print_right_angles(cs.load_robot("so101").description, 4)))
+    line = f"ik {path} --xyz 0.2 0.05 0.1 --direction 0 0 -1"
     assert cspace(line).out.endswith("; --least-squares returns the nearest configuration\n")
     assert cspace(f"{line} --least-squares").code == 0
+    assert cspace(f"{line} --right-angles 1e-5").code == 0
 
 
 def test_values_of_held_joints_are_in_the_unit_that_was_asked_for():

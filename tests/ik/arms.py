@@ -12,6 +12,7 @@ from cspace.ik import NoClosedFormError, geometry
 from cspace.model import from_screws
 from cspace.robot import Robot
 from data import shared_data
+from model.rounding import print_right_angles
 
 # The families of this room among the named arms, as their makers describe them; that the classification finds
 # each of them is a test of its own.
@@ -60,13 +61,28 @@ PARALLEL = [
 ]
 SHORT = ["al5d", "so101"]
 ALL = SPHERICAL + SHOULDER + PARALLEL + SHORT
-# Few arms that stand for the families in slow tests; the last four have rounded axes or few joints.
-FEW = ["ur5e", "puma560", "kr6_r900", "romeo_left_leg", "z1", "yam", "puma560_urdf", "al5d", "so101"]
+ROUNDED = ["lite6_rounded", "icub_left_leg_rounded", "so101_rounded"]
+"""Arms as files describe them that round right angles to 1.5708 and 3.1416."""
+# Few arms that stand for the families in slow tests; the last have rounded axes or few joints.
+FEW = [
+    "ur5e",
+    "puma560",
+    "kr6_r900",
+    "romeo_left_leg",
+    "z1",
+    "yam",
+    "puma560_urdf",
+    "al5d",
+    "so101",
+    *ROUNDED,
+]
 
 
 @cache
 def load(name):
-    return cs.load_robot(name)
+    base = name.removesuffix("_rounded")
+    robot = cs.load_robot(base)
+    return robot if base == name else Robot(print_right_angles(robot.description, 4), robot.base, robot.tip)
 
 
 def is_idealised(robot):

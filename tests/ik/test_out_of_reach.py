@@ -125,7 +125,7 @@ def test_goals_that_nobody_made_are_met_or_not(word):
 
 def test_a_miss_that_rounded_numbers_may_cause_says_what_to_ask():
     """The tool axis of the arm is its last joint's, which leaves the plane of the others by 6e-6 rad."""
-    robot = load("so101")
+    robot = load("so101_rounded")
     goal = {"position": [0.2, 0.05, 0.1], "direction": [0, 0, -1]}
     found = robot.ik(**goal)
     expect_empty(robot, found)

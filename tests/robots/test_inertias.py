@@ -81,6 +81,9 @@ WEIGHTS = {
 """Rounded weights [kg] as the makers advertise them, to find a wrong unit or a lost link. Those of the
 iiwa were looked up in its data sheet, the others were not. They count cables that a file leaves out."""
 
+SQUARED = 2e-5
+"""What of a recording is due to right angles that the file of the maker rounds [rad, m, unitless]."""
+
 NEAR_THE_WEIGHT = 0.2
 
 
@@ -134,14 +137,16 @@ def test_masses_are_those_of_the_maker(name):
     """Moved to the frames of the catalogue, where these are others."""
     robot = load_robot(name)
     assert robot.mass == pytest.approx(RECORDED[name]["mass"], rel=WRITTEN)
+    squared = "exact here" in load_description(name).provenance.sources["joints"].source
+    atol = SQUARED if squared else WRITTEN
     for state in RECORDED[name]["states"]:
         q = np.array(state["q"])
-        np.testing.assert_allclose(robot.center_of_mass(q), state["center_of_mass"], atol=WRITTEN, rtol=0)
+        np.testing.assert_allclose(robot.center_of_mass(q), state["center_of_mass"], atol=atol, rtol=0)
         loads = np.array(state["mass_matrix_diagonal"])
-        np.testing.assert_allclose(moved_inertia(robot, q), loads, atol=WRITTEN * loads.max(), rtol=0)
+        np.testing.assert_allclose(moved_inertia(robot, q), loads, atol=atol * loads.max(), rtol=0)
         weight = GRAVITY * robot.mass
         np.testing.assert_allclose(
-            robot.gravity_torques(q), state["gravity_torques"], atol=WRITTEN * weight, rtol=0
+            robot.gravity_torques(q), state["gravity_torques"], atol=atol * weight, rtol=0
         )
 
 

@@ -285,6 +285,41 @@ inline void turn_free_wrist(const Plan& plan, const Posed& goal_form, Care care,
     }
 }
 
+// If the wrist of three parallel axes is on the first axis, joint 1 may have any value that leaves the wrist
+// in reach of the planar arm. These values form arcs, one or more for each side of the wrist. Of each arc
+// without the preferred value t1, the solutions in its middle; of arcs shorter than 6° some are missed.
+inline void turn_free_shoulder(const Plan& plan, const Posed& goal_form, const Care& care, double t1,
+                               Solutions& out, const Posed& goal) {
+    constexpr int turns = 64;
+    const Vec3d& p = goal_form.t;
+    const double free = care.free * plan.form.length;
+    if (p.x * p.x + p.y * p.y > free * free) return;
+    const auto turned = [&](int m) {
+        Care at = care;
+        const double angle = t1 + m * (2 * pi / turns);
+        at.unconstrained[0] = {std::cos(angle), std::sin(angle)};
+        return at;
+    };
+    bool in_reach[2][turns];
+    for (int m = 0; m < turns; ++m) {
+        const Branches<double> b = solve_closed_form(plan, goal_form, turned(m));
+        for (int side = 0; side < 2; ++side) in_reach[side][m] = b.ok[2 * side] || b.ok[2 * side + 1];
+    }
+    for (int side = 0; side < 2; ++side)
+        for (int m = 1; m < turns; ++m) {
+            if (!in_reach[side][m] || in_reach[side][m - 1]) continue;
+            int end = m;
+            while (end < turns && in_reach[side][end]) ++end;
+            if (end == turns && in_reach[side][0]) break;
+            if (out.count + 2 > max_branches) {
+                out.complete = false;
+                return;
+            }
+            const Care middle = turned((m + end - 1) / 2);
+            closed_form_candidates(plan, goal_form, middle, out, goal, {2 * side, 2 * side + 2});
+        }
+}
+
 // A wrist of three parallel axes that is almost free passes its rounding on to the elbow, and may move it
 // past a fold. There the branches within a wider band are candidates too.
 inline void widen_fold_band(const Plan& plan, const Posed& goal_form, Care care, Solutions& out,
@@ -354,6 +389,7 @@ inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const doub
     if (plan.family == Family::three_parallel) {
         if (!is_exact(plan)) widen_fold_band(plan, goal_form, care, out, goal);
         turn_free_wrist(plan, goal_form, care, t[3], out, goal);
+        turn_free_shoulder(plan, goal_form, care, t[0], out, goal);
     }
     if (is_exact(plan) && plan.family == Family::three_parallel && !covers_curves(plan, goal_form, care, out))
         for (int k = 0; k < out.count; ++k) out.settled[k] = out.settled[k] && !out.self_motion[k];

@@ -49,6 +49,7 @@ template <int W, int R>
 struct SvdLanes {
     Pack<W> row[R + W];
     int height, rows;  // of A, of A and V together
+    int span;          // a power of two that is not below the number of columns
 };
 
 // Turns every column i against column i ^ s. Returns whether a pair was not orthogonal yet.
@@ -78,7 +79,7 @@ bool turn_pairs(SvdLanes<W, R>& m, double nothing) {
 template <int W, int R, int... rounds>
 bool turn_all_pairs(SvdLanes<W, R>& m, double nothing, std::integer_sequence<int, rounds...>) {
     bool moved = false;
-    ((moved |= turn_pairs<rounds + 1>(m, nothing)), ...);
+    ((moved |= rounds + 1 < m.span && turn_pairs<rounds + 1>(m, nothing)), ...);
     return moved;
 }
 
@@ -90,6 +91,7 @@ void decompose_on_lanes(SmallSvd<R, C>& m, bool from_v) {
     SvdLanes<W, R> lanes;
     const int height = lanes.height = R <= W ? R : m.rows;
     lanes.rows = height + m.columns;
+    lanes.span = m.columns > 4 ? W : 4;
     for (int k = 0; k < lanes.rows; ++k) lanes.row[k] = fill_lanes<Pack<W>>(0);
     double largest2 = 0;
     for (int j = 0; j < m.columns; ++j) {

@@ -247,6 +247,8 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("options for robot files")
     text = "the joint frames of one UR arm, from ur_calibration"
     add_option(group, "--calibration FILE", text)
+    text = "how far the file rounds right angles, which then are exact, such as 1e-5 for 1.5708"
+    add_option(group, "--right-angles RADIANS", text, read_number)
     text = "an argument of a xacro file; may be repeated"
     add_option(group, "--xacro-arg NAME=VALUE", text, named_value, action="append", default=[])
     text = "a folder with ROS packages, or one package; may be repeated"

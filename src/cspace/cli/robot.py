@@ -38,6 +38,7 @@ def load_chosen(args: argparse.Namespace, *, floating: bool | None = None) -> Ro
         package_paths=args.package_path,
         xacro_args=dict(args.xacro_arg),
         calibration=args.calibration,
+        right_angles=args.right_angles,
         geometry=getattr(args, "geometry", None) or "collision",
     )
 

@@ -12,6 +12,7 @@ from cspace.ik.conditions import Condition, NoClosedFormError, explain_missing_f
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.kinematics import KinematicModel
 from cspace.tables import show_fields
+from cspace.tolerances import ROUNDED_AXES
 
 FAMILIES = {
     0: "none",
@@ -33,6 +34,11 @@ FIRST_THREE = {
     4: "three axes in general position (a quartic)",
 }
 GENERAL = "Every solution comes from the general method: one joint's angle as the root of a determinant"
+
+ROUNDED = (
+    "; its axes are off by {:.1e}, as where a file rounds right angles: load_robot(…, right_angles=1e-5)"
+    " makes these exact"
+)
 
 
 @show_fields
@@ -59,7 +65,8 @@ class Geometry:
         if not self:
             return self.reason
         end = ", read from the tip" if self.reversed else ""
-        return f"{self.family} ({self.detail}{end})"
+        rounded = ROUNDED.format(self.idealised) if self.idealised > ROUNDED_AXES else ""
+        return f"{self.family} ({self.detail}{end}){rounded}"
 
 
 def geometry(robot: HasSolver) -> Geometry:

@@ -18,6 +18,7 @@ from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.link_matrices import LinkMatrices, link_matrices
 from cspace.model.mjcf import from_mjcf
 from cspace.model.mounting import mounted, with_body, with_frame
+from cspace.model.right_angles import with_right_angles
 from cspace.model.screws import from_screws, twists
 from cspace.model.srdf import GroupState, JointGroup, Srdf, read_srdf, with_srdf
 from cspace.model.toml import from_toml
@@ -73,5 +74,6 @@ __all__ = [
     "twists",
     "with_body",
     "with_frame",
+    "with_right_angles",
     "with_srdf",
 ]

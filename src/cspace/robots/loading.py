@@ -15,6 +15,7 @@ from cspace.model import (
     from_xacro,
     group_ends,
     read_srdf,
+    with_right_angles,
     with_srdf,
 )
 from cspace.model.files import path_of, read_bytes
@@ -47,6 +48,7 @@ def load_robot(
     package_paths: Sequence[Any] = (),
     xacro_args: Mapping[str, Any] | None = None,
     calibration: str | os.PathLike[str] | None = None,
+    right_angles: float | None = None,
     srdf: str | os.PathLike[str] | None = None,
     group: str | None = None,
 ) -> Robot:
@@ -60,6 +62,8 @@ def load_robot(
     covered by spheres within `cover` [m]) or "skeleton" (capsules along the arm). package_paths: folders
     where packages (of package:// and $(find …)) are looked for first. xacro_args: values of the arguments of
     a xacro file, by name. calibration: the file of one UR arm's joint frames, see model.calibrated.
+    right_angles: how far [rad] the file rounds right angles, which then are exact, such as 1e-5 for 1.5708
+    and 3.1416, see model.with_right_angles; None: the numbers of the file.
     srdf: the path of an SRDF file of MoveIt, whose named poses and allowed pairs of links are added, see
     model.with_srdf. group: one of its groups, whose ends are base and tip, see model.group_ends.
 
@@ -68,7 +72,11 @@ def load_robot(
     and for a group that is not a chain, MissingExtraError for xacro without the extra [xacro].
     """
     description = load_description(
-        name_or_path, package_paths=package_paths, xacro_args=xacro_args, calibration=calibration
+        name_or_path,
+        package_paths=package_paths,
+        xacro_args=xacro_args,
+        calibration=calibration,
+        right_angles=right_angles,
     )
     if group is not None and (srdf is None or base is not None or tip is not None):
         raise InputTypeError("group= names a group of an SRDF file: give srdf=, and neither base= nor tip=")
@@ -85,6 +93,7 @@ def load_description(
     package_paths: Sequence[Any] = (),
     xacro_args: Mapping[str, Any] | None = None,
     calibration: str | os.PathLike[str] | None = None,
+    right_angles: float | None = None,
 ) -> Description:
     """The description of a robot, as load_robot finds it: a name of the catalogue or a path.
 
@@ -96,7 +105,9 @@ def load_description(
             " Robot(description), Robot.from_dh and Robot.from_screws make robots without a file"
         )
     description = _nominal(name_or_path, package_paths, xacro_args)
-    return description if calibration is None else calibrated(description, calibration)
+    if calibration is not None:
+        description = calibrated(description, calibration)
+    return description if right_angles is None else with_right_angles(description, right_angles)
 
 
 def _nominal(

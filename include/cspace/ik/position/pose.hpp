@@ -58,11 +58,11 @@ struct Search {
     double size;
     PositionSolutions& found;
 
-    // q in units of the chain; refined in units of its size.
-    void add_candidate(const double* q) {
+    // q in units of the chain; refined in units of its size. accurate: q is, if it is a solution.
+    void add_candidate(const double* q, bool accurate = false) {
         double scaled[n];
         for (int i = 0; i < n; ++i) scaled[i] = chain.prismatic[i] ? q[i] / size : q[i];
-        if (refine_angles(gap, scaled) > gap.reached) return;
+        if (refine_angles(gap, scaled, 30, accurate ? missed_by_far : any_miss) > gap.reached) return;
         // Half a turn away from the goal the sum of g × r vanishes too.
         if (spatial::angle_between(forward_kinematics(chain, scaled).R, goal.R) <= 1)
             keep_distinct(gap, scaled, found);
@@ -93,7 +93,8 @@ void by_last_axis(const Chain& chain, const Posed& G, double size, bool backward
         const PositionSolutions placed = solve_position(others, G * others.tip.t, false);
         bool isolated = placed.count > 0;
         for (int k = 0; k < placed.count; ++k) {
-            isolated = isolated && !placed.self_motion[k] && !placed.close[k];
+            const bool accurate = !placed.self_motion[k] && !placed.close[k];
+            isolated = isolated && accurate;
             double q[n];
             Posed rest = G;
             for (int i = 0; i < n - 1; ++i) {
@@ -103,7 +104,7 @@ void by_last_axis(const Chain& chain, const Posed& G, double size, bool backward
             q[n - 1] = angle_about(h, rest.R);
             double forwards[n];
             for (int i = 0; i < n; ++i) forwards[i] = q[backwards ? n - 1 - i : i];
-            search.add_candidate(forwards);
+            search.add_candidate(forwards, accurate);
         }
         if (isolated) return;
     }

@@ -37,6 +37,10 @@ bool same_joints(const System& g, const double* a, const double* b) {
     return true;
 }
 
+// Residual (rad, arm's sizes) above which a candidate is no solution if its joints are accurate where it is:
+// far more than what rounding of the goal and of double roots leaves.
+inline constexpr double missed_by_far = 0.05, any_miss = 1e300;
+
 // Cheap test for regularity: no eigenvalue of a positive matrix is below its determinant divided by the other
 // eigenvalues, each at most n times the largest diagonal entry.
 template <int n>

@@ -31,10 +31,10 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
     return curve_of(g.prismatic[joint], g.axis[joint], g.point[joint], x, direction);
 }
 
-// Refines a candidate and appends it if it reaches the goal.
+// Refines a candidate and appends it if it reaches the goal. accurate: its joints are, if it does.
 template <int n>
-void keep_refined(const TipGap<n>& g, double* q, PositionSolutions& found) {
-    if (refine_angles(g, q) <= g.reached) keep_distinct(g, q, found);
+void keep_refined(const TipGap<n>& g, double* q, PositionSolutions& found, bool accurate = false) {
+    if (refine_angles(g, q, 30, accurate ? missed_by_far : any_miss) <= g.reached) keep_distinct(g, q, found);
 }
 
 // Distance of a point from the axis of a revolute joint, over the size of the arm, below which rounding
@@ -48,14 +48,15 @@ inline void add_candidates(const TipGap<1>& g, PositionSolutions& found) {
 inline void add_candidates(const TipGap<2>& g, PositionSolutions& found) {
     const Curve curve = tip_curve(g, 1, g.tip, 1);
     const Curve goal = {true, g.goal, {0, 0, 0}, {0, 0, 0}};
+    constexpr double firm = 1e-3;  // of a condition: its values are accurate to ten digits
     OnCurve f[2], target[2];
     invariants(g, 0, curve, f);
     invariants(g, 0, goal, target);
-    const auto complete = [&](double last) {
+    const auto complete = [&](double last, bool accurate) {
         const Vec3d x = point_at(curve, last);
         const double first = joint_between(g, 0, x, g.goal);
         double q[2] = {first, last};
-        keep_refined(g, q, found);
+        keep_refined(g, q, found, accurate);
         const bool free = found.count > 0 && found.self_motion[found.count - 1];
         if (g.prismatic[0] || free || norm(cross(g.axis[0], x - g.point[0])) > close_to_axis) return;
         for (const double turn : {0.5 * pi, pi, -0.5 * pi}) {
@@ -66,12 +67,12 @@ inline void add_candidates(const TipGap<2>& g, PositionSolutions& found) {
     bool unconstrained = true;
     for (int i = 0; i < 2; ++i) {
         double last[2];
-        const int n =
-            pair::weight_of(f[i]) > tolerance::rounding ? pair::values_on_curve(f[i], target[i].k, last) : 0;
-        for (int j = 0; j < n; ++j) complete(last[j]);
+        const double weight = pair::weight_of(f[i]);
+        const int n = weight > tolerance::rounding ? pair::values_on_curve(f[i], target[i].k, last) : 0;
+        for (int j = 0; j < n; ++j) complete(last[j], weight > firm);
         unconstrained = unconstrained && n == 0;
     }
-    if (unconstrained) complete(0);
+    if (unconstrained) complete(0, false);
 }
 // Joints 0 and 2 bring both points to the axis of joint 1, which is then unconstrained. It is rotated away
 // from values at which the other two can move as well. False where they cannot.

@@ -118,42 +118,72 @@ struct Room {
     }
 };
 
-// Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q.
-// Newton's step is followed by others with the same Jacobian while each divides the error by ten. near_by: on
-// entry `at` belongs to a configuration nearby, whose Jacobian serves the first steps.
+// Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q,
+// its Jacobian to a configuration within `beside` of q. Newton's step is followed by others with the same
+// Jacobian while they converge fast. near_by: on entry `at` belongs to a configuration nearby, whose Jacobian
+// serves the first steps.
 CSPACE_NOINLINE inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q,
                                        PoseError& at, bool near_by = false) {
     constexpr int most_steps = 12;
     constexpr double settled = tolerance::last_digits, fast = 0.1;
+    // A new Jacobian costs as much as six steps. With that of a configuration nearby they go so far that one
+    // more step from the new Jacobian settles.
+    constexpr double slow = 0.3, close = 1e-10, beside = 1e-9;
     bool measured = !near_by;
     double size = near_by ? constrained_error(chain, constraint, q, at.e)
                           : measure_constrained(chain, constraint, q, at);
     for (int step = 0; step < most_steps && (size > settled || !measured); ++step) {
-        double e[6], next[max_joints], dq[max_joints], best = size;
+        const double rate = measured ? fast : slow, enough = measured ? settled : close;
+        double e[6], next[max_joints], dq[max_joints], best = size, moved = 0;
         for (int k = 0; k < 6; ++k) e[k] = at.e[k];
         for (int i = 0; i < chain.n; ++i) next[i] = q[i];
-        for (bool again = size > settled; again;) {
+        for (bool again = size > enough; again;) {
             least_norm_step(at.jacobian, e, 0, still, -1, dq);
             for (int i = 0; i < chain.n; ++i) next[i] += unit_of(chain, i, constraint.length) * dq[i];
             const double left = constrained_error(chain, constraint, next, e);
-            again = left < fast * best && left > settled;
-            for (int i = 0; i < chain.n && left < best; ++i) q[i] = next[i];
-            best = min(best, left);
+            again = left < rate * best && left > enough;
+            if (!(left < best)) break;
+            for (int k = 0; k < 6; ++k) at.e[k] = e[k];
+            for (int i = 0; i < chain.n; ++i) q[i] = next[i];
+            moved += std::sqrt(dot_n(dq, dq, chain.n));
+            best = left;
         }
-        if (measured && !(best < size)) break;
-        size = measure_constrained(chain, constraint, q, at, true);
+        const bool ends = measured && (!(best < size) || moved < beside);
+        size = ends ? best : measure_constrained(chain, constraint, q, at, true);
+        if (ends) break;
         measured = true;
     }
     // An arm whose axes are parallel to ten digits only has its families to ten digits only.
     return size <= constraint.most;
 }
 
+// The second and third derivative of a curve by its length, from the tangents at the ends of two steps.
+struct CurveBend {
+    double length = 0;  // of the last step; 0: none yet
+    double mean[max_joints] = {}, second[max_joints] = {}, third[max_joints] = {};
+
+    // After a step of length h from a point with tangent t to one with tangent next.
+    void add_step(const double* t, const double* next, double h, int n) {
+        for (int i = 0; i < n; ++i) {
+            const double bend = (next[i] - t[i]) / h;
+            third[i] = length > 0 ? 2 * (bend - mean[i]) / (h + length) : 0;
+            second[i] = bend + 0.5 * h * third[i];
+            mean[i] = bend;
+        }
+        length = h;
+    }
+};
+
 // One step of length h from q along its tangent; `at` belongs to q, then to the end. False if the curve bends
-// too much for this length.
+// too much for this length. bend: of the curve at q, for a guess nearer to the end.
 inline bool step_along(const Chain& chain, const TipConstraint& constraint, const double* q,
-                       const double* tangent, double h, double* next, double* next_tangent, PoseError& at) {
-    constexpr double least_cosine = 0.995;
-    for (int i = 0; i < chain.n; ++i) next[i] = q[i] + h * unit_of(chain, i, constraint.length) * tangent[i];
+                       const double* tangent, double h, double* next, double* next_tangent, PoseError& at,
+                       const CurveBend& bend = {}) {
+    constexpr double least_cosine = 0.995, third = 1.0 / 6;
+    for (int i = 0; i < chain.n; ++i) {
+        const double way = tangent[i] + h * (0.5 * bend.second[i] + third * h * bend.third[i]);
+        next[i] = q[i] + h * unit_of(chain, i, constraint.length) * way;
+    }
     if (!onto_curve(chain, constraint, next, at, true) ||
         !tangent_at(chain, at.jacobian, tangent, next_tangent))
         return false;
@@ -233,6 +263,7 @@ CSPACE_ONCE CurveEnd follow_curve(const Chain& chain, const TipConstraint& const
                                   const double* direction, VisitCurve visit,
                                   int most_steps = most_curve_steps, double longest = longest_step) {
     constexpr double shortest = 1e-7;
+    constexpr double most_turn = 0.09, straight = 1e-3;  // of a step [rad]: a tenth is refused
     const int n = chain.n;
     double q[max_joints] = {}, t[max_joints] = {}, first[max_joints] = {};
     PoseError at;
@@ -245,6 +276,7 @@ CSPACE_ONCE CurveEnd follow_curve(const Chain& chain, const TipConstraint& const
     double h = first_step(at.jacobian);
     Margin margin = first_margin;
     Room room;
+    CurveBend bend;
     for (int step = 0; step < most_steps; ++step) {
         double next[max_joints] = {}, next_t[max_joints] = {};
         if (step > 2 && start_is_next(chain, constraint, q, t, start, first, 1.5 * h, next)) {
@@ -253,10 +285,11 @@ CSPACE_ONCE CurveEnd follow_curve(const Chain& chain, const TipConstraint& const
         }
         const double last_margin = margin.positive;
         const auto attempt = [&](double step) {
-            return step_along(chain, constraint, q, t, step, next, next_t, at);
+            return step_along(chain, constraint, q, t, step, next, next_t, at, bend);
         };
         if (!halve_step(h, shortest, attempt)) return CurveEnd::lost;
         margin = margin_on_curve(at.jacobian);
+        bend.add_step(t, next_t, h, n);
         double turning = 0, away = 0;
         for (int i = 0; i < n; ++i) {
             q[i] = next[i], t[i] = next_t[i];
@@ -267,7 +300,9 @@ CSPACE_ONCE CurveEnd follow_curve(const Chain& chain, const TipConstraint& const
         }
         visit(q, t, margin.second);
         if (away > endless_slide) return CurveEnd::far;
-        const double longest_here = min(room.after(margin.positive, last_margin, h), longest);
+        const double bent = std::sqrt(dot_n(bend.second, bend.second, n));
+        const double longest_here =
+            min(min(room.after(margin.positive, last_margin, h), longest), most_turn / (bent + straight));
         // Slides alone run along a line.
         h = turning > tolerance::resting ? min(1.5 * h, longest_here) : 2 * h;
     }

@@ -92,16 +92,28 @@ struct CurvedAngleProblem : AngleProblem<System> {
     }
 };
 
-// Moves the unknowns to a local minimum of the residual; returns its length there.
+// The damping of refine_angles, which ends at once from a start with a residual above `far`.
+struct NearbyDamping : GaussNewtonDamping {
+    double far;
+    bool starts = true;
+
+    void accept(double error) {
+        if (starts && error > far) enough = error;
+        starts = false;
+        GaussNewtonDamping::accept(error);
+    }
+};
+
+// Moves the unknowns to a local minimum of the residual; returns its length there. Nothing is moved where the
+// residual exceeds `far`.
 template <class System, class Unknown>
-double refine_angles(const System& system, Unknown* t, int most_steps = 30) {
+double refine_angles(const System& system, Unknown* t, int most_steps = 30, double far = 1e300) {
     constexpr double shortest_step = 1e-10;  // [rad] the step after it squares the error
     // A slope that is only rounding must not throw an unknown about.
     constexpr double least = tolerance::exact * tolerance::exact;
     Linearised<System> at;
-    return descend_damped(
-        AngleProblem<System>{system}, t, at,
-        GaussNewtonDamping{2 * std::numeric_limits<double>::epsilon(), shortest_step, least}, most_steps);
+    const GaussNewtonDamping damping{2 * std::numeric_limits<double>::epsilon(), shortest_step, least};
+    return descend_damped(AngleProblem<System>{system}, t, at, NearbyDamping{damping, far}, most_steps);
 }
 // The same where the residual there may be large.
 template <class System, class Unknown>

@@ -198,11 +198,12 @@ def with_extremes(
         same = np.sign(t[np.arange(len(where)), joint]) == sign
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     order = np.lexsort((low, where))
+    order = order[~np.isnan(exact[order]).any(axis=1)]  # without those at a corner too sharp for its chord
     at = where[order] + 1
     return (
         np.insert(points, at, exact[order], axis=0),
         np.insert(tangents, at, t[order], axis=0),
-        start + int(np.count_nonzero(where < start)),
+        start + int(np.count_nonzero(where[order] < start)),
     )
 
 
