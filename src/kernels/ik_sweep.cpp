@@ -9,7 +9,7 @@ template void branches_at(const Sweep&, Pack<4>, Branches<Pack<4>>&);
 template FoldValues fold_values(const Redundant&, const Sweep&);
 template void onto_curve(const Chain&, int, const Posed&, double, CurvePoint&);
 template void descend_to_manifold(const Chain&, int, const Posed&, double, double (*)[max_joints], int, bool*,
-                                  const Descent&);
+                                  const DescentRule&);
 
 void ik_sweep(const LockedArm& locked, int parameter, const Posed& goal, const double* at,
               const double* values, int n, SweptRows* rows) {

@@ -12,14 +12,14 @@ namespace cspace::collision {
 namespace {
 
 constexpr float far_away = 1e18f;  // its square is finite
-constexpr int leaf_size = 16;      // points: a point takes a third of the time of a box
+constexpr int leaf_points = 16;    // points: a point takes a third of the time of a box
 
 }  // namespace
 
 CloudData::CloudData(std::span<const double> points, double radius)
     : bounds_(bound_points(points)),
       points_(sort_points(points, bounds_)),
-      nodes_(build_point_tree(points_, leaf_size)),
+      nodes_(build_point_tree(points_, leaf_points)),
       radius_(radius) {
     const std::size_t n = points.size() / 3;
     for (std::vector<float>* column : {&x_, &y_, &z_}) column->assign(n + 8, far_away);

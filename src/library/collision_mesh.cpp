@@ -16,7 +16,7 @@ namespace {
 
 using shapes::Corners;
 
-constexpr int leaf_size = 2;  // triangles: a triangle takes as long as three boxes
+constexpr int leaf_triangles = 2;  // triangles: a triangle takes as long as three boxes
 
 Vec3d read_vector(const double* v) { return {v[0], v[1], v[2]}; }
 void copy_rounded(const Vec3d& from, float* to) {
@@ -106,7 +106,7 @@ MeshData::MeshData(std::span<const double> triangles, bool is_solid) {
     // Corners of a triangle that a ball touches are beyond its centre by the size of the triangle at most.
     // The slack of robots covers the rounding of places as far away as the centre, this the rest.
     grown_ = 4 * largest * tolerance::float_rounding;
-    Tree tree = build_tree(boxes, leaf_size, grown_);
+    Tree tree = build_tree(boxes, leaf_triangles, grown_);
     nodes_ = std::move(tree.nodes);
     visit_range(0, n, [&](std::size_t i) {
         const double* t = &triangles[9 * std::size_t(tree.order[i])];

@@ -171,7 +171,8 @@ CSPACE_INLINE void look_ahead(ArcLanes<V>& arcs, int size, mask_of<V> moved) {
         bend2 = mul_add(arcs.to.bend[i], arcs.to.bend[i], bend2);
     }
     moved = moved && chord2 > shortest * shortest;
-    const V h = select_lanes(moved, sqrt(chord2) * (1.0 + arc * chord2 * bend2), fill_lanes<V>(1.0)), per = 1.0 / h;
+    const V h = select_lanes(moved, sqrt(chord2) * (1.0 + arc * chord2 * bend2), fill_lanes<V>(1.0)),
+            per = 1.0 / h;
     for (int i = 0; i < n; ++i) {
         const V turned = per * per * (arcs.at.tangent[i] - arcs.to.tangent[i] + h * arcs.to.bend[i]);
         const V curled = per * (arcs.at.bend[i] - arcs.to.bend[i]);

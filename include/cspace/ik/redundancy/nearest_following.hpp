@@ -76,7 +76,7 @@ inline void add_solved_starts(const Redundant& arm, const Posed& goal, const Tar
 inline void add_reached_starts(const Redundant& arm, const Posed& goal, const Target& target, int first,
                                int looks, ArcStarts& starts) {
     constexpr int most = 96;
-    constexpr Descent rule = {24, 0.8};
+    constexpr DescentRule rule = {24, 0.8};
     double q[most][max_joints];
     bool reached[most];
     for (int k = 0; k < looks; ++k) {

@@ -41,7 +41,7 @@ struct CurvePoints {
 using CurvePoint = CurvePoints<double>;
 
 // How far Newton's method goes towards the manifold.
-struct Descent {
+struct DescentRule {
     int most_steps = 60;
     double stride = 0.3;  // the longest change of a joint in a step [rad, m]
 };
@@ -109,7 +109,8 @@ CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, int rank
 template <int N, class V>
 CSPACE_INLINE void turn_out(const SplitJacobian<V>& split, int size, V* b) {
     const int n = size_or<N>(size);
-    for (int k = rank_in<N>(split) - 1; k >= 0; --k) linear::reflect_vector(split.A, n, k, split.factor[k], b);
+    for (int k = rank_in<N>(split) - 1; k >= 0; --k)
+        linear::reflect_vector(split.A, n, k, split.factor[k], b);
 }
 
 // A pivot of a Jacobian (lengths over the arm's length) that rounding alone leaves.
@@ -194,7 +195,7 @@ CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, dou
 // Newton's method onto the manifold on lanes. A lane that has finished takes the next start.
 template <int N, class V>
 inline void descend_abreast(const Chain& chain, const Posed& goal, double length, double (*q)[max_joints],
-                            int starts, bool* reached, const Descent& rule) {
+                            int starts, bool* reached, const DescentRule& rule) {
     constexpr int lanes = Lanes<V>::count;
     const int n = size_or<N>(chain.n);
     const Pose<V> goals = fill_pose<V>(goal);
@@ -230,7 +231,7 @@ inline void descend_abreast(const Chain& chain, const Posed& goal, double length
 // there.
 CSPACE_ONCE void descend_to_manifold(const Chain& chain, int rank, const Posed& goal, double length,
                                      double (*q)[max_joints], int starts, bool* reached,
-                                     const Descent& rule = {}) {
+                                     const DescentRule& rule = {}) {
     if (rank == 6) {
         (chain.n == 7 ? descend_abreast<7, Pack<8>> : descend_abreast<0, Pack<4>>)(chain, goal, length, q,
                                                                                    starts, reached, rule);
