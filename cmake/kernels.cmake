@@ -86,17 +86,23 @@ endif()
 
 # The library: what calls the kernels and what needs no instruction set of its own, compiled once behind plain
 # functions. The bindings include these headers and no solver. Only its searches and graphs gain from -O3.
+# Trees of samples are the same on every machine: none may round a product and a sum at once where others do not. Nor may
+# decisions about points, whose signs rest on every rounding as written.
 function(configure_library name)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
   target_link_libraries(${name} PUBLIC cspace PRIVATE cspace_flags)
   target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
   target_compile_definitions(${name} PRIVATE ${kernel_copies})
   if(NOT MSVC)
-    target_compile_options(${name} PRIVATE -ffunction-sections -fdata-sections ${ARGN})  # the linker drops what nobody calls
+    # The linker drops sections that nobody calls.
+    target_compile_options(${name} PRIVATE -ffp-contract=off -ffunction-sections -fdata-sections ${ARGN})
   endif()
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER)  # as in src/bindings
     target_precompile_headers(${name} PRIVATE <algorithm> <array> <atomic> <cmath> <functional> <map> <memory> <mutex>
-                                              <optional> <queue> <span> <string> <utility> <vector>)
+                                              <optional> <queue> <span> <string> <utility> <vector>
+      ${CMAKE_CURRENT_SOURCE_DIR}/include/cspace/kinematics/jacobian.hpp
+      ${CMAKE_CURRENT_SOURCE_DIR}/include/cspace/collision/scene.hpp
+      ${CMAKE_CURRENT_SOURCE_DIR}/include/cspace/collision/robot.hpp)
   endif()
 endfunction()
 file(GLOB library_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/library/*.cpp)
@@ -108,14 +114,10 @@ configure_library(cspace_searches)
 add_library(cspace_library STATIC ${library_files} $<TARGET_OBJECTS:cspace_searches>)
 configure_library(cspace_library $<$<CONFIG:Release>:-O2>)
 target_link_libraries(cspace_library PUBLIC cspace_kernels)
-
-# Trees of samples are the same on every machine: none may round a product and a sum at once where others do not. Nor may
-# decisions about points, whose signs rest on every rounding as written; x86-64 has no such instruction in its baseline.
-if(NOT MSVC)
-  set(exact_files ${library_files} ${search_files})
-  list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation|collision|planning|shapes|localization_particles|localization_histogram)[_.]")
-  set_property(SOURCE ${exact_files} APPEND PROPERTY COMPILE_OPTIONS -ffp-contract=off)
+if(SKBUILD)  # a wheel is built as a whole: its compiler reads what neighbouring files share once
+  set_target_properties(cspace_library PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
 endif()
+
 # GCC stops inlining in a file that has grown by two fifths, and a file of several searches soon has. It takes this limit
 # from a precompiled header, whatever the file asks for.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

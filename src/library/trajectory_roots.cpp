@@ -11,7 +11,7 @@ namespace cspace::trajectory {
 
 namespace {
 
-constexpr int most_steps = 100;                   // bisection alone needs half of them
+constexpr int most_bisections = 100;                   // bisection alone needs half of them
 constexpr std::size_t rows_between_polls = 1024;  // less than a millisecond
 
 struct Value {
@@ -31,7 +31,7 @@ Value evaluate(const double* c, std::size_t terms, double t) {
 double find_bracketed(const double* c, std::size_t terms, double low, double high, bool rises,
                       double converged) {
     double x = 0.5 * (low + high);
-    for (int step = 0; step < most_steps; ++step) {
+    for (int step = 0; step < most_bisections; ++step) {
         const Value e = evaluate(c, terms, x);
         if (e.value == 0.0) return x;
         ((e.value < 0.0) == rises ? low : high) = x;
