@@ -37,6 +37,6 @@ extern template void branches_at(const Sweep&, Pack<4>, Branches<Pack<4>>&);
 extern template FoldValues fold_values(const Redundant&, const Sweep&);
 extern template void onto_curve(const Chain&, int, const Posed&, double, CurvePoint&);
 extern template void descend_to_manifold(const Chain&, int, const Posed&, double, double (*)[max_joints], int,
-                                         bool*, const Descent&);
+                                         bool*, const DescentRule&);
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -11,7 +11,7 @@ namespace cspace::trajectory {
 
 namespace {
 
-constexpr int most_bisections = 100;                   // bisection alone needs half of them
+constexpr int most_bisections = 100;              // bisection alone needs half of them
 constexpr std::size_t rows_between_polls = 1024;  // less than a millisecond
 
 struct Value {
