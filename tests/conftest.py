@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Generator
 
 import pytest
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.setdefault("CSPACE_CACHE", "")  # tests keep no covers in the home folder
+signal.signal(
+    signal.SIGINT, signal.default_int_handler
+)  # a shell ignores Ctrl-C in what it starts in the background
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
