@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace import navigation
+from cspace import navigation, trajectory
 from cspace.search import Planner
 from cspace.tables import LONGEST_LINE, MOST_ROWS, html_table, list_fields, markdown_table, one_line
 
@@ -121,7 +121,7 @@ def test_a_long_line_ends_with_an_ellipsis():
 
 # Classes that nobody gets as an answer: bases of others, and those that Markdown shows.
 BASES = {"HasSolver", "KinematicModel", "MotionNoise", "WheelBase"}
-UNEXAMINED = {"cartesian", "trajectory", "plot", "cli", "errors", "files", "tables"}
+UNEXAMINED = {"plot", "cli", "errors", "files", "tables"}
 
 
 def public_classes():
@@ -171,6 +171,28 @@ def parts_of(answer, depth=3):
                 yield from parts_of(part, depth - 1)
 
 
+def motions():
+    """Motions that exist and those that do not, with what they follow."""
+    robot = cs.load_robot("ur5e")
+    q = np.array([0.3, -1.2, 1.4, -0.8, 0.7, 0.1])
+    path = cs.spline([q, q + 0.2, q - 0.1])
+    there = robot.fk(q + 0.05)
+    line, far = (trajectory.line_path(robot.fk(q), T) for T in (there, cs.pose(xyz=[9.0, 0, 0]) @ there))
+    jerky = trajectory.state_to_state([0, 0], [1, 2], velocity=1, acceleration=2, jerk=9)
+    batch = trajectory.state_to_state(np.zeros((2, 1)), np.ones((2, 1)), velocity=1, acceleration=2)
+    timed = cs.time_parametrize(path, robot, acceleration=4)
+    out = [
+        path,
+        timed,
+        line,
+        jerky,
+        batch,
+        timed.check(robot.limits),
+        trajectory.JoinedTrajectory([jerky, jerky]),
+    ]
+    return [*out, *(cs.cartesian.move_cartesian(robot, way, q, acceleration=4) for way in (line, far))]
+
+
 def test_what_answers_are_made_of_has_lines_and_tables_too():
     robot = cs.load_robot("ur5e")
     panda = cs.load_robot("panda")
@@ -184,6 +206,7 @@ def test_what_answers_are_made_of_has_lines_and_tables_too():
     ]
     wholes += [robot.clearance(np.full(6, 0.3)), robot.edge(np.zeros(6), np.full(6, 0.1))]
     wholes += [robot.ik(robot.fk(np.full((2, 6), 0.3))), cs.plan(robot, np.zeros(6), np.full(6, 0.1))]
+    wholes += motions()
     seen = 0
     for whole in wholes:
         for part in parts_of(whole):

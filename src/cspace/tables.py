@@ -74,7 +74,7 @@ def shown_field(value: Any) -> str:
     if isinstance(value, (Mapping, Sequence)) and not hasattr(value, "_fields"):
         words = value if all(isinstance(item, (str, int, float)) for item in value) else ()
         listed = ", ".join(map(str, words)) if not isinstance(value, Mapping) else ""
-        return listed if 0 < len(listed) <= LONGEST_CELL else f"{len(value)} entries"
+        return listed if 0 < len(listed) <= LONGEST_CELL else count_things(len(value), "entry", "entries")
     line = " ".join(repr(value).split())
     return line if len(line) <= LONGEST_CELL else line[: LONGEST_CELL - 1] + "…"
 

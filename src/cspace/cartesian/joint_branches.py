@@ -27,7 +27,7 @@ from cspace.ik.tracking.track import track
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_robot, limits_of
 from cspace.model import Limits
-from cspace.tables import one_line, shown
+from cspace.tables import one_line, show_fields, shown, tabulate
 from cspace.tolerances import PATH_START_ROUNDING, SHORTEST_PATH_PIECE
 from cspace.trajectory.cartesian_path import CartesianPath, Indices, check_cartesian_path
 from cspace.trajectory.path import Path
@@ -40,6 +40,7 @@ BESIDE_SINGULAR: Final = "the joints would have to jump beside a singular config
 NO_DEVIATION: Final = (np.inf, np.inf)
 
 
+@tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class JointBranch:
     """One branch along a Cartesian path: truthy if it reaches the end.
@@ -71,6 +72,7 @@ class JointBranch:
         return self._explain()
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class JointBranches:
     """All branches along a Cartesian path; truthy if one reaches the end.

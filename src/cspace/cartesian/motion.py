@@ -20,7 +20,7 @@ from cspace.kinematics.batch import check_robot, find_pose, limits_of
 from cspace.model import Limits
 from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike, one_pose
-from cspace.tables import count_things, one_line, shown
+from cspace.tables import count_things, one_line, shown, tabulate
 from cspace.tolerances import (
     FARTHEST,
     LIMIT_ROUNDING,
@@ -48,6 +48,7 @@ CLOSE_RANKING: Final = 0.05
 different shapes, and those so near to the fastest are timed exactly."""
 
 
+@tabulate("cartesian", "branches", "s_end", "duration", "stopped_by", "reason")
 class CartesianMotion(TimedMotion):
     """A motion of the joints that moves the tip along a Cartesian path; falsy where there is none.
 

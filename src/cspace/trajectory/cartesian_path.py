@@ -13,7 +13,7 @@ from cspace._core import cartesian_poses, cartesian_twists
 from cspace.arrays import Array, as_floats, one_array, one_number
 from cspace.errors import InputError, InputTypeError, check_kind
 from cspace.spatial import as_rotation
-from cspace.tables import count_things, one_line
+from cspace.tables import count_things, one_line, show_fields, tabulate
 from cspace.tolerances import FARTHEST, TIME_ROUNDING
 
 DEGREE: Final = 5
@@ -32,6 +32,7 @@ PIECE_FIELDS: Final = {
 Indices: TypeAlias = NDArray[np.intp]
 
 
+@show_fields
 @dataclass(frozen=True, eq=False)
 class CartesianPiece:
     """A stretch of a path over its parameter s from 0 to `length`.
@@ -52,6 +53,7 @@ class CartesianPiece:
     arm: Array
 
 
+@tabulate("lengths", "length")
 class CartesianPath:
     """The pose of a tip along a path, in the base; a call gives poses.
 

@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.model import Limits
-from cspace.tables import count_things, html_table, one_line, shown
+from cspace.tables import count_things, html_table, one_line, shown, tabulate
 from cspace.tolerances import LIMIT_BINDS, LIMIT_ROUNDING
 
 ORDERS: Final = {"position": 0, "velocity": 1, "acceleration": 2, "jerk": 3}
@@ -32,6 +32,7 @@ class Motion(Protocol):
     def _turning_times(self, order: int) -> list[Array]: ...
 
 
+@tabulate()
 @dataclass(frozen=True)
 class Violation:
     """A limit of a joint that a motion exceeds.
@@ -84,6 +85,7 @@ class TrajectoryCheck:
         return html_table("Limits exceeded" if rows else self.reason or "Within all limits", titles, rows)
 
 
+@tabulate()
 @dataclass(frozen=True)
 class BindingLimit:
     """A stretch of time on which a joint is at one of its limits.

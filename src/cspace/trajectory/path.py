@@ -15,7 +15,7 @@ from cspace._core import evaluate_path, examine_path
 from cspace.arrays import Array, as_floats, one_number, whole_number
 from cspace.errors import InputError, InputTypeError
 from cspace.model.values import freeze_array
-from cspace.tables import count_things, one_line, shown
+from cspace.tables import count_things, one_line, shown, tabulate
 from cspace.tolerances import (
     FARTHEST_WAYPOINT,
     PATH_CORNER,
@@ -36,6 +36,7 @@ TURNS: Final = 1 | 1 << 2
 """Of the flags of a break: the slopes beside it vanish and the second derivative jumps."""
 
 
+@tabulate("dof", "degree", "length", "start", "end", "stops")
 class Path:
     """A path of joints: q(s) for 0 ≤ s ≤ length, in pieces of polynomials of degree 5 at most.
 

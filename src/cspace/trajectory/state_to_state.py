@@ -13,7 +13,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, guard_memory, leading_axes, whole_number
 from cspace.errors import InputError, InputTypeError, check_known
 from cspace.model.values import read_joint_names
-from cspace.tables import one_line
+from cspace.tables import one_line, tabulate
 from cspace.tolerances import FARTHEST, LEAST_FACTOR
 from cspace.trajectory.polynomials import PolynomialTrajectory
 from cspace.trajectory.states import (
@@ -35,6 +35,7 @@ MOST_THREADS: Final = 1024
 """Of one call."""
 
 
+@tabulate("shortest", "possible", "reason")
 class TrajectoryBatch:
     """Motions of the same joints, one per problem; falsy unless each is what was asked for.
 

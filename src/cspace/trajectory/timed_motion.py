@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.tables import tabulate
 from cspace.trajectory.limit_check import BindingLimit
 from cspace.trajectory.path import Path
 from cspace.trajectory.timed_path import Grid, SlowStretch, TimedPath
 from cspace.trajectory.trajectory import Trajectory
 
 
+@tabulate("path", "duration", "proved", "converged", "reason")
 class TimedMotion(Trajectory):
     """A motion along a path that somebody chose; falsy where there is none.
 

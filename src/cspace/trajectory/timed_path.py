@@ -13,7 +13,7 @@ from cspace._core import sum_times
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
 from cspace.model.values import freeze_array
-from cspace.tables import count_things, one_line, shown
+from cspace.tables import count_things, one_line, shown, tabulate
 from cspace.tolerances import FEED_HELD, FEED_LOST
 from cspace.trajectory.limit_check import BindingLimit
 from cspace.trajectory.path import HIGHEST_ORDER, Path, _powers_to_bernstein, restrict_pieces
@@ -43,6 +43,7 @@ FEED: Final = "feed"
 """The name of the speed that a frame is to have."""
 
 
+@tabulate()
 class SlowStretch(NamedTuple):
     """A stretch of time on which a frame is slower than its feed.
 
@@ -94,6 +95,7 @@ Ratios = Callable[[Path, Places], list[tuple[str, str, Array]]]
 """The limits of a motion at places (m,): of each its joint or frame, its name, and its share (m,) in use."""
 
 
+@tabulate("path", "duration", "proved", "reason")
 class TimedPath(Trajectory):
     """A motion along a path within limits; falsy where there is none.
 

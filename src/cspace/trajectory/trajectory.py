@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats, one_number, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
 from cspace.model.values import read_joint_names
-from cspace.tables import count_things, one_line, show_fields, shown
+from cspace.tables import count_things, one_line, show_fields, shown, tabulate
 from cspace.tolerances import CONTINUITY_ROUNDING, LEAST_FACTOR, TIME_ROUNDING
 from cspace.trajectory.limit_check import (
     BindingLimit,
@@ -83,6 +83,7 @@ def check_order(names: Sequence[str] | None, others: Sequence[str] | None, whose
     )
 
 
+@tabulate("dof", "duration", "labels", "reason")
 class Trajectory(ABC):
     """A motion of joints in time: positions and derivatives up to the jerk; falsy where reason is not empty.
 
