@@ -167,11 +167,11 @@ TEST(following_the_arcs_around_a_seed_finds_what_tracing_all_of_them_finds) {
             double q[7], seed[7], near_by[7], of_all[7];
             random_within(rng, arm, q);
             random_within(rng, arm, seed);
-            const Posed goal = forward(arm.chain, q);
+            const Posed goal = forward_kinematics(arm.chain, q);
             CHECK(nearest_within_limits(arm, limits.get(), goal, seed, nullptr, near_by));
             CHECK(nearest_within_limits(arm, limits.get(), goal, seed, trail.get(), of_all));
             CHECK(is_within(arm, near_by, limit_slack));
-            CHECK(pose_difference(forward(arm.chain, near_by), goal, arm.length) < 1e-8);
+            CHECK(pose_difference(forward_kinematics(arm.chain, near_by), goal, arm.length) < 1e-8);
             const double distance = distance_within(arm, seed, near_by);
             CHECK(distance <= distance_within(arm, seed, of_all) + 1e-8);
             CHECK(distance <= distance_within(arm, seed, q) + 1e-8);
@@ -189,7 +189,7 @@ TEST(the_least_distance_along_a_closed_arc_does_not_depend_on_where_it_is_entere
         double q[7], seed[7];
         random_within(rng, arm, q);
         random_within(rng, arm, seed);
-        const Posed goal = forward(arm.chain, q);
+        const Posed goal = forward_kinematics(arm.chain, q);
         const ik::Target target = make_target(arm, seed, false);
         const auto nearest_from = [&](const double* start, ik::Nearest& best) {
             const auto starts = std::make_unique<ik::ArcStarts>();

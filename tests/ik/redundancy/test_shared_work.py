@@ -79,6 +79,8 @@ def partial_goals(T):
 @SETTINGS
 @given(words, st.sampled_from(SHAPES), seeds)
 @example("PRRRR", "parallel", 35865)  # the joint that is held rests along the self-motion
+@example("RRRRR", "parallel", 39916800)  # the last step towards a start leads away from the goal
+@example("RRRRR", "aligned", 2)
 def test_partial_goals_are_answered(word, shape, seed):
     rng = np.random.default_rng(seed)
     robot = shaped_arm(rng, word, shape)

@@ -19,6 +19,13 @@ struct Window {
 
 namespace cspace::ik::inline CSPACE_ISA {
 
+// Beside a singular pose the last step of Newton's method may lead away from where it had arrived.
+inline bool meets_pose(const Redundant& arm, const Posed& goal, const double* q) {
+    TipMotion<double> motion;
+    tip_motion<0>(arm.chain, goal, arm.length, q, motion);
+    return largest_of(motion.error, 6) < tolerance::reached;
+}
+
 // The values around the seed that the bound of the best solution and the limits leave.
 inline Window window_of(const Redundant& arm, const Target& target, int p, const Posed& goal,
                         const Nearest& best) {
@@ -51,7 +58,8 @@ inline void find_ends(const Redundant& arm, const LimitArms& arms, const Posed& 
         at.q[at.joint] += at.side ? -limit_slack : limit_slack;  // on the side where it is measured
         const double distance = distance_from_seed(arm, target, at.q);
         at.q[at.joint] = limit_of(arm, at.joint, at.side);
-        if (is_acceptable(arm, target, at.q)) keep_nearer(arm, at.q, distance, best);
+        if (is_acceptable(arm, target, at.q) && meets_pose(arm, goal, at.q))
+            keep_nearer(arm, at.q, distance, best);
         visit(at.q, distance);
     }
 }
@@ -110,7 +118,7 @@ inline void settle_nearest_starts(const Redundant& arm, const Posed& goal, const
     const double* chosen[most];
     for (int k = 0; k < count; ++k) {
         chosen[k] = starts.q[order[k]];
-        if (is_acceptable(arm, target, chosen[k]))
+        if (is_acceptable(arm, target, chosen[k]) && meets_pose(arm, goal, chosen[k]))
             keep_nearer(arm, chosen[k], starts.distance[order[k]], best);
     }
     settle_all(arm, goal, target, chosen, count, best);
