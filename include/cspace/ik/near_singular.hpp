@@ -4,12 +4,35 @@
 // by the conditioning, and each solution is tested for self-motion.
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/ik/closed_form.hpp"
 #include "cspace/ik/refine.hpp"
 #include "cspace/ik/self_motion/self_motion.hpp"
 #include "cspace/ik/solution.hpp"
 #include "cspace/ik/three_parallel.hpp"
 #include "cspace/ik/wrist_bend.hpp"
+#include "cspace/math/rows.hpp"
+
+namespace cspace::ik {
+
+// Candidates of a goal that were refined with damping: where each started, where Newton's method had stopped,
+// and where the refinement ended.
+struct Refined {
+    static constexpr int room = 64;
+    int count = 0;
+    double start[room][6], last[room][6], end[room][6];
+};
+
+// Points of self-motions that were followed, with their tangents. No other solution lies within `tube` of the
+// curve beside them.
+struct FollowedCurves {
+    static constexpr int room = 400;
+    int count = 0;
+    double q[room][max_arm], tangent[room][max_arm], tube[room];
+};
+
+}  // namespace cspace::ik
 
 namespace cspace::ik::inline CSPACE_ISA {
 
@@ -408,6 +431,57 @@ inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const doub
     return out;
 }
 
+// The row of a candidate that was refined from the same place, or −1.
+inline int find_refined(const Chain& chain, const Refined& refined, const double* start, const double* last) {
+    constexpr double same_start = 1e-5, same_last = 3e-4;  // [rad]
+    for (int k = 0; k < refined.count; ++k)
+        if (joint_distance(chain, refined.start[k], start, same_start) < same_start ||
+            joint_distance(chain, refined.last[k], last, same_last) < same_last)
+            return k;
+    return -1;
+}
+inline void note_refined(Refined& refined, const double* start, const double* last, const double* end) {
+    if (refined.count == Refined::room) return;
+    const int n = refined.count++;
+    for (int i = 0; i < 6; ++i)
+        refined.start[n][i] = start[i], refined.last[n][i] = last[i], refined.end[n][i] = end[i];
+}
+
+// Whether q lies in the tube about a curve that was followed: then it leads to the curve alone.
+inline bool is_on_followed(const Chain& chain, const Posed& goal, double length, const FollowedCurves& curves,
+                           const double* q) {
+    constexpr double reach = 1.2 * longest_step;
+    const TipConstraint constraint = {goal, true, length};
+    int nearest = -1;
+    double least2 = reach * reach, gap[max_joints];
+    const auto measure_gap = [&](const double* from) {
+        for (int i = 0; i < chain.n; ++i)
+            gap[i] = joint_difference(chain, i, q[i] - from[i]) / unit_of(chain, i, length);
+        return dot_n(gap, gap, chain.n);
+    };
+    for (int k = 0; k < curves.count; ++k) {
+        const double size2 = measure_gap(curves.q[k]);
+        if (size2 < least2) least2 = size2, nearest = k;
+    }
+    if (nearest < 0) return false;
+    measure_gap(curves.q[nearest]);
+    const double* const tangent = curves.tangent[nearest];
+    const double along = dot_n(gap, tangent, chain.n);
+    double beside[max_joints];
+    for (int i = 0; i < chain.n; ++i)
+        beside[i] = curves.q[nearest][i] + along * unit_of(chain, i, length) * tangent[i];
+    PoseError at;
+    if (!onto_curve(chain, constraint, beside, at)) return false;
+    const double tube = curves.tube[nearest];
+    return measure_gap(beside) < tube * tube;
+}
+
+// What a search has met already: a descent that comes there brings nothing new.
+struct Met {
+    Refined refined;
+    FollowedCurves curves;
+};
+
 // Perturbed goals: at a singular pose a solver may lose solutions. Goals slightly displaced from it in
 // several directions are regular, and Newton's method leads from their solutions back to the goal.
 
@@ -426,25 +500,55 @@ inline Posed perturbed_goal(const Posed& goal, double length, int k) {
 // Descends from q and adds the result if it is a new solution. Near solutions, a valley that almost reaches
 // the goal does not count.
 inline void descend_to_solution(const Chain& chain, const Posed& goal, double length, double* q, int steps,
-                                Solutions& out) {
+                                Solutions& out, Met* met = nullptr) {
     if (out.count == max_solutions || listed_beside(out, chain, q) >= 0) return;
+    if (met &&
+        (find_refined(chain, met->refined, q, q) >= 0 || is_on_followed(chain, goal, length, met->curves, q)))
+        return;
+    double start[max_joints];
+    std::copy(q, q + chain.n, start);
     PoseError error;
     const double left = refine_solution(chain, goal, length, q, error, steps);
-    if (left <= (out.count ? tolerance::exact : tolerance::reached))
-        accept_solution(out, chain, goal, length, q, out.count, 2);
+    if (met && chain.n == 6) note_refined(met->refined, start, start, q);
+    if (!(left <= (out.count ? tolerance::exact : tolerance::reached))) return;
+    if (met && is_on_followed(chain, goal, length, met->curves, q)) return;
+    accept_solution(out, chain, goal, length, q, out.count, 2);
+}
+
+// Brings rows of configurations of six joints near the goal; `error`: by how much each misses it then.
+inline void descend_rows(const Chain& chain, const Posed& goal, double length, double (*row)[max_joints],
+                         int count, int most_steps, double* error) {
+    for_each_pack(count, [&](auto pack, int first) {
+        using V = decltype(pack);
+        const int lanes = std::min(count - first, Lanes<V>::count);
+        V q[6];
+        load_rows(row[first], max_joints, lanes, 6, q);
+        const V left = descend_abreast(chain, goal, length, q, most_steps);
+        for (int k = 0; k < lanes; ++k) {
+            error[first + k] = get_lane(left, k);
+            for (int i = 0; i < 6; ++i) row[first + k][i] = get_lane(q[i], k);
+        }
+    });
 }
 
 // Descends from `starts` configurations spread over all joints until there are `enough` solutions: where a
 // determinant vanishes all round the circle a family runs through every hidden angle, and where a completed
 // arm is singular the arm itself need not be.
 inline void search_by_descent(const Chain& chain, const Posed& goal, double length, int starts,
-                              Solutions& out, int enough = max_solutions) {
-    constexpr int most_steps = 60;
-    for (int k = 0; k < starts && out.count < enough; ++k) {
-        double q[max_joints];
-        spread_configuration(k, chain.n, q);
-        for (int i = 0; i < chain.n; ++i) q[i] *= chain.prismatic[i] ? length / pi : 1;
-        descend_to_solution(chain, goal, length, q, most_steps, out);
+                              Solutions& out, int enough = max_solutions, Met* met = nullptr) {
+    constexpr int most_steps = 60, abreast = 8, first_steps = 40;
+    constexpr double far = 1e-2;  // what is left there is a local minimum
+    double q[abreast][max_joints], error[abreast];
+    for (int first = 0; first < starts && out.count < enough; first += abreast) {
+        const int count = std::min(abreast, starts - first);
+        for (int k = 0; k < count; ++k) {
+            spread_configuration(first + k, chain.n, q[k]);
+            for (int i = 0; i < chain.n; ++i) q[k][i] *= chain.prismatic[i] ? length / pi : 1;
+            error[k] = 0;
+        }
+        if (chain.n == 6) descend_rows(chain, goal, length, q, count, first_steps, error);
+        for (int k = 0; k < count && out.count < enough; ++k)
+            if (error[k] < far) descend_to_solution(chain, goal, length, q[k], most_steps, out, met);
     }
 }
 
@@ -452,13 +556,25 @@ inline void search_by_descent(const Chain& chain, const Posed& goal, double leng
 // of the chain. Returns whether a new solution was found.
 template <class ListSolutions>
 inline bool search_perturbed_goals(const Chain& chain, const Posed& goal, double length,
-                                   const ListSolutions& list_solutions, Solutions& out) {
-    constexpr int most_steps = 40;
+                                   const ListSolutions& list_solutions, Solutions& out, Met* met = nullptr) {
+    constexpr int most_steps = 40, room = 4 * max_solutions;
+    constexpr double far = 1e-2;
     const int before = out.count;
-    const auto add_candidate = [&](double* q) {
-        descend_to_solution(chain, goal, length, q, most_steps, out);
+    double q[room][max_joints], error[room] = {};
+    int count = 0;
+    const auto descend = [&] {
+        if (chain.n == 6 && met) descend_rows(chain, goal, length, q, count, most_steps, error);
+        for (int k = 0; k < count; ++k)
+            if (error[k] < far) descend_to_solution(chain, goal, length, q[k], most_steps, out, met);
+        count = 0;
+    };
+    const auto add_candidate = [&](const double* candidate) {
+        if (listed_beside(out, chain, candidate) >= 0) return;
+        std::copy(candidate, candidate + chain.n, q[count]);
+        if (++count == room) descend();
     };
     for (int k = 0; k < perturbed_goals; ++k) list_solutions(perturbed_goal(goal, length, k), add_candidate);
+    descend();
     return out.count > before;
 }
 

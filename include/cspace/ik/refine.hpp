@@ -178,9 +178,10 @@ inline double take_step(const Chain& chain, const Posed& goal, double length, co
     return size_of_error(error);
 }
 
-// Newton's method. It may leave the valley of small errors on its way: near a singularity the solution can
-// lie farther along the valley than any descent would go. True if it converged; q is then a solution, else
-// unchanged.
+// Newton's method. Towards a double root it halves the distance and quarters the error with each step; twice
+// the step then squares the distance (Schröder 1870). It may leave the valley of small errors on its way:
+// near a singularity the solution can lie farther along the valley than any descent would go. True if it
+// converged; q is then a solution, else unchanged.
 inline bool solve_by_newton(const Chain& chain, const Posed& goal, double length, double* q,
                             PoseError& error) {
     constexpr int most_steps = 16;
@@ -188,11 +189,15 @@ inline bool solve_by_newton(const Chain& chain, const Posed& goal, double length
     double best[max_joints], at[max_joints];
     for (int i = 0; i < chain.n; ++i) best[i] = at[i] = q[i];
     measure_error(chain, goal, length, at, error);
-    double least = min(size_of_error(error), 1.0);
+    double last = size_of_error(error), least = min(last, 1.0);
+    bool halving = false;
     for (int step = 0; step < most_steps && least >= settled; ++step) {
         double dq[max_joints];
         newton_pose_step(error, dq);
+        for (int i = 0; i < chain.n && halving; ++i) dq[i] *= 2;
         const double size = take_step(chain, goal, length, at, dq, at, error);
+        halving = !halving && size > 0.2 * last && size < 0.3 * last;
+        last = size;
         const bool better = size < least;
         if (better) {
             least = size;
@@ -240,12 +245,16 @@ inline bool follow_valley(const Chain& chain, const Posed& goal, double length, 
     constexpr int most_steps = 96;
     constexpr int patience = 4;  // steps that do not halve the error where it is rounding
     constexpr double narrow = 1e-2, settled = tolerance::last_digits, arrived = 1e-12;
-    double at[max_joints], best[max_joints], least = arrived;
+    constexpr int stagnation = 20;  // steps that do not halve the error on the way
+    double at[max_joints], best[max_joints], least = arrived, halved = 1e300;
+    int halved_at = 0;
     for (int i = 0; i < chain.n; ++i) at[i] = q[i];
     measure_error(chain, goal, length, at, error);
     for (int step = 0, waited = 0; step < most_steps && least >= settled && waited < patience; ++step) {
         const double size = size_of_error(error);
         waited += least < arrived;
+        if (size < 0.5 * halved) halved = size, halved_at = step;
+        if (step - halved_at > stagnation) break;
         if (size < least) {
             if (size < 0.5 * least) waited = 0;
             least = size;
@@ -398,6 +407,54 @@ CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double le
     // Half a turn off, the sum of cross products vanishes as at the goal: nothing beyond a right angle has
     // settled.
     return select_lanes(aligned < 1.0, max(largest, fill_lanes<V>(1.0)), largest);
+}
+
+// Descents abreast by damped least squares, six joints, from q to where the error is small or stops
+// decreasing: the damping of descend_to_goal, the steps from the normal equations, whose accuracy suffices to
+// come near. Returns the size of the error, the rotation as twice the sine of half its angle.
+template <class V>
+CSPACE_NOINLINE V descend_abreast(const Chain& chain, const Posed& goal, double length, V* q,
+                                  int most_steps) {
+    constexpr double stride = 0.3, near = 1e-9, growth = 4, half_turn = 1e-12;
+    const Pose<V> goals = fill_pose<V>(goal);
+    V A[6][6] = {}, b[6] = {}, next[6], damping = fill_lanes<V>(0.0), best2 = fill_lanes<V>(1e300);
+    for (int i = 0; i < 6; ++i) next[i] = q[i];
+    for (int step = 0; step <= most_steps; ++step) {
+        Vec3<V> axis[6], point[6];
+        const auto keep_axis = [&](int i, const Vec3<V>& h, const Vec3<V>& p) { axis[i] = h, point[i] = p; };
+        const Pose<V> T = move_joints(chain, 6, next, keep_axis) * fill_pose<V>(chain.tip);
+        V e[6], J[6][6], size2 = fill_lanes<V>(0.0);
+        const V trace = tip_error(T, goals, length, e);
+        const V scale = 2.0 / sqrt(max(1.0 + trace, fill_lanes<V>(half_turn)));
+        for (int k = 3; k < 6; ++k) e[k] = scale * e[k];
+        for (int k = 0; k < 6; ++k) size2 = mul_add(e[k], e[k], size2);
+        const mask_of<V> closer = size2 < best2;
+        best2 = select_lanes(closer, size2, best2);
+        for (int i = 0; i < 6; ++i) q[i] = select_lanes(closer, next[i], q[i]);
+        if (!any(best2 > near * near) || step == most_steps) break;
+        damping = select_lanes(closer, 0.1 * damping, max(growth * damping, fill_lanes<V>(1e-4)));
+        for (int i = 0; i < 6; ++i)
+            write_twist(kinematics::joint_twist(chain.prismatic[i], axis[i], point[i], T.t), 1 / length,
+                        J[i]);
+        V factored[6][6], dq[6];
+        for (int i = 0; i < 6; ++i) {
+            V along = fill_lanes<V>(0.0);
+            for (int k = 0; k < 6; ++k) along = mul_add(J[i][k], e[k], along);
+            b[i] = select_lanes(closer, along, b[i]);
+            for (int j = i; j < 6; ++j) {
+                V sum = fill_lanes<V>(0.0);
+                for (int k = 0; k < 6; ++k) sum = mul_add(J[i][k], J[j][k], sum);
+                A[i][j] = select_lanes(closer, sum, A[i][j]);
+                factored[i][j] = i == j ? A[i][j] + damping + best2 : A[i][j];
+            }
+            dq[i] = b[i];
+        }
+        factor_ldl(factored, 6);
+        solve_ldl(factored, 6, dq);
+        const V keep = shortening_factor(largest_of(dq, 6), stride);
+        for (int i = 0; i < 6; ++i) next[i] = mul_add(keep, dq[i], q[i]);
+    }
+    return sqrt(best2);
 }
 
 // True if q, a candidate near a solution, has converged to it.

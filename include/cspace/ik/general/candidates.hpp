@@ -18,8 +18,9 @@ struct Candidates {
     static constexpr int room = 4 * max_roots;
     int count = 0;
     double q[room][6];
-    bool close[room];    // beside another solution: it may have a twin, and may lead nowhere
-    bool settled[room];  // polished
+    double last[room][6];  // where Newton's method stopped that was not settled
+    bool close[room];      // beside another solution: it may have a twin, and may lead nowhere
+    bool settled[room];    // polished
 };
 
 }  // namespace cspace::ik
@@ -53,8 +54,8 @@ inline void polish_candidates(const GeneralPlan& plan, const Posed& goal, int fi
             step = newton_step(plan.chain, goals, 1.0, q, 0.3);
         for (int k = 0; k < lanes; ++k) {
             all.settled[row + k] = get_lane(step, k) < converged;
-            if (!all.settled[row + k]) continue;
-            for (int j = 0; j < 6; ++j) all.q[row + k][j] = get_lane(q[j], k);
+            double* const to = all.settled[row + k] ? all.q[row + k] : all.last[row + k];
+            for (int j = 0; j < 6; ++j) to[j] = get_lane(q[j], k);
         }
     });
 }
@@ -154,13 +155,25 @@ inline void add_near_double_roots(const GeneralPlan& plan, const Posed& goal, Ca
     admit_candidates(plan, goal, direct, all, out);
 }
 
-// Candidates that Newton's method did not settle, once more with damping.
-inline void refine_unsettled(const GeneralPlan& plan, const Posed& goal, Candidates& all, Solutions& out) {
+// Candidates that Newton's method did not settle, once more with damping; those that came where another one
+// has been refined from are not.
+inline void refine_unsettled(const GeneralPlan& plan, const Posed& goal, Candidates& all, Solutions& out,
+                             Refined& refined) {
     const int direct = all.count;
     for (int k = 0; k < direct; ++k) {
         if (all.settled[k]) continue;
+        const int same = find_refined(plan.chain, refined, all.q[k], all.last[k]);
+        if (same >= 0) {
+            std::copy(refined.end[same], refined.end[same] + 6, all.q[k]);
+            continue;
+        }
+        double start[6];
+        std::copy(all.q[k], all.q[k] + 6, start);
+        if (miss_of(plan.chain, goal, 1.0, all.last[k]) < miss_of(plan.chain, goal, 1.0, start))
+            std::copy(all.last[k], all.last[k] + 6, all.q[k]);
         PoseError error;
         const double left = refine_solution(plan.chain, goal, 1.0, all.q[k], error, 10);
+        note_refined(refined, start, all.last[k], all.q[k]);
         // Beside solutions a valley that almost reaches the goal is none of them.
         if (!(left <= (out.count ? tolerance::exact : tolerance::reached))) continue;
         const int before = out.count;
@@ -179,7 +192,8 @@ inline bool admit_listed(const GeneralPlan& plan, const Posed& goal, const List&
     const bool result = list([&](const double* q, bool close) { append_candidate(found, q, close); });
     admit_candidates(plan, goal, 0, found, out);
     add_near_double_roots(plan, goal, found, out);
-    refine_unsettled(plan, goal, found, out);
+    Refined refined;
+    refine_unsettled(plan, goal, found, out, refined);
     return result;
 }
 

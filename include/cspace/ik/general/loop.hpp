@@ -59,6 +59,8 @@ struct GeneralArm {
     bool has_perturbed = false;
     // Every solution of a goal, by the code of the instruction set that the plan was made with.
     void (*solve)(const GeneralArm& arm, const Posed& goal, Solutions& out) = nullptr;
+    // The same without effort for a certificate, for goals near one that is searched.
+    void (*propose)(const GeneralArm& arm, const Posed& goal, Solutions& out) = nullptr;
 };
 
 }  // namespace cspace::ik

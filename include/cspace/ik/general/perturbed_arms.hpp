@@ -65,7 +65,8 @@ inline Led lead_to_goal(const GeneralPlan& plan, const Posed& goal, const Soluti
     Candidates start;
     for (int j = 0; j < beside.count; ++j) append_candidate(start, beside.q[j], false);
     admit_candidates(plan, goal, 0, start, out);
-    refine_unsettled(plan, goal, start, out);
+    Refined refined;
+    refine_unsettled(plan, goal, start, out, refined);
     for (int j = 0; j < beside.count; ++j) {
         led.lost[j] = true;
         for (int m = 0; m < out.count; ++m)
@@ -102,12 +103,13 @@ inline bool certify_by_tilting(const GeneralPlan& plan, const Posed& goal, doubl
                                Solutions& out) {
     const Vec3d turn = pattern_vector(2 * way + 1), away = pattern_vector(2 * way + 2);
     const Vec3d axis = (1 / norm(turn)) * turn;
+    constexpr int best = 2;  // formulations: a goal that takes more is not off what is special
     Led led[2];
     for (int k = 0; k < 2; ++k) {
         const double by = k ? -size : size;
         const Posed tilted = {spatial::rotation_of_rotvec(by * axis) * goal.R, goal.t + by * away};
         Solutions beside;
-        solve_by_plan(plan, tilted, beside);
+        solve_by_plan(plan, tilted, beside, best);
         if (!beside.complete) return false;
         led[k] = lead_to_goal(plan, goal, beside, out);
     }
@@ -181,6 +183,15 @@ inline void solve_general(const GeneralArm& arm, const Posed& goal, Solutions& o
     Tried tried_all;
     try_formulations(arm.plan, goal, out, tried_all);
     if (!arm.has_perturbed && !out.complete) solve_tilted(arm.plan, goal, tried_all, out);
+}
+
+// Goals near one that is searched are regular: what the best formulations leave out there, others find at the
+// other goals.
+inline void propose_solutions(const GeneralArm& arm, const Posed& goal, Solutions& out) {
+    constexpr int best = 3;
+    if (arm.position_first.serves) return solve_with_wrist(arm, goal, out);
+    if (arm.has_perturbed) return solve_perturbed(arm, goal, out);
+    solve_by_plan(arm.plan, goal, out, best);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -54,6 +54,7 @@ struct Tried {
     int count = 0, work = 0;
     int number[formulations];
     Certificate seen[formulations];
+    Refined refined;
 };
 
 // Whether what one of them announced is there; `sharing`: those count as well whose solutions share a hidden
@@ -75,7 +76,7 @@ inline void try_formulation(const GeneralPlan& plan, const Posed& goal, int numb
                             Tried& tried_all) {
     Certificate& seen = tried_all.seen[tried_all.count];
     tried_all.number[tried_all.count++] = number;
-    seen = solve_formulation(plan, goal, number, out);
+    seen = solve_formulation(plan, goal, number, tried_all.refined, out);
     tried_all.work += seen.work;
     out.crowded = out.crowded || seen.clusters > 0;
     out.complete = seen.complete && !(seen.clusters > 0 && add_hidden_near_doubles(plan, goal, out));
@@ -85,7 +86,8 @@ inline void try_formulation(const GeneralPlan& plan, const Posed& goal, int numb
 // One formulation after the other until one of them certifies that nothing is missing; where none does, what
 // all of them found together may be what one of them announced. Where solutions share an angle others that
 // hide it are of no use.
-inline void try_formulations(const GeneralPlan& plan, const Posed& goal, Solutions& out, Tried& tried_all) {
+inline void try_formulations(const GeneralPlan& plan, const Posed& goal, Solutions& out, Tried& tried_all,
+                             int most = formulations) {
     constexpr int most_shared = 3;  // a goal special to so many joints is special to most
     out.crowded = false;
     if (plan.slides == 3) {
@@ -97,7 +99,8 @@ inline void try_formulations(const GeneralPlan& plan, const Posed& goal, Solutio
     }
     int shared = 0;
     bool shares[6] = {};
-    for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete && shared < most_shared; ++k) {
+    for (int k = 0;
+         k < std::min(plan.regular, most) && plan.slides < 3 && !out.complete && shared < most_shared; ++k) {
         const int joint = hidden_joint(formulation_of(plan.order[k]));
         if (shares[joint]) continue;
         try_formulation(plan, goal, plan.order[k], out, tried_all);
@@ -110,9 +113,10 @@ inline void try_formulations(const GeneralPlan& plan, const Posed& goal, Solutio
 }
 
 // Returns the work.
-inline int solve_by_plan(const GeneralPlan& plan, const Posed& goal, Solutions& out) {
+inline int solve_by_plan(const GeneralPlan& plan, const Posed& goal, Solutions& out,
+                         int most = formulations) {
     Tried tried_all;
-    try_formulations(plan, goal, out, tried_all);
+    try_formulations(plan, goal, out, tried_all, most);
     return tried_all.work;
 }
 
@@ -160,7 +164,8 @@ inline void try_formulation(const GeneralPlan& plan, const Posed* goal, int last
         if (!(trial.sensitivity < useless_sensitivity)) break;
         if (k == first_look && (trial.drowned == k || trial.work > heavy * k)) break;
         Solutions out;
-        const Certificate seen = solve_formulation(plan, goal[k], number, out);
+        Refined refined;
+        const Certificate seen = solve_formulation(plan, goal[k], number, refined, out);
         trial.drowned += seen.hidden.alias > regular_alias;
         trial.work += seen.work;
         trial.shared += seen.shared;

@@ -2,6 +2,8 @@
 // agreed value.
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/ik/near_singular.hpp"
 #include "cspace/ik/self_motion/continuation.hpp"
 
@@ -116,10 +118,22 @@ inline bool is_crossing(const Chain& chain, const TipConstraint& constraint, con
     return free > 1;
 }
 
+// Second derivatives of the pose are at most 6 [1/rad]: other solutions are a third of the smallest singular
+// value across the curve away (as of listed_beside).
+inline void note_followed(const Chain& chain, const double* q, const double* t, double margin,
+                          FollowedCurves& followed) {
+    constexpr double alone = 0.05;
+    if (followed.count == FollowedCurves::room) return;
+    const int n = followed.count++;
+    std::copy(q, q + chain.n, followed.q[n]);
+    std::copy(t, t + chain.n, followed.tangent[n]);
+    followed.tube[n] = alone * margin;
+}
+
 // `idle`: the values that leading joints take, zero if null; but where families cross none is taken to the
 // crossing, which would not tell which of them is meant. Lengths are over the arm's.
 inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, const double* unconstrained,
-                                     Solutions& out) {
+                                     Solutions& out, FollowedCurves* followed = nullptr) {
     const TipConstraint constraint = {goal, true, 1};
     int steps_left = 4000;  // of all curves together
     bool dropped[max_solutions] = {};
@@ -130,7 +144,8 @@ inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, cons
         r.value = unconstrained ? unconstrained[r.joint] : 0;
         double start[max_joints], along[max_joints];
         for (int i = 0; i < chain.n; ++i) start[i] = out.q[k][i], along[i] = out.direction[k][i];
-        const auto visit = [&](int way, const double* q, const double* t, double) {
+        const auto visit = [&](int way, const double* q, const double* t, double margin) {
+            if (followed) note_followed(chain, q, t, margin, *followed);
             offer_next(chain, constraint, r, way, q, t);
             mark_passed(chain, constraint, q, t, out, k + 1, dropped);
         };

@@ -55,7 +55,7 @@ inline Solutions without_virtual_joints(const Chain& chain, const Posed& goal, c
 // virtual joints may hide a singular pose: from goals beside this one, and by descent. Lengths are over the
 // arm's.
 inline void look_at_perturbed_goals(const GeneralArm& arm, const Chain& chain, const Posed& goal,
-                                    bool certain, Solutions& out) {
+                                    bool certain, Met& met, Solutions& out) {
     constexpr double hardly_off = 0.2;
     int there = 0;
     for (int k = 0; k < out.count; ++k) {
@@ -66,7 +66,7 @@ inline void look_at_perturbed_goals(const GeneralArm& arm, const Chain& chain, c
     }
     const auto propose = [&](const Posed& beside, const auto& add_candidate) {
         Solutions six;
-        arm.solve(arm, beside, six);
+        arm.propose(arm, beside, six);
         for (int k = 0; k < six.count; ++k) {
             double off = 0, q[max_joints], turned[max_joints];
             for (int i = chain.n; i < 6; ++i) off = max(off, std::fabs(six.q[k][i]));
@@ -80,10 +80,10 @@ inline void look_at_perturbed_goals(const GeneralArm& arm, const Chain& chain, c
             if (arm.plan.slides > 0) add_candidate(turned);
         }
     };
-    if (search_perturbed_goals(chain, goal, 1, propose, out)) out.complete = false;
+    if (search_perturbed_goals(chain, goal, 1, propose, out, &met)) out.complete = false;
     // Families attract whatever comes down near them.
     const int starts = out.count || certain ? 16 : 48;
-    if (out.count == 0 || !certain) search_by_descent(chain, goal, 1, starts, out);
+    if (out.count == 0 || !certain) search_by_descent(chain, goal, 1, starts, out, max_solutions, &met);
     // Nothing here and something close by: the goal may lie just on the border.
     if (out.count == 0 && there > 0) out.complete = false;
 }
@@ -102,14 +102,17 @@ inline Solutions solve_general_carefully(const GeneralArm& arm, const Posed& goa
     // For six revolute joints a certified empty list is accepted, unless goals beside this one had to say so.
     const bool may_hide = completed || arm.plan.slides > 0;
     const bool empty = out.count == 0 && (may_hide || arm.has_perturbed || out.crowded);
-    if (!out.complete || empty || (!certain && may_hide))
-        look_at_perturbed_goals(arm, chain, goal, certain, out);
     if (!certain && !completed) mark_self_motions(arm.plan, goal, out);
-    if (out.status == Status::singular) {
-        double rest[max_joints];
-        for (int i = 0; i < chain.n; ++i)
-            rest[i] = unconstrained ? unconstrained[i] / (chain.prismatic[i] ? length : 1) : 0;
-        keep_one_per_self_motion(chain, goal, rest, out);
+    double rest[max_joints];
+    for (int i = 0; i < chain.n; ++i)
+        rest[i] = unconstrained ? unconstrained[i] / (chain.prismatic[i] ? length : 1) : 0;
+    Met met;
+    if (out.status == Status::singular) keep_one_per_self_motion(chain, goal, rest, out, &met.curves);
+    if (!out.complete || empty || (!certain && may_hide)) {
+        const int before = out.count;
+        look_at_perturbed_goals(arm, chain, goal, certain, met, out);
+        if (out.count > before && out.status == Status::singular)
+            keep_one_per_self_motion(chain, goal, rest, out);
     }
     if (arm.plan.slides > 0) in_metres(chain, length, out);
     return out;

@@ -245,7 +245,7 @@ inline void expect_no_ghosts(const GeneralPlan& plan, int number, HiddenAngles& 
 template <class Function, class Follow>
 inline Certificate solve_by_hidden_angle(const GeneralPlan& plan, const Posed& goal, int number,
                                          const Loop& loop, double slip, const Function& f,
-                                         const Follow& follow, Solutions& out) {
+                                         const Follow& follow, Refined& refined, Solutions& out) {
     Certificate seen;
     seen.slip = slip;
     HiddenAngles& hidden = seen.hidden;
@@ -272,7 +272,7 @@ inline Certificate solve_by_hidden_angle(const GeneralPlan& plan, const Posed& g
         const int direct = found.count;
         follow(hidden, close, true, found);
         admit_candidates(plan, goal, direct, found, out);
-        refine_unsettled(plan, goal, found, out);
+        refine_unsettled(plan, goal, found, out, refined);
         seen.work += 10 * found.count;
         mark_doubles(plan, goal, out, twice);
         all = all_matched(seen, out, twice);
@@ -292,7 +292,9 @@ inline bool is_possible(const Loop& loop, Formulation form) {
     return slides < 2 && !loop.slides[0] && !loop.slides[3] && !loop.slides[5];
 }
 
-inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal, int number, Solutions& out) {
+// `refined`: what the formulations before have refined.
+inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal, int number, Refined& refined,
+                                     Solutions& out) {
     const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation_of(number));
     if (!is_possible(loop, formulation_of(number))) return {};
     if (plan.slides == 2) {
@@ -307,7 +309,7 @@ inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal,
                                 Candidates& found) {
             return !again && follow_sheets(sheets, hidden, close, found);
         };
-        return solve_by_hidden_angle(plan, goal, number, loop, 0, f, follow, out);
+        return solve_by_hidden_angle(plan, goal, number, loop, 0, f, follow, refined, out);
     }
     const Elimination e = eliminate_angles(loop);
     const auto f = [&](auto c, auto s) { return determinant(e, c, s); };
@@ -315,7 +317,7 @@ inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal,
         return follow_angles(loop, e, hidden, close, again, found);
     };
     const double slip = plan.sensitivity[number] * equation_error / min(e.faintest, 1.0);
-    Certificate seen = solve_by_hidden_angle(plan, goal, number, loop, slip, f, follow, out);
+    Certificate seen = solve_by_hidden_angle(plan, goal, number, loop, slip, f, follow, refined, out);
     seen.trusted = seen.trusted && e.faintest > clear_equation;
     seen.complete = seen.complete && seen.trusted;
     return seen;

@@ -82,6 +82,7 @@ CSPACE_ONCE bool make_general_arm(const Chain& chain, GeneralArm& arm) {
     arm.alone = alone;
     arm.chain = chain;
     arm.solve = &solve_general;
+    arm.propose = &propose_solutions;
     const double length = characteristic_length(chain);
     Chain six = in_units_of(length, chain);
     if (chain.n > 6 || (chain.n < 6 && !complete_arm(in_units_of(length, chain), six))) return false;
