@@ -9,8 +9,6 @@
 
 namespace cspace::ik {
 
-inline constexpr int loop_looks = 24;  // values of the parameter at which loops are looked for
-
 // All points of the traced curve, and the solutions at sampled values.
 struct Trail {
     static constexpr int room = 12000;
