@@ -223,8 +223,10 @@ inline void trace_loops_at(Tracer& tracer, const LimitArms& arms, int joint) {
     double at[max_joints], q[max_joints];
     for (int look = 0; look < looks; ++look) {
         at[joint] = middle_of_part(domain, look, looks);
-        const Solutions found = made.empty() ? solve_locked(locked, tracer.goal, at, nullptr)
-                                             : solve_arm(made[std::size_t(look)], tracer.goal, nullptr);
+        const Solutions found =
+            !made.empty()    ? solve_arm_briefly(made[std::size_t(look)], tracer.goal)
+            : locked.at_ends ? solve_arm_briefly(locked.arm, goal_between_ends(locked, tracer.goal, at))
+                             : solve_locked(locked, tracer.goal, at, nullptr);
         for (int j = 0; j < found.count; ++j) {
             whole_row(locked, at, found.q[j], q);
             trace_loop(tracer, q);
@@ -294,11 +296,12 @@ inline void spread_evenly(int k, int n, double* q) {
 // large.
 inline void trace_loops_by_descent(Tracer& tracer) {
     constexpr int starts = 48;
+    constexpr DescentRule rule = {32, 0.8};
     const Redundant& arm = *tracer.arm;
     double q[starts][max_joints];
     for (int k = 0; k < starts; ++k) spread_evenly(k, arm.chain.n, q[k]);
     bool reached[starts];
-    descend_to_manifold(arm.chain, arm.rank, tracer.goal, arm.length, q, starts, reached);
+    descend_to_manifold(arm.chain, arm.rank, tracer.goal, arm.length, q, starts, reached, rule);
     for (int k = 0; k < starts; ++k)
         if (reached[k]) trace_loop(tracer, q[k]);
 }

@@ -14,7 +14,10 @@ struct Trail {
     static constexpr int room = 12000;
     int count = 0;
     bool first_of_arc[room];
-    double q[room][max_joints], length[room];  // of the chord that ends there
+    double q[room][max_joints], length[room];  // length: of the chord that ends there
+    // The joints once more, one after the other, and how far from a point its chord and the chord's tube
+    // reach; negative where an arc begins.
+    double joint[max_joints][room], reach[room];
     bool used[LimitPoints::room];              // limit points that an arc started or ended in
     SweptRows swept[loop_looks];
 };
@@ -145,8 +148,10 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, Ahead& ahea
             ahead = {};
             continue;
         }
-        const double there = jacobian_change(from, to, n);
-        const double change = there < most_change ? there : min(there, jacobian_change(to, from, n));
+        const auto changed = n == 7 && tracer.arm->rank == 6 ? jacobian_change<7, double>
+                                                             : jacobian_change<0, double>;
+        const double there = changed(from, to, n);
+        const double change = there < most_change ? there : min(there, changed(to, from, n));
         if (change < most_change) {
             ahead = look_ahead(from, to, n);
             return true;
@@ -311,26 +316,33 @@ inline void record_point(Tracer& tracer, const double* q, bool first) {
         tracer.out->complete = false;
         return;
     }
+    constexpr double beyond = 1.1;  // of a chord: the chord and its tube
     const int k = trail.count++, n = tracer.arm->chain.n;
     double length2 = 0;
     for (int i = 0; i < n; ++i) {
-        trail.q[k][i] = q[i];
+        trail.q[k][i] = trail.joint[i][k] = q[i];
         if (!first) length2 += (q[i] - trail.q[k - 1][i]) * (q[i] - trail.q[k - 1][i]);
     }
     trail.first_of_arc[k] = first;
     trail.length[k] = std::sqrt(length2);
+    trail.reach[k] = first ? -1 : beyond * trail.length[k];
 }
 
 // Whether a configuration lies on a traced arc, from trail point `first` on.
 inline bool is_on_trail(const Tracer& tracer, const double* q, int first = 0) {
-    constexpr double beyond = 1.1;  // of a chord: the chord and its tube
+    using V = Pack<4>;
     const Trail& trail = *tracer.trail;
     const Chain& chain = tracer.arm->chain;
-    for (int k = first + 1; k < trail.count; ++k) {
-        bool near_by = !trail.first_of_arc[k];
-        for (int i = 0; i < chain.n && near_by; ++i)
-            near_by = std::fabs(joint_difference(chain, i, q[i] - trail.q[k][i])) <= beyond * trail.length[k];
-        if (near_by && part_of_chord(chain, trail.q[k - 1], trail.q[k], q) >= 0) return true;
+    for (int start = first + 1; start < trail.count; start += 4) {
+        const int count = std::min(4, trail.count - start);
+        const V reach = load_lanes<V>(trail.reach + start, count);
+        unsigned near_by = (1u << count) - 1;
+        for (int i = 0; i < chain.n && near_by; ++i) {
+            const V gap = q[i] - load_lanes<V>(trail.joint[i] + start, count);
+            near_by &= bits_of(abs(joint_difference(chain, i, gap)) <= reach);
+        }
+        for (int k = start; near_by; ++k, near_by >>= 1)
+            if (near_by & 1 && part_of_chord(chain, trail.q[k - 1], trail.q[k], q) >= 0) return true;
     }
     return false;
 }
