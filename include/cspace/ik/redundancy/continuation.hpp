@@ -23,9 +23,10 @@ struct Trail {
 };
 
 // The third and fourth derivative of the curve at the point that a step led to, from the tangents and bends
-// at both of its ends; zero where the step was too short to tell.
+// at both of its ends, and how much the Jacobian changed per length; zero where the step was too short to
+// tell.
 struct Ahead {
-    double third[max_joints] = {}, fourth[max_joints] = {};
+    double third[max_joints] = {}, fourth[max_joints] = {}, change = 0;
 };
 
 struct Tracer {
@@ -73,10 +74,10 @@ inline double part_of_chord(const Chain& chain, const double* from, const double
     return max(0.0, part);
 }
 
-// Upper bound of a step: 0.25 rad for revolute joints, in proportion for prismatic joints where the curve is
+// Upper bound of a step: 0.35 rad for revolute joints, in proportion for prismatic joints where the curve is
 // long.
 inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
-    constexpr double longest = 0.25, steps_across = 64;
+    constexpr double longest = 0.35, steps_across = 64;
     if (!(tracer.far > 0)) return longest;
     const double slide = max(longest, tracer.far / steps_across);
     double most = 0;
@@ -104,30 +105,33 @@ inline Ahead look_ahead(const CurvePoint& from, const CurvePoint& to, int n) {
 }
 
 // Tries a step of length `stride`. Returns true if it stayed close to the curve: the bend alone must lead
-// close to its end, for then the chord is close as well. One Newton step is enough where it is so small that
-// the next one would be rounding to what follows, unless the parameter all but turns.
+// close to its end, for then the chord is close as well. Newton steps end with one so small that the next one
+// would be rounding to what follows, unless the parameter all but turns.
 inline bool try_step(const Tracer& tracer, const CurvePoint& from, const Ahead& ahead, double stride,
                      double most_off, CurvePoint& to) {
     constexpr double small = 1e-4, turning = 0.01, third = 1.0 / 6, fourth = 1.0 / 24;
     const Redundant& arm = *tracer.arm;
     const int n = arm.chain.n;
-    double bent[max_joints], guess[max_joints];
+    double bent[max_joints], before[max_joints];
     predict_along(from.q, from.tangent, from.bend, stride, n, bent);
     const double h3 = stride * stride * stride;
-    for (int i = 0; i < n; ++i) {
-        guess[i] = bent[i] + h3 * (third * ahead.third[i] + fourth * stride * ahead.fourth[i]);
-        to.q[i] = guess[i];
-    }
+    for (int i = 0; i < n; ++i)
+        to.q[i] = bent[i] + h3 * (third * ahead.third[i] + fourth * stride * ahead.fourth[i]);
     const auto away_from = [&](const double* predicted) {
         double off = 0;
         for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - predicted[i]));
         return off;
     };
-    onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, to);
-    const bool once = away_from(guess) < small && std::fabs(to.tangent[tracer.parameter]) > turning;
-    if (!once) put_on_curve(tracer, to);
+    bool is_settled = false;
+    for (int pass = 0; pass < 3 && !is_settled; ++pass) {
+        for (int i = 0; i < n; ++i) before[i] = to.q[i];
+        onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, to);
+        is_settled = away_from(before) < small;
+    }
+    is_settled = is_settled && std::fabs(to.tangent[tracer.parameter]) > turning;
+    if (!is_settled) put_on_curve(tracer, to);
     orient_tangent(to.tangent, from.tangent, n);
-    return (once || to.error < tolerance::reached) && away_from(bent) < most_off * stride &&
+    return (is_settled || to.error < tolerance::reached) && away_from(bent) < most_off * stride &&
            dot_n(to.tangent, from.tangent, n) > 0.95;
 }
 
@@ -141,6 +145,7 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, Ahead& ahea
     const int n = tracer.arm->chain.n;
     const double bend = std::sqrt(dot_n(from.bend, from.bend, n));
     stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + straight));
+    if (ahead.change > 0) stride = min(stride, 0.9 * most_change / ahead.change);
     bool crosses = false;
     while (stride > shortest) {
         if (!try_step(tracer, from, ahead, stride, most_correction, to)) {
@@ -154,6 +159,7 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, Ahead& ahea
         const double change = there < most_change ? there : min(there, changed(to, from, n));
         if (change < most_change) {
             ahead = look_ahead(from, to, n);
+            ahead.change = change / stride;
             return true;
         }
         if (!crosses && stride < crossing) {
@@ -247,9 +253,8 @@ inline int go_back_to_limit(const Tracer& tracer, CurvePoint& at, int& side) {
 // The joint that stops the step from `at` to `next`, which then ends there; −1 if none does.
 inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint& next, int& side) {
     const Chain& chain = tracer.arm->chain;
-    const int stop = go_back_to_limit(tracer, next, side);
     const int passed = point_passed(tracer, at, next);
-    if (passed < 0) return stop;
+    if (passed < 0) return go_back_to_limit(tracer, next, side);
     const LimitPoint& point = tracer.points->point[passed];
     for (int i = 0; i < chain.n; ++i) next.q[i] = at.q[i] + joint_difference(chain, i, point.q[i] - at.q[i]);
     put_on_curve(tracer, next);
