@@ -57,7 +57,7 @@ class RedundantSolver {
 
     const Chain& chain() const;
     RedundantSolver& without_limits();  // the same arm, made when first needed
-    int redundant_joints() const;  // beyond those that the tip needs to move as it can
+    int redundant_joints() const;       // beyond those that the tip needs to move as it can
     std::vector<int> default_locked() const;
     bool has_closed_form() const;                              // of the joints that move by default
     int redundant_with(const std::vector<int>& locked) const;  // the same, some locked

@@ -313,15 +313,13 @@ inline void trace_loops(Tracer& tracer, const Sweep& sweep, const LimitArms& arm
     constexpr int looks = loop_looks;
     const Domain domain = domain_of(*tracer.arm, tracer.parameter, tracer.goal);
     double values[looks];
-    for (int k = 0; k < looks; ++k)
-        values[k] = middle_of_part(domain, k, looks);
+    for (int k = 0; k < looks; ++k) values[k] = middle_of_part(domain, k, looks);
     sweep_values(sweep, values, looks, [&](int k, const SweptRows& rows) {
         swept[k] = rows;
         for (int j = 0; j < rows.count; ++j) trace_loop(tracer, rows.q[j]);
     });
     for (int joint = 0; joint < tracer.arm->chain.n; ++joint)
-        if (joint != tracer.parameter && !arms.rests[joint])
-            trace_loops_at(tracer, arms, joint);
+        if (joint != tracer.parameter && !arms.rests[joint]) trace_loops_at(tracer, arms, joint);
     trace_loops_by_descent(tracer);
     for (int k = 0; k < looks && tracer.out->complete; ++k)
         tracer.out->complete = agrees_with_solutions(tracer, swept[k], values[k]);

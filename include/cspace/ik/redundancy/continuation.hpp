@@ -18,7 +18,7 @@ struct Trail {
     // The joints once more, one after the other, and how far from a point its chord and the chord's tube
     // reach; negative where an arc begins.
     double joint[max_joints][room], reach[room];
-    bool used[LimitPoints::room];              // limit points that an arc started or ended in
+    bool used[LimitPoints::room];  // limit points that an arc started or ended in
     SweptRows swept[loop_looks];
 };
 
@@ -153,8 +153,8 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, Ahead& ahea
             ahead = {};
             continue;
         }
-        const auto changed = n == 7 && tracer.arm->rank == 6 ? jacobian_change<7, double>
-                                                             : jacobian_change<0, double>;
+        const auto changed =
+            n == 7 && tracer.arm->rank == 6 ? jacobian_change<7, double> : jacobian_change<0, double>;
         const double there = changed(from, to, n);
         const double change = there < most_change ? there : min(there, changed(to, from, n));
         if (change < most_change) {
