@@ -230,24 +230,24 @@ inline bool nearest_within_limits(const Redundant& arm, const LimitArms* arms, c
         return copy_wrapped(arm, best, q);
     }
     const auto ignore = [](const double*, double) {};
-    double off = -1, settled = best.distance;
-    if (arms && !trail && is_sampled_quickly(arm)) {
-        off = settle_around(arm, goal, target, best);
-        settled = best.distance;
-        keep_nearest_sample(arm, goal, target, best);
-    }
-    const double sampled = best.distance;
+    double off = -1;
+    if (arms && !trail && is_sampled_quickly(arm)) off = settle_around(arm, goal, target, best);
+    const Nearest settled = best;
+    if (off >= 0) keep_nearest_sample(arm, goal, target, best);
+    const Nearest sample = best;
     if (arms) find_ends(arm, *arms, goal, target, best, ignore);
+    // A sample only bounds the ends: a window as narrow as its distance may leave out where the descents
+    // begin.
+    if (!(best.distance < sample.distance)) best = settled;
     const double end = best.distance;
     const bool is_complete = trail && nearest_of_arcs(arm, *arms, goal, target, *trail, best);
     if (is_complete && std::isfinite(best.distance)) return copy_wrapped(arm, best, q);
-    if (!search_nearest(arm, goal, target, off, best, q)) return false;
-    if (best.distance < end) return copy_wrapped(arm, best, q);
-    if (end < sampled || off < 0) {
-        leave_limit(arm, goal, target, best);
-    } else if (sampled < settled) {
-        const Nearest sample = best;
+    if (!search_nearest(arm, goal, target, off, best, q) && !std::isfinite(sample.distance)) return false;
+    if (sample.distance < best.distance) {
+        best = sample;
         descend_along_curve(arm, goal, target, sample.q, best);
+    } else if (!(best.distance < end)) {
+        leave_limit(arm, goal, target, best);
     }
     return copy_wrapped(arm, best, q);
 }
