@@ -30,8 +30,8 @@ struct BehindShoulder {
     V x, y;
 };
 
-// Values of a free joint 1 at which a side of the wrist may come into reach or leave it: how far behind a first
-// value, the nearest first.
+// Values of a free joint 1 at which a side of the wrist may come into reach or leave it: how far behind a
+// first value, the nearest first.
 struct ShoulderEnds {
     static constexpr int most = 12;
     int count = 0;
@@ -190,8 +190,8 @@ inline FreeSums free_sums(const ThreeParallel& arm, const Posed& goal, int i, do
 
 // For a wrist on the first axis, which joint 1 does not move. The planar arm reaches it for sums t2 + t3 + t4
 // between those of solve_reach. Joint 1 turns the last axis z, and z · (axis 5) = cos α5 where the sum is one
-// of these; the angle t5 exists while z · (axis 4) is within the cosines of α4 ± α5. Each is a linear equation
-// in the cosine and sine of t1.
+// of these; the angle t5 exists while z · (axis 4) is within the cosines of α4 ± α5. Each is a linear
+// equation in the cosine and sine of t1.
 inline ShoulderEnds shoulder_ends(const ThreeParallel& arm, const Posed& goal, const Care& care,
                                   double first) {
     const Vec3d z = matrix_column(goal.R, 2), p = undo_joint<double>({1, 0}, arm.ca1, arm.sa1, goal.t);

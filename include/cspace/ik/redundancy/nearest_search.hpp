@@ -40,13 +40,13 @@ inline void sample_window(const Redundant& arm, const Sweep& sweep, const Target
 }
 
 // One redundant joint: starts at the seed, then at parameter values around the seed within the bound of the
-// best solution. off: what settle_around returned.
-inline void nearest_of_curve(const Redundant& arm, const Posed& goal, const Target& target, double off,
-                             Nearest& best) {
+// best solution.
+inline void nearest_of_curve(const Redundant& arm, const Posed& goal, const Target& target, Nearest& best) {
     constexpr double spacing = 0.1;
     constexpr int most = 64;
     const int p = arm.locked.locked_joint[0];
     const bool slides = arm.chain.prismatic[p];
+    const double off = settle_around(arm, goal, target, best);
     const Window window = window_of(arm, target, p, goal, best);
     const Sweep sweep = make_sweep(arm.locked, p, goal, target.seed);
     const double unit = slides ? 2 * window.half / most : spacing;
@@ -120,16 +120,15 @@ inline bool copy_wrapped(const Redundant& arm, const Nearest& best, double* q) {
     return true;
 }
 
-// Returns false if no configuration was found. off: what settle_around returned, negative if it was not
-// called.
-inline bool search_nearest(const Redundant& arm, const Posed& goal, const Target& target, double off,
-                           Nearest& best, double* q) {
+// Returns false if no configuration was found.
+inline bool search_nearest(const Redundant& arm, const Posed& goal, const Target& target, Nearest& best,
+                           double* q) {
     if (rank_of(arm.locked.arm) > 0 && arm.redundancy_degree > 0) {
         const bool follows = has_arcs_to_follow(arm) && !target.within_limits;
         if (follows) nearest_by_following(arm, nullptr, goal, target, best);
         if (follows && std::isfinite(best.distance)) return copy_wrapped(arm, best, q);
         if (arm.redundancy_degree == 1)
-            nearest_of_curve(arm, goal, target, off < 0 ? settle_around(arm, goal, target, best) : off, best);
+            nearest_of_curve(arm, goal, target, best);
         else
             nearest_of_surface(arm, goal, target, best);
     }
@@ -148,7 +147,7 @@ inline bool nearest_proven(const Redundant& arm, const Posed& goal, const double
 inline bool nearest_configuration(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
     if (nearest_proven(arm, goal, seed, q)) return true;
     Nearest best;
-    return search_nearest(arm, goal, make_target(arm, seed, false), -1, best, q);
+    return search_nearest(arm, goal, make_target(arm, seed, false), best, q);
 }
 
 // The lowest points of all arcs within limits. Samples of the parameter may miss a short arc. Returns false
@@ -200,26 +199,6 @@ inline void leave_limit(const Redundant& arm, const Posed& goal, const Target& t
     descend_along_curve(arm, goal, target, end.q, best);
 }
 
-// The nearest solution within limits at a few values of the parameter. Limits that are farther from the seed
-// need not be solved.
-inline void keep_nearest_sample(const Redundant& arm, const Posed& goal, const Target& target,
-                                Nearest& best) {
-    constexpr int looks = 16;
-    const int p = arm.locked.locked_joint[0];
-    const Window window = window_of(arm, target, p, goal, best);
-    double values[looks];
-    for (int k = 0; k < looks; ++k) values[k] = window.middle + window.half * ((2 * k + 1.0) / looks - 1);
-    const Sweep sweep = make_sweep(arm.locked, p, goal, target.seed);
-    sweep_values(sweep, values, looks, [&](int, const SweptRows& rows) {
-        for (int k = 0; k < rows.count; ++k) {
-            const double distance = distance_from_seed(arm, target, rows.q[k]);
-            if (distance < best.distance && is_acceptable(arm, target, rows.q[k]) &&
-                meets_pose(arm, goal, rows.q[k]))
-                keep_nearer(arm, rows.q[k], distance, best);
-        }
-    });
-}
-
 // The nearest of all configurations within limits. arms, trail: null unless one joint is redundant.
 inline bool nearest_within_limits(const Redundant& arm, const LimitArms* arms, const Posed& goal,
                                   const double* seed, Trail* trail, double* q) {
@@ -230,25 +209,12 @@ inline bool nearest_within_limits(const Redundant& arm, const LimitArms* arms, c
         return copy_wrapped(arm, best, q);
     }
     const auto ignore = [](const double*, double) {};
-    double off = -1;
-    if (arms && !trail && is_sampled_quickly(arm)) off = settle_around(arm, goal, target, best);
-    const Nearest settled = best;
-    if (off >= 0) keep_nearest_sample(arm, goal, target, best);
-    const Nearest sample = best;
     if (arms) find_ends(arm, *arms, goal, target, best, ignore);
-    // A sample only bounds the ends: a window as narrow as its distance may leave out where the descents
-    // begin.
-    if (!(best.distance < sample.distance)) best = settled;
     const double end = best.distance;
     const bool is_complete = trail && nearest_of_arcs(arm, *arms, goal, target, *trail, best);
     if (is_complete && std::isfinite(best.distance)) return copy_wrapped(arm, best, q);
-    if (!search_nearest(arm, goal, target, off, best, q) && !std::isfinite(sample.distance)) return false;
-    if (sample.distance < best.distance) {
-        best = sample;
-        descend_along_curve(arm, goal, target, sample.q, best);
-    } else if (!(best.distance < end)) {
-        leave_limit(arm, goal, target, best);
-    }
+    if (!search_nearest(arm, goal, target, best, q)) return false;
+    if (!(best.distance < end)) leave_limit(arm, goal, target, best);
     return copy_wrapped(arm, best, q);
 }
 
