@@ -114,6 +114,12 @@ configure_library(cspace_searches)
 add_library(cspace_library STATIC ${library_files} $<TARGET_OBJECTS:cspace_searches>)
 configure_library(cspace_library $<$<CONFIG:Release>:-O2>)
 target_link_libraries(cspace_library PUBLIC cspace_kernels)
+if(NOT MSVC)  # loops over the points of clouds and their cells gain from vectors
+  set(point_files ${library_files})
+  list(FILTER point_files INCLUDE REGEX "library/collision_(cloud|grid|tree)")
+  set_property(SOURCE ${point_files} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
+  set_property(SOURCE ${point_files} PROPERTY SKIP_PRECOMPILE_HEADERS ON)
+endif()
 if(SKBUILD)  # a wheel is built as a whole: its compiler reads what neighbouring files share once
   set_target_properties(cspace_library PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
 endif()

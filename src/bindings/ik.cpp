@@ -60,17 +60,27 @@ PyObject* answer_single(PyObject* solver, const ik::BuiltArm& arm, const double*
                                                                      : nullptr;
 }
 
-// The answer where near= or locked= is the one keyword of one goal; null without an error for what is not
-// answered here.
+// The answer where near=, near= with limits=False, or locked= stands beside one goal; null without an error
+// for what is not answered here.
 PyObject* answer_keyword(PyObject* solver, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    if (nargs != 1 || !kwnames || PyTuple_GET_SIZE(kwnames) != 1) return nullptr;
-    PyObject* name = PyTuple_GET_ITEM(kwnames, 0);
-    const bool near = PyUnicode_CompareWithASCIIString(name, "near") == 0;
-    if (!near && PyUnicode_CompareWithASCIIString(name, "locked") != 0) return nullptr;
+    if (nargs != 1 || !kwnames) return nullptr;
+    PyObject *near = nullptr, *limits = nullptr, *locked = nullptr;
+    for (Py_ssize_t k = 0; k < PyTuple_GET_SIZE(kwnames); ++k) {
+        const auto is = [name = PyTuple_GET_ITEM(kwnames, k)](const char* word) {
+            return PyUnicode_CompareWithASCIIString(name, word) == 0;
+        };
+        PyObject** const slot = is("near")     ? &near
+                                : is("limits") ? &limits
+                                : is("locked") ? &locked
+                                               : nullptr;
+        if (!slot) return nullptr;
+        *slot = args[1 + k];
+    }
+    if (!near == !locked || (limits && (limits != Py_False || locked))) return nullptr;
     double copy[16];
     const double* goal = read_in_place(args[0], 4, 4, copy);
     if (!goal) return nullptr;
-    return near ? solve_near(solver, goal, args[1]) : solve_locked(solver, goal, args[1]);
+    return near ? solve_near(solver, goal, near, !limits) : solve_locked(solver, goal, locked);
 }
 
 }  // namespace

@@ -52,8 +52,9 @@ PyObject* solver_solve(PyObject* self, const char* method, PyObject* const* args
                        PyObject* kwnames);
 extern const char solve_doc[];
 
-// One goal with one keyword. Null without an error for what is not answered there.
-PyObject* solve_near(PyObject* solver, const double* goal, PyObject* seed);
+// One goal with one keyword; of near= within the limits of the arm or without any. Null without an error for
+// what is not answered there.
+PyObject* solve_near(PyObject* solver, const double* goal, PyObject* seed, bool within_limits);
 PyObject* solve_locked(PyObject* solver, const double* goal, PyObject* locked);
 
 // --- the result ----------------------------------------------------------------------------------------

@@ -1,7 +1,9 @@
-// solver.solve(T, near=q) and solver.solve(T, locked={…}): the compiled entry for one goal with one keyword.
+// solver.solve(T, near=q), with limits=False or without, and solver.solve(T, locked={…}): the compiled entry
+// for one goal.
 // The first call with a set of joints goes through cspace.ik, which finds out whether they leave freedom.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cspace/tolerances.hpp"
 #include "ik.hpp"
@@ -42,7 +44,7 @@ unsigned read_locked(PyObject* names, PyObject* locked_values, double* at) {
 
 }  // namespace
 
-PyObject* solve_near(PyObject* self, const double* goal, PyObject* near) {
+PyObject* solve_near(PyObject* self, const double* goal, PyObject* near, bool within_limits) {
     ik::Solver& solver = *solver_object(self)->core;
     const int n = solver.chain().n;
     double copy[ik::max_joints], q[ik::max_joints];
@@ -53,9 +55,17 @@ PyObject* solve_near(PyObject* self, const double* goal, PyObject* near) {
     PyObject* about = nullptr;
     if (solver.is_redundant()) {
         about = solver_object(self)->nearest_about;
-        if (!about || !solver.redundant().find_nearest_within(goal, seed, q).is_within) return nullptr;
-    } else if (!ik::nearest_listed(solver.arm(), solver.lower(), solver.upper(), goal, seed, q, &branch)) {
-        return nullptr;
+        ik::RedundantSolver& own = solver.redundant();
+        ik::RedundantSolver& asked = within_limits ? own : own.without_limits();
+        const bool is_same = within_limits || asked.default_locked() == own.default_locked();
+        if (!about || !is_same || !asked.find_nearest_within(goal, seed, q).is_within) return nullptr;
+    } else {
+        double lower[ik::max_joints], upper[ik::max_joints];
+        std::fill(lower, lower + n, -std::numeric_limits<double>::infinity());
+        std::fill(upper, upper + n, std::numeric_limits<double>::infinity());
+        const double* const bounds[2] = {within_limits ? solver.lower() : lower,
+                                         within_limits ? solver.upper() : upper};
+        if (!ik::nearest_listed(solver.arm(), bounds[0], bounds[1], goal, seed, q, &branch)) return nullptr;
     }
     return new_solutions(self, goal, {1, q, n, &branch, nullptr, ik::Status::exact}, about);
 }

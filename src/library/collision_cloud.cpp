@@ -16,18 +16,18 @@ constexpr int leaf_points = 16;    // points: a point takes a third of the time 
 
 }  // namespace
 
-CloudData::CloudData(std::span<const double> points, double radius)
+CloudData::CloudData(std::span<const Vec3d> points, double radius)
     : bounds_(bound_points(points)),
-      points_(sort_points(points, bounds_)),
+      grid_(points.size(), bounds_),
+      points_(grid_.sort_points(points)),
       nodes_(build_point_tree(points_, leaf_points)),
       radius_(radius) {
-    const std::size_t n = points.size() / 3;
-    for (std::vector<float>* column : {&x_, &y_, &z_}) column->assign(n + 8, far_away);
+    constexpr std::size_t lanes = 8;  // that are read at once
+    const std::size_t n = points_.size();
+    for (std::vector<float>* column : {&x_, &y_, &z_}) column->resize(n + lanes, far_away);
     visit_range(0, n, [&](std::size_t i) {
-        const double* p = &points_[3 * i];
-        x_[i] = float(p[0]), y_[i] = float(p[1]), z_[i] = float(p[2]);
+        x_[i] = float(points_[i].x), y_[i] = float(points_[i].y), z_[i] = float(points_[i].z);
     });
-    grid_ = GridData(std::span(x_).first(n), std::span(y_).first(n), std::span(z_).first(n), bounds_);
     for (std::size_t k = 0; k < 3; ++k) bounds_.low[k] -= radius, bounds_.high[k] += radius;
 }
 
@@ -40,16 +40,12 @@ shapes::Distance CloudData::distance(const Vec3d& point, double limit) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const double reach = std::max(limit + radius_, 0.0);
     double square = reach * reach;
-    const auto place = [&](int k) {
-        const double* p = &points_[3 * std::size_t(k)];
-        return Vec3d{p[0], p[1], p[2]};
-    };
     const int found = find_nearest(nodes_, point, square, [&](int k) {
-        const Vec3d apart = point - place(k);
+        const Vec3d apart = point - points_[std::size_t(k)];
         return dot(apart, apart);
     });
     if (found < 0) return {infinity, {0, 0, 1}};
-    return shapes::from_place(point, place(found), radius_);
+    return shapes::from_place(point, points_[std::size_t(found)], radius_);
 }
 
 template <class Limit, class Visit>
@@ -57,10 +53,7 @@ bool CloudData::visit_balls(const shapes::Convex& solid, const Limit& limit, con
     const double size = shapes::bound_size(solid) + radius_;
     return visit_near(
         nodes_, shapes::find_center(solid), [&] { return size + limit(); },
-        [&](int k) {
-            const double* p = &points_[3 * std::size_t(k)];
-            return visit(shapes::make_ball({p[0], p[1], p[2]}, radius_));
-        });
+        [&](int k) { return visit(shapes::make_ball(points_[std::size_t(k)], radius_)); });
 }
 
 bool CloudData::is_within(const shapes::Convex& solid, double gap) const {

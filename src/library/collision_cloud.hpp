@@ -13,8 +13,8 @@ namespace cspace::collision {
 // The slack of robots covers the rounding of points: those that a ball touches are no farther away than it.
 class CloudData {
   public:
-    // points: three numbers [m] each; radius [m]: of the balls around them.
-    CloudData(std::span<const double> points, double radius);
+    // points [m]; radius [m]: of the balls around them.
+    CloudData(std::span<const Vec3d> points, double radius);
 
     Cloud view() const;
     const Bounds& bounds() const { return bounds_; }
@@ -26,10 +26,10 @@ class CloudData {
 
   private:
     Bounds bounds_;  // of the points, at last of the balls
-    std::vector<double> points_;
+    GridData grid_;
+    std::vector<Vec3d> points_;
     std::vector<TreeNode> nodes_;
     std::vector<float> x_, y_, z_;
-    GridData grid_;
     double radius_;
 
     // Calls visit(ball) for the balls that may be within limit() of a solid, until it returns true.

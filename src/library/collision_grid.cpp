@@ -1,6 +1,7 @@
 #include "collision_grid.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "cspace/math/interrupts.hpp"
@@ -51,15 +52,40 @@ std::vector<signed char> spread_along(std::vector<unsigned char>& steps, std::si
     return ways;
 }
 
+// Calls visit(cell) for the cells of a block of so many cells a side, a power of two, that are among n: those
+// of one eighth after the other.
+template <class Visit>
+void visit_block(const std::array<int, 3>& low, int side, const std::array<int, 3>& n, const Visit& visit) {
+    if (low[0] >= n[0] || low[1] >= n[1] || low[2] >= n[2]) return;
+    if (side == 1) return visit(std::size_t((low[2] * n[1] + low[1]) * n[0] + low[0]));
+    const int half = side / 2;
+    for (int part = 0; part < 8; ++part)
+        visit_block(
+            {low[0] + (part & 1) * half, low[1] + (part >> 1 & 1) * half, low[2] + (part >> 2) * half}, half,
+            n, visit);
+}
+
+// Puts the points of the lower half of the widest extent first, and so on in either half.
+constexpr int most_unsorted = 256;  // points
+void halve_points(std::span<Vec3d> points) {
+    if (points.size() <= std::size_t(most_unsorted)) return;
+    const Bounds box = bound_points(points);
+    const auto extent = [&](std::size_t k) { return box.high[k] - box.low[k]; };
+    const std::size_t k = extent(0) >= std::max(extent(1), extent(2)) ? 0 : extent(1) >= extent(2) ? 1 : 2;
+    const double middle = box.low[k] + extent(k) / 2;
+    if (!(middle < box.high[k])) return;
+    constexpr double Vec3d::* axes[] = {&Vec3d::x, &Vec3d::y, &Vec3d::z};
+    const auto high = std::partition(points.begin(), points.end(),
+                                     [=, axis = axes[k]](const Vec3d& p) { return p.*axis <= middle; });
+    const std::size_t n_low = std::size_t(high - points.begin());
+    halve_points(points.first(n_low));
+    halve_points(points.subspan(n_low));
+}
+
 }  // namespace
 
-GridData::GridData(std::span<const float> x, std::span<const float> y, std::span<const float> z,
-                   const Bounds& all) {
-    if (x.empty()) return;
-    const std::array<std::span<const float>, 3> points = {x, y, z};
-    choose_cells(x.size(), all);
-    mark_points(points);
-    spread_steps();
+GridData::GridData(std::size_t count, const Bounds& all) {
+    if (count > 0) choose_cells(count, all);
 }
 
 void GridData::choose_cells(std::size_t count, const Bounds& all) {
@@ -93,16 +119,52 @@ void GridData::measure_steps(float largest) {
     }
 }
 
-void GridData::mark_points(const std::array<std::span<const float>, 3>& points) {
-    steps_.assign(std::size_t(n_[0]) * std::size_t(n_[1]) * std::size_t(n_[2]), most_steps);
-    points_.assign(steps_.size(), 0);
-    visit_range(0, points[0].size(), [&](std::size_t i) {
-        std::size_t cell[3];
-        for (std::size_t k = 0; k < 3; ++k)
-            cell[k] = std::size_t(std::min(int((points[k][i] - low_[k]) * cells_per_metre_), n_[k] - 1));
-        const std::size_t at = (cell[2] * std::size_t(n_[1]) + cell[1]) * std::size_t(n_[0]) + cell[0];
-        steps_[at] = 0, points_[at] = int(i);
+int GridData::find_cell(const Vec3d& point) const {
+    const float at[] = {float(point.x), float(point.y), float(point.z)};
+    int cell[3];
+    for (std::size_t k = 0; k < 3; ++k)
+        cell[k] = std::min(int((at[k] - low_[k]) * cells_per_metre_), n_[k] - 1);
+    return (cell[2] * n_[1] + cell[1]) * n_[0] + cell[0];
+}
+
+// How many points each cell has, and the cell of each point.
+std::vector<int> GridData::count_points(std::span<const Vec3d> points, std::vector<int>& cells) const {
+    std::vector<int> counts(std::size_t(n_[0]) * std::size_t(n_[1]) * std::size_t(n_[2]), 0);
+    visit_range(0, cells.size(), [&](std::size_t i) {
+        cells[i] = find_cell(points[i]);
+        ++counts[std::size_t(cells[i])];
     });
+    return counts;
+}
+
+// Each cell gets the place behind its last point.
+void GridData::mark_cells(const std::vector<int>& counts) {
+    steps_.assign(counts.size(), most_steps);
+    points_.resize(counts.size());
+    InterruptPoll poll(1 << 12);
+    int end = 0;
+    const int side = int(std::bit_ceil(unsigned(*std::max_element(n_.begin(), n_.end()))));
+    visit_block({0, 0, 0}, side, n_, [&](std::size_t cell) {
+        poll.step();
+        if (counts[cell] > 0) steps_[cell] = 0;
+        points_[cell] = end += counts[cell];
+    });
+}
+
+std::vector<Vec3d> GridData::sort_points(std::span<const Vec3d> points) {
+    std::vector<Vec3d> sorted(points.size());
+    if (sorted.empty()) return sorted;
+    std::vector<int> cells(sorted.size());
+    const std::vector<int> counts = count_points(points, cells);
+    mark_cells(counts);
+    visit_range(0, sorted.size(),
+                [&](std::size_t i) { sorted[std::size_t(--points_[std::size_t(cells[i])])] = points[i]; });
+    visit_range(0, counts.size(), [&](std::size_t cell) {
+        if (counts[cell] > most_unsorted)
+            halve_points(std::span(sorted).subspan(std::size_t(points_[cell]), std::size_t(counts[cell])));
+    });
+    spread_steps();
+    return sorted;
 }
 
 void GridData::spread_steps() {

@@ -1,4 +1,5 @@
-// The owner of the cells in front of a point cloud: how far away every place in a cell is from all points.
+// The owner of the cells in front of a point cloud: how far away every place in a cell is from all points,
+// and in which order the points are stored.
 #pragma once
 
 #include <array>
@@ -11,10 +12,13 @@ namespace cspace::collision {
 
 class GridData {
   public:
-    GridData() = default;
-    // Coordinates of points, rounded, and the box around them. No points, no cells.
-    GridData(std::span<const float> x, std::span<const float> y, std::span<const float> z, const Bounds& all);
+    // Cells for so many points in a box. No points, no cells.
+    GridData(std::size_t count, const Bounds& all);
 
+    // Marks the cells of points and returns the points in the order of their cells: those of
+    // an eighth of a block of cells before those of the next (Morton 1966, "A computer oriented geodetic data
+    // base"), and those of a crowded cell by halves. Neighbours in this order are near each other.
+    std::vector<Vec3d> sort_points(std::span<const Vec3d> points);
     DistanceGrid view() const;
 
   private:
@@ -27,7 +31,9 @@ class GridData {
     std::vector<float> least_;
 
     void choose_cells(std::size_t count, const Bounds& all);
-    void mark_points(const std::array<std::span<const float>, 3>& points);
+    int find_cell(const Vec3d& point) const;
+    std::vector<int> count_points(std::span<const Vec3d> points, std::vector<int>& cells) const;
+    void mark_cells(const std::vector<int>& counts);
     void spread_steps();
     void measure_steps(float largest);
 };

@@ -224,10 +224,11 @@ void SceneData::add_meshes(const Primitives& given) {
     }
 }
 void SceneData::add_clouds(const Primitives& given) {
+    const std::span points(reinterpret_cast<const Vec3d*>(given.points.data()), given.points.size() / 3);
     std::size_t first = 0;
     for (std::size_t i = 0; i < given.cloud_sizes.size(); ++i) {
-        const std::size_t count = 3 * std::size_t(given.cloud_sizes[i]);
-        cloud_data_.emplace_back(given.points.subspan(first, count), given.cloud_radii[i]);
+        const std::size_t count = std::size_t(given.cloud_sizes[i]);
+        cloud_data_.emplace_back(points.subspan(first, count), given.cloud_radii[i]);
         first += count;
     }
     for (const CloudData& cloud : cloud_data_) {

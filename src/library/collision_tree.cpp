@@ -1,9 +1,7 @@
 #include "collision_tree.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 
@@ -98,63 +96,10 @@ class Builder {
     const Bounds& item(int i) const { return items_[std::size_t(tree_.order[std::size_t(i)])]; }
 };
 
-// Keys of points: the place on the curve above the number of the point. The bits of a place are sorted by
-// digits.
-using Key = std::uint64_t;
-constexpr int digit_bits = 11, digits = 3, most_axis_bits = digit_bits;  // as many digits as axes
-
-struct Curve {
-    std::vector<Key> keys;
-    int index_bits;
-    std::size_t point(std::size_t i) const { return std::size_t(keys[i] & ((Key(1) << index_bits) - 1)); }
-};
-
-// The lowest bits of x, up to 16, two zeros behind each.
-Key spread_bits(Key x) {
-    x = (x | x << 16) & 0x0000ff0000ff;
-    x = (x | x << 8) & 0x00f00f00f00f;
-    x = (x | x << 4) & 0x0c30c30c30c3;
-    return (x | x << 2) & 0x249249249249;
-}
-Curve place_on_curve(std::span<const double> points, const Bounds& all) {
-    const std::size_t n = points.size() / 3;
-    Curve curve = {std::vector<Key>(n), int(std::bit_width(n))};
-    const int axis_bits = std::min(most_axis_bits, (64 - curve.index_bits) / 3);
-    double extent = 0;
-    for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, all.high[k] - all.low[k]);
-    const double scale = extent > 0 ? ((1 << axis_bits) - 1) / extent : 0;
-    visit_range(0, n, [&](std::size_t i) {
-        Key place = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            place |= spread_bits(Key(std::int64_t((points[3 * i + k] - all.low[k]) * scale))) << k;
-        curve.keys[i] = place << curve.index_bits | i;
-    });
-    return curve;
-}
-// By digits from the lowest on.
-void sort_keys(Curve& curve) {
-    constexpr std::size_t base = std::size_t(1) << digit_bits;
-    std::vector<Key> sorted(curve.keys.size());
-    std::vector<std::uint32_t> starts(base + 1);
-    for (int digit = 0; digit < digits; ++digit) {
-        const int shift = curve.index_bits + digit * digit_bits;
-        if (shift >= 64) break;
-        const auto digit_of = [&](Key key) { return std::size_t(key >> shift) & (base - 1); };
-        std::fill(starts.begin(), starts.end(), 0);
-        visit_range(0, sorted.size(), [&](std::size_t i) { ++starts[digit_of(curve.keys[i]) + 1]; });
-        for (std::size_t d = 0; d < base; ++d) starts[d + 1] += starts[d];
-        visit_range(0, sorted.size(), [&](std::size_t i) {
-            const Key key = curve.keys[i];
-            sorted[starts[digit_of(key)]++] = key;
-        });
-        curve.keys.swap(sorted);
-    }
-}
-
 // Nodes over points in order: halves of whole leaves.
 class PointBuilder {
   public:
-    PointBuilder(std::span<const double> points, int leaf_size, std::vector<TreeNode>& nodes)
+    PointBuilder(std::span<const Vec3d> points, int leaf_size, std::vector<TreeNode>& nodes)
         : points_(points), leaf_size_(leaf_size), nodes_(nodes) {}
     Bounds add_node(int begin, int end) {
         const std::size_t index = nodes_.size();
@@ -162,7 +107,7 @@ class PointBuilder {
         Bounds box = nothing;
         const int leaves = (end - begin + leaf_size_ - 1) / leaf_size_;
         if (leaves <= 1) {
-            box = bound_points(points_.subspan(3 * std::size_t(begin), 3 * std::size_t(end - begin)));
+            box = bound_points(points_.subspan(std::size_t(begin), std::size_t(end - begin)));
             poll_.step();
         } else {
             const int middle = begin + leaves / 2 * leaf_size_;
@@ -177,7 +122,7 @@ class PointBuilder {
     }
 
   private:
-    std::span<const double> points_;
+    std::span<const Vec3d> points_;
     int leaf_size_;
     std::vector<TreeNode>& nodes_;
     InterruptPoll poll_{1 << 8};
@@ -185,31 +130,18 @@ class PointBuilder {
 
 }  // namespace
 
-Bounds bound_points(std::span<const double> points) {
-    Bounds all = nothing;
-    visit_range(0, points.size() / 3, [&](std::size_t i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double x = points[3 * i + k];
-            all.low[k] = x < all.low[k] ? x : all.low[k];
-            all.high[k] = x > all.high[k] ? x : all.high[k];
-        }
+Bounds bound_points(std::span<const Vec3d> points) {
+    Vec3d low = {infinity, infinity, infinity}, high = {-infinity, -infinity, -infinity};  // in registers
+    visit_range(0, points.size(), [&](std::size_t i) {
+        const Vec3d& p = points[i];
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     });
-    return all;
+    return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
 }
 
-std::vector<double> sort_points(std::span<const double> points, const Bounds& all) {
-    Curve curve = place_on_curve(points, all);
-    sort_keys(curve);
-    std::vector<double> sorted(points.size());
-    visit_range(0, curve.keys.size(), [&](std::size_t i) {
-        const double* from = &points[3 * curve.point(i)];
-        for (std::size_t k = 0; k < 3; ++k) sorted[3 * i + k] = from[k];
-    });
-    return sorted;
-}
-
-std::vector<TreeNode> build_point_tree(std::span<const double> points, int leaf_size) {
-    const std::size_t n = points.size() / 3;
+std::vector<TreeNode> build_point_tree(std::span<const Vec3d> points, int leaf_size) {
+    const std::size_t n = points.size();
     std::vector<TreeNode> nodes;
     nodes.reserve(2 * n / std::size_t(leaf_size) + 2);
     if (n > 0) PointBuilder(points, leaf_size, nodes).add_node(0, int(n));

@@ -25,14 +25,12 @@ struct Tree {
 // Leaves have at most so many items. The boxes are rounded outward, and grown.
 Tree build_tree(const std::vector<Bounds>& items, int leaf_size, double grown);
 
-// Points, three numbers each, in the order of a curve that fills space (Morton 1966, "A computer oriented
-// geodetic data base"): neighbours on it are near each other. all: the box around them.
-std::vector<double> sort_points(std::span<const double> points, const Bounds& all);
-// The tree of points in such an order; `first` of nodes that are no leaves is the first point below them.
-std::vector<TreeNode> build_point_tree(std::span<const double> points, int leaf_size);
+// The tree of points of which neighbours are near each other; `first` of nodes that are no leaves is the
+// first point below them.
+std::vector<TreeNode> build_point_tree(std::span<const Vec3d> points, int leaf_size);
 
-// The box around points, three numbers each.
-Bounds bound_points(std::span<const double> points);
+// The box around points.
+Bounds bound_points(std::span<const Vec3d> points);
 // The box around all items.
 Bounds bound_all(const std::vector<Bounds>& items);
 

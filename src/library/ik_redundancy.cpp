@@ -113,6 +113,7 @@ RedundantSolver::RedundantSolver(const Chain& chain, const double* lower, const 
 }
 
 const Chain& RedundantSolver::chain() const { return state_->arm.chain; }
+RedundantSolver& RedundantSolver::without_limits() { return state_->without_limits(); }
 int RedundantSolver::redundant_joints() const { return state_->arm.redundancy_degree; }
 bool RedundantSolver::has_closed_form() const { return rank_of(state_->arm.locked.arm) > 1; }
 std::vector<int> RedundantSolver::default_locked() const {

@@ -56,7 +56,8 @@ class RedundantSolver {
     RedundantSolver(const Chain& chain, const double* lower, const double* upper, const double* weight);
 
     const Chain& chain() const;
-    int redundant_joints() const;  // beyond those that the tip needs to move as it can
+    RedundantSolver& without_limits();  // the same arm, made when first needed
+    int redundant_joints() const;       // beyond those that the tip needs to move as it can
     std::vector<int> default_locked() const;
     bool has_closed_form() const;                              // of the joints that move by default
     int redundant_with(const std::vector<int>& locked) const;  // the same, some locked

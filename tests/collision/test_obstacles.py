@@ -48,6 +48,18 @@ def test_a_cloud_is_its_balls_alone_in_a_scene(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+def test_a_crowded_cloud_is_its_balls(seed):
+    """Places of every distance from the middle, many of them equal, and one far away."""
+    rng, robot = np.random.default_rng(seed), random_robot(seed)
+    q = robot.random_configuration(100, rng=seed, reach=1.0)
+    points = rng.normal(size=(700, 3)) * 10.0 ** rng.uniform(-12.0, 0.0, (700, 1))
+    points[rng.random(700) < 0.3] = points[0]
+    points = np.concatenate([points, [[1e3, -20.0, 5.0]]])
+    balls = [cs.Sphere(0.03, p) for p in points]
+    agree(robot, cs.Scene([cs.PointCloud(points, radius=0.03)]), cs.Scene(balls), q)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_a_tree_of_many_obstacles_finds_what_parts_of_the_scene_find(seed):
     rng, robot = np.random.default_rng(seed), random_robot(seed)
     q = robot.random_configuration(200, rng=seed, reach=1.0)

@@ -309,36 +309,43 @@ inline void turn_free_wrist(const Plan& plan, const Posed& goal_form, Care care,
 }
 
 // If the wrist of three parallel axes is on the first axis, joint 1 may have any value that leaves the wrist
-// in reach of the planar arm. These values form arcs, one or more for each side of the wrist. Of each arc
-// without the preferred value t1, the solutions in its middle; of arcs shorter than 6° some are missed.
+// in reach of the planar arm. These values form arcs, one or more for each side of the wrist, or single ones.
+// Of each arc without the preferred value t1, the solutions in its middle.
 inline void turn_free_shoulder(const Plan& plan, const Posed& goal_form, const Care& care, double t1,
                                Solutions& out, const Posed& goal) {
-    constexpr int turns = 64;
     const Vec3d& p = goal_form.t;
     const double free = care.free * plan.form.length;
     if (p.x * p.x + p.y * p.y > free * free) return;
-    const auto turned = [&](int m) {
+    // Places from t1 once around: the ends, and the middles between them.
+    const ShoulderEnds ends = shoulder_ends(plan.parallel, goal_form, care, t1);
+    constexpr int most = 2 * ShoulderEnds::most + 1;
+    double place[most];
+    bool in_reach[2][most];
+    const int count = 2 * ends.count + 1;
+    for (int m = 0; m < count; ++m) {
+        const int k = m / 2;
+        const double low = k > 0 ? ends.angle[k - 1] : 0, high = k < ends.count ? ends.angle[k] : 2 * pi;
+        place[m] = m % 2 ? high : (low + high) / 2;
+    }
+    const auto turned = [&](double angle) {
         Care at = care;
-        const double angle = t1 + m * (2 * pi / turns);
-        at.unconstrained[0] = {std::cos(angle), std::sin(angle)};
+        at.unconstrained[0] = {std::cos(t1 + angle), std::sin(t1 + angle)};
         return at;
     };
-    bool in_reach[2][turns];
-    for (int m = 0; m < turns; ++m) {
-        const Branches<double> b = solve_closed_form(plan, goal_form, turned(m));
+    for (int m = 0; m < count; ++m) {
+        const Branches<double> b = solve_closed_form(plan, goal_form, turned(place[m]));
         for (int side = 0; side < 2; ++side) in_reach[side][m] = b.ok[2 * side] || b.ok[2 * side + 1];
     }
     for (int side = 0; side < 2; ++side)
-        for (int m = 1; m < turns; ++m) {
-            if (!in_reach[side][m] || in_reach[side][m - 1]) continue;
-            int end = m;
-            while (end < turns && in_reach[side][end]) ++end;
-            if (end == turns && in_reach[side][0]) break;
+        for (int m = 0; m < count; ++m) {
+            const int begin = m;
+            while (m < count && in_reach[side][m]) ++m;
+            if (m == begin || begin == 0 || m == count) continue;  // nothing, or joined to t1
             if (out.count + 2 > max_branches) {
                 out.complete = false;
                 return;
             }
-            const Care middle = turned((m + end - 1) / 2);
+            const Care middle = turned((place[begin] + place[m - 1]) / 2);
             closed_form_candidates(plan, goal_form, middle, out, goal, {2 * side, 2 * side + 2});
         }
 }

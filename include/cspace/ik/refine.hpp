@@ -415,7 +415,7 @@ CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double le
 template <class V>
 CSPACE_NOINLINE V descend_abreast(const Chain& chain, const Posed& goal, double length, V* q,
                                   int most_steps) {
-    constexpr double stride = 0.3, near = 1e-9, growth = 4, half_turn = 1e-12;
+    constexpr double stride = 0.3, near = 1e-9, growth = 4, least_damping = 1e-4, half_turn = 1e-12;
     const Pose<V> goals = fill_pose<V>(goal);
     V A[6][6] = {}, b[6] = {}, next[6], damping = fill_lanes<V>(0.0), best2 = fill_lanes<V>(1e300);
     for (int i = 0; i < 6; ++i) next[i] = q[i];
@@ -432,7 +432,7 @@ CSPACE_NOINLINE V descend_abreast(const Chain& chain, const Posed& goal, double 
         best2 = select_lanes(closer, size2, best2);
         for (int i = 0; i < 6; ++i) q[i] = select_lanes(closer, next[i], q[i]);
         if (!any(best2 > near * near) || step == most_steps) break;
-        damping = select_lanes(closer, 0.1 * damping, max(growth * damping, fill_lanes<V>(1e-4)));
+        damping = select_lanes(closer, 0.1 * damping, max(growth * damping, fill_lanes<V>(least_damping)));
         for (int i = 0; i < 6; ++i)
             write_twist(kinematics::joint_twist(chain.prismatic[i], axis[i], point[i], T.t), 1 / length,
                         J[i]);

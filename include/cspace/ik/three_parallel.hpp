@@ -9,6 +9,7 @@
 #include "cspace/ik/dh_form.hpp"
 #include "cspace/ik/solution.hpp"
 #include "cspace/ik/spherical_wrist.hpp"
+#include "cspace/math/wrapping.hpp"
 
 namespace cspace::ik {
 
@@ -27,6 +28,14 @@ struct BehindShoulder {
     Turn<V> t1;
     WristView<V> wrist;
     V x, y;
+};
+
+// Values of a free joint 1 at which a side of the wrist may come into reach or leave it: how far behind a
+// first value, the nearest first.
+struct ShoulderEnds {
+    static constexpr int most = 12;
+    int count = 0;
+    double angle[most];
 };
 
 // Candidate sums, the best first.
@@ -139,13 +148,18 @@ inline void insert_sorted(FreeSums& out, double sum, double rank) {
 }
 
 // The sums at which the target, seen from joint 2 at (x, y) less Rz(sum) (x4, y4), is at distance `reach`.
-// First come values slightly to either side of them, where the elbow is bent, those nearest to
+inline TwoAngles<double> solve_reach(const ThreeParallel& arm, double x, double y, double reach,
+                                     const Care& care) {
+    const double a = 2 * (x * arm.x4 + y * arm.y4), b = 2 * (y * arm.x4 - x * arm.y4);
+    const double r = x * x + y * y + arm.x4 * arm.x4 + arm.y4 * arm.y4 - reach * reach;
+    return linear_equation<double>(a, b, r, arm.length * arm.length, care, {1, 0});
+}
+
+// First come values slightly to either side of these sums, where the elbow is bent, those nearest to
 // `unconstrained` first; then the sums themselves.
 inline void add_ends(FreeSums& out, const ThreeParallel& arm, double x, double y, double reach,
                      double unconstrained, const Care& care) {
-    const double a = 2 * (x * arm.x4 + y * arm.y4), b = 2 * (y * arm.x4 - x * arm.y4);
-    const double r = x * x + y * y + arm.x4 * arm.x4 + arm.y4 * arm.y4 - reach * reach;
-    const TwoAngles<double> ends = linear_equation<double>(a, b, r, arm.length * arm.length, care, {1, 0});
+    const TwoAngles<double> ends = solve_reach(arm, x, y, reach, care);
     if (!ends.ok) return;
     const double one = angle_of(ends.root[0]), other = angle_of(ends.root[1]);
     const double gap = std::fabs(short_way(other - one));
@@ -171,6 +185,37 @@ inline FreeSums free_sums(const ThreeParallel& arm, const Posed& goal, int i, do
     const Vec3d p = undo_joint(t1, arm.ca1, arm.sa1, goal.t);
     for (const double reach : {arm.l2 + arm.l3, arm.l2 - arm.l3})
         add_ends(out, arm, p.x - arm.a1, p.y, reach, unconstrained, care);
+    return out;
+}
+
+// For a wrist on the first axis, which joint 1 does not move. The planar arm reaches it for sums t2 + t3 + t4
+// between those of solve_reach. Joint 1 turns the last axis z, and z · (axis 5) = cos α5 where the sum is one
+// of these; the angle t5 exists while z · (axis 4) is within the cosines of α4 ± α5. Each is a linear
+// equation in the cosine and sine of t1.
+inline ShoulderEnds shoulder_ends(const ThreeParallel& arm, const Posed& goal, const Care& care,
+                                  double first) {
+    const Vec3d z = matrix_column(goal.R, 2), p = undo_joint<double>({1, 0}, arm.ca1, arm.sa1, goal.t);
+    const Vec3d of_cosine = {z.x, arm.ca1 * z.y, -arm.sa1 * z.y},
+                of_sine = {z.y, -arm.ca1 * z.x, arm.sa1 * z.x}, constant = {0, arm.sa1 * z.z, arm.ca1 * z.z};
+    ShoulderEnds out;
+    const auto add_where = [&](const Vec3d& axis, double cosine) {
+        const TwoAngles<double> found = linear_equation<double>(
+            dot(axis, of_cosine), dot(axis, of_sine), cosine - dot(axis, constant), 1, care, {1, 0});
+        if (!found.ok) return;
+        for (const Turn<double>& t1 : found.root) {
+            const double angle = wrap_above(angle_of(t1) - first, 0);
+            int at = out.count++;
+            for (; at > 0 && out.angle[at - 1] > angle; --at) out.angle[at] = out.angle[at - 1];
+            out.angle[at] = angle;
+        }
+    };
+    for (const double reach : {arm.l2 + arm.l3, arm.l2 - arm.l3}) {
+        const TwoAngles<double> sums = solve_reach(arm, p.x - arm.a1, p.y, reach, care);
+        if (!sums.ok) continue;
+        for (const Turn<double>& sum : sums.root)
+            add_where({arm.last.sa4 * sum.s, -arm.last.sa4 * sum.c, arm.last.ca4}, arm.last.ca5);
+    }
+    for (const double cosine : {arm.last.c_sum, arm.last.c_diff}) add_where({0, 0, 1}, cosine);
     return out;
 }
 

@@ -141,6 +141,8 @@ def join_parts(parts: list[Array], width: int) -> tuple[Array, npt.NDArray[np.in
     """The rows (n, width) of all parts below each other, contiguous, and how many each part has."""
     rows = [np.ascontiguousarray(part).reshape(-1, width) for part in parts]
     sizes = np.array([len(part) for part in rows], dtype=np.int64)
+    if len(rows) == 1:
+        return rows[0], sizes
     return np.concatenate(rows) if rows else np.empty((0, width)), sizes
 
 

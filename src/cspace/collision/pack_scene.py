@@ -84,7 +84,7 @@ def pack_obstacles(scene: Scene, T_base_world: Array) -> PackedScene:
         shape = obstacles[number]
         T = T_base_world @ shape.pose
         if isinstance(shape, PointCloud):
-            clouds.append((number, (transform_points(T, shape.points), shape.radius)))
+            clouds.append((number, (place_points(T, shape.points), shape.radius)))
         else:
             meshes.append((number, place_surface(shape, T)))
     return PackedScene(
@@ -97,6 +97,11 @@ def pack_obstacles(scene: Scene, T_base_world: Array) -> PackedScene:
         *split_owners(meshes),
         *split_owners(clouds),
     )
+
+
+def place_points(T: Array, points: Array) -> Array:
+    """Points (n, 3) at a pose T (4, 4); the given array where nothing moves, since clouds are large."""
+    return points if np.array_equal(T, IDENTITY) else transform_points(T, points)
 
 
 def split_owners(found: list[tuple[int, Any]]) -> tuple[tuple[Any, ...], Numbers]:

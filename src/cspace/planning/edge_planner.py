@@ -134,11 +134,10 @@ class EdgePlanner(ArmPlanner):
     def _name_plan(self, space: ArmSpace, rows: tuple[Array, Array], found: Any) -> Plan:
         """The Plan of what the core found, an ArmPlan."""
         status, reason = self._explain_end(space, rows, found)
-        path = found.path
-        return Plan(
+        return Plan._of_fields(
             status=status,
             reason=reason,
-            path=path,
+            path=found.path,
             cost=found.cost,
             start=found.start,
             goal=found.goal,
@@ -163,7 +162,8 @@ class EdgePlanner(ArmPlanner):
 
     def _list_stats(self, space: ArmSpace, found: Any) -> dict[str, Any]:
         """What the search did."""
-        return dict(found.stats)
+        stats: dict[str, Any] = found.stats
+        return stats
 
 
 class FoundPlans(PlanSource):
@@ -205,8 +205,7 @@ def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan, appr
     end = ENDS[found.status]
     status = STATUS_OF_END[end]
     if status == "found":
-        corners = len(found.path)
-        return status, f"found a path of length {shown(found.cost)} with {corners} corners"
+        return status, f"found a path of length {shown(found.cost)} with {len(found.path)} corners"
     if status == "invalid_start":
         return status, explain_rows(space, rows[0], found.starts, "start")
     if status == "invalid_goal":

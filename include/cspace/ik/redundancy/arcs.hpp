@@ -214,13 +214,19 @@ inline void trace_loop(Tracer& tracer, const double* q) {
 }
 // Traces the arcs through the solutions at sampled values of a joint. A joint whose value the goal determines
 // has no samples.
-inline void trace_loops_at(Tracer& tracer, const LockedArm& locked, int joint, int looks) {
+inline void trace_loops_at(Tracer& tracer, const LimitArms& arms, int joint) {
+    const LockedArm& locked = arms.locked[joint];
     if (!is_solvable(locked.arm)) return;
     const Domain domain = domain_of(*tracer.arm, joint, tracer.goal);
+    const int looks = looks_at(arms, joint);
+    const std::vector<Arm>& made = arms.at_look[joint];
     double at[max_joints], q[max_joints];
     for (int look = 0; look < looks; ++look) {
-        at[joint] = domain.lower + (look + 0.5) / looks * (domain.upper - domain.lower);
-        const Solutions found = solve_locked(locked, tracer.goal, at, nullptr);
+        at[joint] = middle_of_part(domain, look, looks);
+        const Solutions found =
+            !made.empty()    ? solve_arm_briefly(made[std::size_t(look)], tracer.goal)
+            : locked.at_ends ? solve_arm_briefly(locked.arm, goal_between_ends(locked, tracer.goal, at))
+                             : solve_locked(locked, tracer.goal, at, nullptr);
         for (int j = 0; j < found.count; ++j) {
             whole_row(locked, at, found.q[j], q);
             trace_loop(tracer, q);
@@ -290,11 +296,12 @@ inline void spread_evenly(int k, int n, double* q) {
 // large.
 inline void trace_loops_by_descent(Tracer& tracer) {
     constexpr int starts = 48;
+    constexpr DescentRule rule = {32, 0.8};
     const Redundant& arm = *tracer.arm;
     double q[starts][max_joints];
     for (int k = 0; k < starts; ++k) spread_evenly(k, arm.chain.n, q[k]);
     bool reached[starts];
-    descend_to_manifold(arm.chain, arm.rank, tracer.goal, arm.length, q, starts, reached);
+    descend_to_manifold(arm.chain, arm.rank, tracer.goal, arm.length, q, starts, reached, rule);
     for (int k = 0; k < starts; ++k)
         if (reached[k]) trace_loop(tracer, q[k]);
 }
@@ -303,18 +310,16 @@ inline void trace_loops_by_descent(Tracer& tracer) {
 // because a loop that hardly moves one joint moves others; not those that hardly any self-motion moves. At
 // the sampled values of the parameter the intervals are counted as a check.
 inline void trace_loops(Tracer& tracer, const Sweep& sweep, const LimitArms& arms, SweptRows* swept) {
-    constexpr int looks = loop_looks, other_looks = 4;
+    constexpr int looks = loop_looks;
     const Domain domain = domain_of(*tracer.arm, tracer.parameter, tracer.goal);
     double values[looks];
-    for (int k = 0; k < looks; ++k)
-        values[k] = domain.lower + (k + 0.5) / looks * (domain.upper - domain.lower);
+    for (int k = 0; k < looks; ++k) values[k] = middle_of_part(domain, k, looks);
     sweep_values(sweep, values, looks, [&](int k, const SweptRows& rows) {
         swept[k] = rows;
         for (int j = 0; j < rows.count; ++j) trace_loop(tracer, rows.q[j]);
     });
     for (int joint = 0; joint < tracer.arm->chain.n; ++joint)
-        if (joint != tracer.parameter && !arms.rests[joint])
-            trace_loops_at(tracer, arms.locked[joint], joint, joint == arms.freest ? looks : other_looks);
+        if (joint != tracer.parameter && !arms.rests[joint]) trace_loops_at(tracer, arms, joint);
     trace_loops_by_descent(tracer);
     for (int k = 0; k < looks && tracer.out->complete; ++k)
         tracer.out->complete = agrees_with_solutions(tracer, swept[k], values[k]);

@@ -9,22 +9,24 @@
 
 namespace cspace::ik {
 
-inline constexpr int loop_looks = 24;  // values of the parameter at which loops are looked for
-
 // All points of the traced curve, and the solutions at sampled values.
 struct Trail {
     static constexpr int room = 12000;
     int count = 0;
     bool first_of_arc[room];
-    double q[room][max_joints], length[room];  // of the chord that ends there
-    bool used[LimitPoints::room];              // limit points that an arc started or ended in
+    double q[room][max_joints], length[room];  // length: of the chord that ends there
+    // The joints once more, one after the other, and how far from a point its chord and the chord's tube
+    // reach; negative where an arc begins.
+    double joint[max_joints][room], reach[room];
+    bool used[LimitPoints::room];  // limit points that an arc started or ended in
     SweptRows swept[loop_looks];
 };
 
 // The third and fourth derivative of the curve at the point that a step led to, from the tangents and bends
-// at both of its ends; zero where the step was too short to tell.
+// at both of its ends, and how much the Jacobian changed per length; zero where the step was too short to
+// tell.
 struct Ahead {
-    double third[max_joints] = {}, fourth[max_joints] = {};
+    double third[max_joints] = {}, fourth[max_joints] = {}, change = 0;
 };
 
 struct Tracer {
@@ -72,10 +74,10 @@ inline double part_of_chord(const Chain& chain, const double* from, const double
     return max(0.0, part);
 }
 
-// Upper bound of a step: 0.25 rad for revolute joints, in proportion for prismatic joints where the curve is
+// Upper bound of a step: 0.35 rad for revolute joints, in proportion for prismatic joints where the curve is
 // long.
 inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
-    constexpr double longest = 0.25, steps_across = 64;
+    constexpr double longest = 0.35, steps_across = 64;
     if (!(tracer.far > 0)) return longest;
     const double slide = max(longest, tracer.far / steps_across);
     double most = 0;
@@ -103,30 +105,33 @@ inline Ahead look_ahead(const CurvePoint& from, const CurvePoint& to, int n) {
 }
 
 // Tries a step of length `stride`. Returns true if it stayed close to the curve: the bend alone must lead
-// close to its end, for then the chord is close as well. One Newton step is enough where it is so small that
-// the next one would be rounding to what follows, unless the parameter all but turns.
+// close to its end, for then the chord is close as well. Newton steps end with one so small that the next one
+// would be rounding to what follows, unless the parameter all but turns.
 inline bool try_step(const Tracer& tracer, const CurvePoint& from, const Ahead& ahead, double stride,
                      double most_off, CurvePoint& to) {
     constexpr double small = 1e-4, turning = 0.01, third = 1.0 / 6, fourth = 1.0 / 24;
     const Redundant& arm = *tracer.arm;
     const int n = arm.chain.n;
-    double bent[max_joints], guess[max_joints];
+    double bent[max_joints], before[max_joints];
     predict_along(from.q, from.tangent, from.bend, stride, n, bent);
     const double h3 = stride * stride * stride;
-    for (int i = 0; i < n; ++i) {
-        guess[i] = bent[i] + h3 * (third * ahead.third[i] + fourth * stride * ahead.fourth[i]);
-        to.q[i] = guess[i];
-    }
+    for (int i = 0; i < n; ++i)
+        to.q[i] = bent[i] + h3 * (third * ahead.third[i] + fourth * stride * ahead.fourth[i]);
     const auto away_from = [&](const double* predicted) {
         double off = 0;
         for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - predicted[i]));
         return off;
     };
-    onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, to);
-    const bool once = away_from(guess) < small && std::fabs(to.tangent[tracer.parameter]) > turning;
-    if (!once) put_on_curve(tracer, to);
+    bool is_settled = false;
+    for (int pass = 0; pass < 3 && !is_settled; ++pass) {
+        for (int i = 0; i < n; ++i) before[i] = to.q[i];
+        onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, to);
+        is_settled = away_from(before) < small;
+    }
+    is_settled = is_settled && std::fabs(to.tangent[tracer.parameter]) > turning;
+    if (!is_settled) put_on_curve(tracer, to);
     orient_tangent(to.tangent, from.tangent, n);
-    return (once || to.error < tolerance::reached) && away_from(bent) < most_off * stride &&
+    return (is_settled || to.error < tolerance::reached) && away_from(bent) < most_off * stride &&
            dot_n(to.tangent, from.tangent, n) > 0.95;
 }
 
@@ -140,6 +145,7 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, Ahead& ahea
     const int n = tracer.arm->chain.n;
     const double bend = std::sqrt(dot_n(from.bend, from.bend, n));
     stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + straight));
+    if (ahead.change > 0) stride = min(stride, 0.9 * most_change / ahead.change);
     bool crosses = false;
     while (stride > shortest) {
         if (!try_step(tracer, from, ahead, stride, most_correction, to)) {
@@ -147,10 +153,13 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, Ahead& ahea
             ahead = {};
             continue;
         }
-        const double there = jacobian_change(from, to, n);
-        const double change = there < most_change ? there : min(there, jacobian_change(to, from, n));
+        const auto changed =
+            n == 7 && tracer.arm->rank == 6 ? jacobian_change<7, double> : jacobian_change<0, double>;
+        const double there = changed(from, to, n);
+        const double change = there < most_change ? there : min(there, changed(to, from, n));
         if (change < most_change) {
             ahead = look_ahead(from, to, n);
+            ahead.change = change / stride;
             return true;
         }
         if (!crosses && stride < crossing) {
@@ -244,9 +253,8 @@ inline int go_back_to_limit(const Tracer& tracer, CurvePoint& at, int& side) {
 // The joint that stops the step from `at` to `next`, which then ends there; −1 if none does.
 inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint& next, int& side) {
     const Chain& chain = tracer.arm->chain;
-    const int stop = go_back_to_limit(tracer, next, side);
     const int passed = point_passed(tracer, at, next);
-    if (passed < 0) return stop;
+    if (passed < 0) return go_back_to_limit(tracer, next, side);
     const LimitPoint& point = tracer.points->point[passed];
     for (int i = 0; i < chain.n; ++i) next.q[i] = at.q[i] + joint_difference(chain, i, point.q[i] - at.q[i]);
     put_on_curve(tracer, next);
@@ -313,26 +321,33 @@ inline void record_point(Tracer& tracer, const double* q, bool first) {
         tracer.out->complete = false;
         return;
     }
+    constexpr double beyond = 1.1;  // of a chord: the chord and its tube
     const int k = trail.count++, n = tracer.arm->chain.n;
     double length2 = 0;
     for (int i = 0; i < n; ++i) {
-        trail.q[k][i] = q[i];
+        trail.q[k][i] = trail.joint[i][k] = q[i];
         if (!first) length2 += (q[i] - trail.q[k - 1][i]) * (q[i] - trail.q[k - 1][i]);
     }
     trail.first_of_arc[k] = first;
     trail.length[k] = std::sqrt(length2);
+    trail.reach[k] = first ? -1 : beyond * trail.length[k];
 }
 
 // Whether a configuration lies on a traced arc, from trail point `first` on.
 inline bool is_on_trail(const Tracer& tracer, const double* q, int first = 0) {
-    constexpr double beyond = 1.1;  // of a chord: the chord and its tube
+    using V = Pack<4>;
     const Trail& trail = *tracer.trail;
     const Chain& chain = tracer.arm->chain;
-    for (int k = first + 1; k < trail.count; ++k) {
-        bool near_by = !trail.first_of_arc[k];
-        for (int i = 0; i < chain.n && near_by; ++i)
-            near_by = std::fabs(joint_difference(chain, i, q[i] - trail.q[k][i])) <= beyond * trail.length[k];
-        if (near_by && part_of_chord(chain, trail.q[k - 1], trail.q[k], q) >= 0) return true;
+    for (int start = first + 1; start < trail.count; start += 4) {
+        const int count = std::min(4, trail.count - start);
+        const V reach = load_lanes<V>(trail.reach + start, count);
+        unsigned near_by = (1u << count) - 1;
+        for (int i = 0; i < chain.n && near_by; ++i) {
+            const V gap = q[i] - load_lanes<V>(trail.joint[i] + start, count);
+            near_by &= bits_of(abs(joint_difference(chain, i, gap)) <= reach);
+        }
+        for (int k = start; near_by; ++k, near_by >>= 1)
+            if (near_by & 1 && part_of_chord(chain, trail.q[k - 1], trail.q[k], q) >= 0) return true;
     }
     return false;
 }

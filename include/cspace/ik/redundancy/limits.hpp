@@ -2,15 +2,24 @@
 // and the remaining six joints are solved. Every solution is an exact point of the boundary.
 #pragma once
 
+#include <vector>
+
 #include "cspace/ik/redundancy/redundant_arm.hpp"
 
 namespace cspace::ik {
+
+// Values of a joint at which closed arcs are looked for: of the parameter and of the freest joint, and of any
+// other.
+inline constexpr int loop_looks = 24, other_looks = 4;
 
 // The arms with one joint locked, for arms with one redundant joint. They are built when intervals are first
 // requested.
 struct LimitArms {
     LockedArm locked[max_joints];
-    Arm at_limit[max_joints][2];  // where the joint stands between others: its arm at lower and upper limit
+    // Where the joint stands between others: its arm at lower and upper limit, and where closed arcs are
+    // looked for.
+    Arm at_limit[max_joints][2];
+    std::vector<Arm> at_look[max_joints];
     bool rests[max_joints] = {};  // whether self-motions hardly move it
     int freest = -1;              // of the joints that nothing stops the one that self-motions move most
 };
@@ -59,6 +68,26 @@ inline void find_freest_joint(const Redundant& arm, LimitArms& out) {
     for (int i = 0; i < arm.chain.n; ++i) out.rests[i] = moves[i] < hardly * most;
 }
 
+inline int looks_at(const LimitArms& arms, int joint) {
+    return joint == arms.freest ? loop_looks : other_looks;
+}
+// The middle of a part of so many equal parts.
+inline double middle_of_part(const Domain& domain, int part, int parts) {
+    return domain.lower + (part + 0.5) / parts * (domain.upper - domain.lower);
+}
+
+// The arms with an inner revolute joint where closed arcs are looked for.
+inline void make_look_arms(const Redundant& arm, int joint, LimitArms& out) {
+    const int looks = looks_at(out, joint);
+    const Domain domain = domain_of(arm, joint, arm.chain.tip);
+    double at[max_joints];
+    out.at_look[joint].reserve(std::size_t(looks));
+    for (int look = 0; look < looks; ++look) {
+        at[joint] = middle_of_part(domain, look, looks);
+        out.at_look[joint].push_back(arm_at(out.locked[joint], at));
+    }
+}
+
 // out: as LimitArms{}. It is large, so the caller provides the memory.
 inline void make_limit_arms(const Redundant& arm, LimitArms& out) {
     double at[max_joints];
@@ -74,6 +103,8 @@ inline void make_limit_arms(const Redundant& arm, LimitArms& out) {
             there[i] = limit_of(arm, i, side);
             out.at_limit[i][side] = arm_at(out.locked[i], there);
         }
+        const bool is_looked_at = !out.locked[i].at_ends && is_solvable(out.locked[i].arm) && !out.rests[i];
+        if (is_looked_at && !arm.chain.prismatic[i]) make_look_arms(arm, i, out);
     }
 }
 

@@ -125,6 +125,15 @@ inline Solutions solve_arm(const Arm& arm, const Posed& goal, const double* unco
     return out;
 }
 
+// The same where a certified list is enough, empty or not: no second look at what is hard to see.
+inline Solutions solve_arm_briefly(const Arm& arm, const Posed& goal) {
+    if (!arm.is_general || arm.has_plan || arm.plan.chain.n != 6 || arm.general.plan.slides > 0)
+        return solve_arm(arm, goal, nullptr);
+    Solutions out;
+    arm.general.solve(arm.general, {goal.R, (1 / arm.general.plan.length) * goal.t}, out);
+    return out.complete && !out.crowded ? out : solve_arm(arm, goal, nullptr);
+}
+
 // Every solution of the moving joints, with the locked joints at their values `at`. unconstrained (null, or
 // of the whole chain): the values of joints that the goal leaves free.
 CSPACE_ONCE Solutions solve_locked(const LockedArm& locked, const Posed& goal, const double* at,

@@ -19,7 +19,8 @@ struct ArcStarts {
     static constexpr int room = 192;
     int count = 0;
     double q[room][max_joints], distance[room];
-    bool is_reached[room];  // from the start before it on its arc
+    double joint[max_joints][room];  // the joints once more, one after the other
+    bool is_reached[room];           // from the start before it on its arc
 };
 
 // Points near local minima of the distance. No point between the two points of the arc that they lie between
@@ -69,7 +70,7 @@ inline void add_arc_start(const Redundant& arm, const double* q, double distance
     for (int k = 0; k < out.count; ++k)
         if (std::fabs(out.distance[k] - distance) < same && joint_gap(arm.chain, out.q[k], q) < same) return;
     const int k = out.count++;
-    for (int i = 0; i < arm.chain.n; ++i) out.q[k][i] = q[i];
+    for (int i = 0; i < arm.chain.n; ++i) out.q[k][i] = out.joint[i][k] = q[i];
     out.distance[k] = distance;
     out.is_reached[k] = false;
 }
@@ -120,16 +121,23 @@ inline void add_arc_minimum(const ArcSearch& search, const double* from, const d
 inline bool passes_start(const ArcSearch& search, const double* from, const double* to, int own, int steps,
                          double distance, double longest) {
     constexpr double beyond = 1.1, aside = 1.3;  // of a chord: the chord and its tube
+    using V = Pack<4>;
     ArcStarts& starts = *search.starts;
     const Chain& chain = search.arm->chain;
     bool passed = false;
-    for (int k = 0; k < starts.count; ++k) {
-        if (std::fabs(starts.distance[k] - distance) > aside * longest) continue;
-        bool near_by = k != own || steps > 0;
-        for (int i = 0; i < chain.n && near_by; ++i)
-            near_by = std::fabs(joint_difference(chain, i, starts.q[k][i] - to[i])) <= beyond * longest;
-        if (!near_by || !(part_of_chord(chain, from, to, starts.q[k]) > 0)) continue;
-        starts.is_reached[k] = passed = true;
+    for (int first = 0; first < starts.count; first += 4) {
+        const int count = std::min(4, starts.count - first);
+        const V off = load_lanes<V>(starts.distance + first, count) - distance;
+        unsigned near_by = bits_of(abs(off) <= aside * longest) & ((1u << count) - 1);
+        for (int i = 0; i < chain.n && near_by; ++i) {
+            const V gap = load_lanes<V>(starts.joint[i] + first, count) - to[i];
+            near_by &= bits_of(abs(joint_difference(chain, i, gap)) <= beyond * longest);
+        }
+        for (int k = first; near_by; ++k, near_by >>= 1) {
+            if (!(near_by & 1) || (k == own && steps == 0)) continue;
+            if (!(part_of_chord(chain, from, to, starts.q[k]) > 0)) continue;
+            starts.is_reached[k] = passed = true;
+        }
     }
     return passed;
 }
@@ -183,11 +191,12 @@ CSPACE_INLINE void look_ahead(ArcLanes<V>& arcs, int size, mask_of<V> moved) {
 }
 
 // Tries a step of every lane. Returns the lanes in which it stayed close to the arc, as in step_along;
-// shorter: the factor of the others' next strides.
+// factor: of the next strides, at most, by how the Jacobian changed.
 template <int N, class V>
 CSPACE_INLINE mask_of<V> try_steps(const ArcSearch& search, const Pose<V>& goal, ArcLanes<V>& arcs,
-                                   mask_of<V> begins, V& shorter) {
+                                   mask_of<V> begins, V& factor) {
     constexpr double small = 1e-4, third = 1.0 / 6, fourth = 1.0 / 24, most_change = 0.5;
+    constexpr double still = 1e-3;  // a change that restrains no step
     const Redundant& arm = *search.arm;
     const int n = size_or<N>(arm.chain.n);
     CurvePoints<V>&at = arcs.at, &to = arcs.to;
@@ -215,14 +224,16 @@ CSPACE_INLINE mask_of<V> try_steps(const ArcSearch& search, const Pose<V>& goal,
     const mask_of<V> close = moved <= small && away < most_correction * h && cosine > 0.95;
     V change = jacobian_change<N>(at, to, n);
     if (any(close && !(change < most_change))) change = min(change, jacobian_change<N>(to, at, n));
-    shorter = select_lanes(close, max(fill_lanes<V>(0.25), 0.8 * most_change / change), fill_lanes<V>(0.5));
-    return begins || (close && change < most_change);
+    const mask_of<V> moves = begins || (close && change < most_change);
+    const V usual = max(fill_lanes<V>(0.25), 0.8 * most_change / (change + still));
+    factor = min(fill_lanes<V>(2.0), select_lanes(close, usual, fill_lanes<V>(0.5)));
+    return moves;
 }
 
 // Takes the new points in the lanes `moved`, and the strides of all.
 template <int N, class V>
-CSPACE_INLINE void take_steps(ArcLanes<V>& arcs, int size, mask_of<V> moved, mask_of<V> begins, V shorter) {
-    constexpr double first = 0.05, longest = 0.25, straight = 1e-3;
+CSPACE_INLINE void take_steps(ArcLanes<V>& arcs, int size, mask_of<V> moved, mask_of<V> begins, V factor) {
+    constexpr double first = 0.05, longest = 0.35, straight = 1e-3;
     const int n = size_or<N>(size);
     look_ahead<N>(arcs, n, moved && !begins);
     V fastest = fill_lanes<V>(0.0), bend2 = fastest;
@@ -239,9 +250,9 @@ CSPACE_INLINE void take_steps(ArcLanes<V>& arcs, int size, mask_of<V> moved, mas
         bend2 = mul_add(arcs.at.bend[i], arcs.at.bend[i], bend2);
     }
     for (int k = 0; k < 6; ++k) take(arcs.at.split.diagonal[k], arcs.to.split.diagonal[k]);
-    const V longer = select_lanes(begins, fill_lanes<V>(first), 2.0 * arcs.stride);
+    const V next = select_lanes(begins, fill_lanes<V>(first), factor * arcs.stride);
     const V most = min(longest / fastest, 0.25 / (sqrt(bend2) + straight));
-    arcs.stride = select_lanes(moved, min(longer, most), shorter * arcs.stride);
+    arcs.stride = select_lanes(moved, min(next, most), factor * arcs.stride);
 }
 
 // Follows the arcs from all starts in one direction.
@@ -262,8 +273,8 @@ inline void follow_arcs(const ArcSearch& search, const Pose<V>& goal, ArcLanes<V
         }
         if (!active) return;
         const mask_of<V> begins = begun < 0.0;
-        V shorter, square = fill_lanes<V>(0.0), slope = square;
-        const mask_of<V> moved = try_steps<N>(search, goal, arcs, begins, shorter);
+        V factor, square = fill_lanes<V>(0.0), slope = square;
+        const mask_of<V> moved = try_steps<N>(search, goal, arcs, begins, factor);
         for (int i = 0; i < size_or<N>(arm.chain.n); ++i) {
             const V gap = gap_from_seed(arm.chain, *search.target, i, arcs.to.q[i]);
             const V weighted = arm.weight[i] * gap;
@@ -282,7 +293,7 @@ inline void follow_arcs(const ArcSearch& search, const Pose<V>& goal, ArcLanes<V
             else
                 ends |= unsigned(!goes_on(search, arcs, l, get_lane(slope, l), get_lane(distance, l))) << l;
         }
-        take_steps<N>(arcs, arm.chain.n, moved, begins, shorter);
+        take_steps<N>(arcs, arm.chain.n, moved, begins, factor);
         arcs.slope = select_lanes(moved, slope, arcs.slope);
         arcs.distance = select_lanes(moved, distance, arcs.distance);
         for (int l = 0; l < arcs.lanes; ++l)
