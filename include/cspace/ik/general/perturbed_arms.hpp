@@ -96,6 +96,21 @@ inline void solve_perturbed(const GeneralArm& arm, const Posed& goal, Solutions&
     out.complete = out.complete && out.count % 2 == 0;
 }
 
+// Whether the solutions of two goals tilted to opposite sides became those of the goal: one each, and two of
+// one side, none of the other, a double root, where a pair of them merges and is lost.
+inline bool accounts_for_tilts(const GeneralPlan& plan, const Posed& goal, const Led (&led)[2],
+                               const Solutions& out) {
+    int sum[2] = {}, all = 0;
+    for (int m = 0; m < out.count; ++m) {
+        const int a = led[0].from[m], b = led[1].from[m];
+        const bool twice = (a == 2 && b == 0) || (a == 0 && b == 2);
+        if (!(a == 1 && b == 1) && !(twice && is_double(plan, goal, out.q[m]))) return false;
+        sum[0] += a, sum[1] += b;
+        all += twice ? 2 : 1;
+    }
+    return all % 2 == 0 && led[0].count == sum[0] && led[1].count == sum[1];
+}
+
 // Goals that are special to an arm, say a tool held along its first axis, have solutions that share every
 // hidden angle: goals tilted to either side have not, if by enough. True if both certify their solutions, and
 // these become those of `out`, one each.
@@ -113,9 +128,7 @@ inline bool certify_by_tilting(const GeneralPlan& plan, const Posed& goal, doubl
         if (!beside.complete) return false;
         led[k] = lead_to_goal(plan, goal, beside, out);
     }
-    bool one_each = out.count % 2 == 0 && led[0].count == out.count && led[1].count == out.count;
-    for (int m = 0; m < out.count; ++m) one_each = one_each && led[0].from[m] == 1 && led[1].from[m] == 1;
-    return one_each;
+    return out.count > 0 && accounts_for_tilts(plan, goal, led, out);
 }
 
 // Whether descents from all over the joints come to solutions that `out` lacks: families attract them.
