@@ -118,7 +118,9 @@ def chain_of(arm: ExportedArm) -> dict[str, Any]:
 def plan_of(arm: ExportedArm) -> dict[str, Any]:
     if arm.kind == "locked":
         return chain_of(arm)
-    return {**arm.plan, "solve": "&ik::solve_general"} if arm.kind == "general" else arm.plan
+    if arm.kind != "general":
+        return arm.plan
+    return {**arm.plan, "solve": "&ik::solve_general", "propose": "&ik::propose_solutions"}
 
 
 def solver_source(arm: ExportedArm) -> tuple[list[str], str]:

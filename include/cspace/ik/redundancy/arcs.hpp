@@ -219,14 +219,13 @@ inline void trace_loops_at(Tracer& tracer, const LimitArms& arms, int joint) {
     if (!is_solvable(locked.arm)) return;
     const Domain domain = domain_of(*tracer.arm, joint, tracer.goal);
     const int looks = looks_at(arms, joint);
-    const std::vector<Arm>& made = arms.at_look[joint];
     double at[max_joints], q[max_joints];
     for (int look = 0; look < looks; ++look) {
         at[joint] = middle_of_part(domain, look, looks);
         const Solutions found =
-            !made.empty()    ? solve_arm_briefly(made[std::size_t(look)], tracer.goal)
-            : locked.at_ends ? solve_arm_briefly(locked.arm, goal_between_ends(locked, tracer.goal, at))
-                             : solve_locked(locked, tracer.goal, at, nullptr);
+            arms.has_looks[joint] ? solve_arm_briefly(arm_of_look(arms, joint, look), tracer.goal)
+            : locked.at_ends      ? solve_arm_briefly(locked.arm, goal_between_ends(locked, tracer.goal, at))
+                                  : solve_locked(locked, tracer.goal, at, nullptr);
         for (int j = 0; j < found.count; ++j) {
             whole_row(locked, at, found.q[j], q);
             trace_loop(tracer, q);

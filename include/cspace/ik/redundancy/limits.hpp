@@ -2,8 +2,6 @@
 // and the remaining six joints are solved. Every solution is an exact point of the boundary.
 #pragma once
 
-#include <vector>
-
 #include "cspace/ik/redundancy/redundant_arm.hpp"
 
 namespace cspace::ik {
@@ -19,7 +17,8 @@ struct LimitArms {
     // Where the joint stands between others: its arm at lower and upper limit, and where closed arcs are
     // looked for.
     Arm at_limit[max_joints][2];
-    std::vector<Arm> at_look[max_joints];
+    Arm at_look[max_joints][other_looks], at_freest[loop_looks];
+    bool has_looks[max_joints] = {};
     bool rests[max_joints] = {};  // whether self-motions hardly move it
     int freest = -1;              // of the joints that nothing stops the one that self-motions move most
 };
@@ -71,6 +70,9 @@ inline void find_freest_joint(const Redundant& arm, LimitArms& out) {
 inline int looks_at(const LimitArms& arms, int joint) {
     return joint == arms.freest ? loop_looks : other_looks;
 }
+inline const Arm& arm_of_look(const LimitArms& arms, int joint, int look) {
+    return joint == arms.freest ? arms.at_freest[look] : arms.at_look[joint][look];
+}
 // The middle of a part of so many equal parts.
 inline double middle_of_part(const Domain& domain, int part, int parts) {
     return domain.lower + (part + 0.5) / parts * (domain.upper - domain.lower);
@@ -81,11 +83,12 @@ inline void make_look_arms(const Redundant& arm, int joint, LimitArms& out) {
     const int looks = looks_at(out, joint);
     const Domain domain = domain_of(arm, joint, arm.chain.tip);
     double at[max_joints];
-    out.at_look[joint].reserve(std::size_t(looks));
+    Arm* const made = joint == out.freest ? out.at_freest : out.at_look[joint];
     for (int look = 0; look < looks; ++look) {
         at[joint] = middle_of_part(domain, look, looks);
-        out.at_look[joint].push_back(arm_at(out.locked[joint], at));
+        made[look] = arm_at(out.locked[joint], at);
     }
+    out.has_looks[joint] = true;
 }
 
 // out: as LimitArms{}. It is large, so the caller provides the memory.
