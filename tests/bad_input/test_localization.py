@@ -191,6 +191,7 @@ SLOW = {("slam", "resolution"), ("slam", "time_limit")}
 """Values that are valid and only ask for much work."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("function", "usual"), CALLS, ids=lambda value: getattr(value, "__qualname__", ""))
 def test_every_argument_is_used_or_refused(function, usual):
     for parameter in inspect.signature(function).parameters.values():

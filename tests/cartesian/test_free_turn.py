@@ -76,6 +76,7 @@ def run_law(robots, seed):
     return np.array(found).sum(axis=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e", "panda", "iiwa14", "puma560", "irb120", "gen3", "scara"])
 def test_a_free_turn_arrives_where_a_fixed_one_does_and_is_never_slower(name):
     stays, turns = run_law([cs.load_robot(name)] * 8, 3)

@@ -235,6 +235,7 @@ def test_as_far_as_possible_is_the_part_that_can_be_followed(name):
     assert parts >= 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e", "panda"])
 def test_polylines_that_are_timed_without_jerk_limits_are_timed_with_them(name):
     """Blends of every size, up to those that meet: a slow motion keeps any limit of jerk."""
@@ -281,6 +282,7 @@ def test_an_arc_of_many_turns_ends_at_the_same_place_as_one_turn(turns):
     assert many.reason.partition(":")[2] == one.reason.partition(":")[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elbow", [0.003, 0.01, 0.03, 0.06, 0.1])
 @pytest.mark.parametrize("name", ["ur3e", "ur5e", "ur16e"])
 def test_lines_from_and_to_an_elbow_that_is_nearly_straight_are_followed(name, elbow):

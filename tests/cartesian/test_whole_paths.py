@@ -39,6 +39,7 @@ def check_branch(robot, branch, path, axis=None):
     assert branch.path.continuity >= 2 or len(branch.path) < 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", REDUNDANT)
 def test_whole_paths_keep_to_path_and_limits_and_reach_as_far_as_least_motion(name):
     robot = cs.load_robot(name)
@@ -58,6 +59,7 @@ def test_whole_paths_keep_to_path_and_limits_and_reach_as_far_as_least_motion(na
     assert planned >= least > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*SIX, "panda"])
 def test_a_free_turn_keeps_the_axis_and_reaches_where_the_whole_pose_does(name):
     robot = cs.load_robot(name)
@@ -107,6 +109,7 @@ def test_what_cannot_be_planned_is_named():
         assert branch.cause == "unreachable"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turns", [0.5, 1, 2, 3, 5, 8, 13, 30])
 @pytest.mark.parametrize(("axis", "column"), [("z", 2), ("x", 0)])
 def test_a_valve_turns_as_often_as_it_takes(axis, column, turns):
@@ -124,6 +127,7 @@ def test_a_valve_turns_as_often_as_it_takes(axis, column, turns):
     np.testing.assert_allclose(np.linalg.norm(tip[:, :3, 3] - valve["center"], axis=1), 0.08, atol=2e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e", "panda", "iiwa14", "puma560", "gen3"])
 def test_motions_of_the_tip_begin_at_their_start_in_every_bit(name):
     robot = cs.load_robot(name)
@@ -140,6 +144,7 @@ def test_motions_of_the_tip_begin_at_their_start_in_every_bit(name):
     assert arrived >= 8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "seed"), [("crx3ia", 7), ("irb120", 10), ("ur5e", 1), ("sawyer", 3)])
 def test_the_tip_is_near_its_path_everywhere_beside_singular_configurations_too(name, seed):
     """Paths that end as near to the border of the reach as a branch goes; looked at between all nodes."""
@@ -163,6 +168,7 @@ def test_the_tip_is_near_its_path_everywhere_beside_singular_configurations_too(
     assert arrived >= 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["iiwa14", "panda", "xarm7", "gen3"])
 def test_singular_starts_of_redundant_arms_are_answered(name):
     """No solution has a slope there: the motion goes on, or ends at a place with a cause, without errors."""

@@ -291,6 +291,7 @@ FULL = "/dev/full"
 """The device on which every write meets a full disk."""
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path(FULL).is_char_device(), reason="needs the device /dev/full")
 @pytest.mark.parametrize(
     "line",

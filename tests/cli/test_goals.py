@@ -178,6 +178,7 @@ def test_freedom_is_told_in_the_text():
     assert "branch" not in cspace("ik ur5e --look-at 0.6 0.2 0").out, "a column without a word is left out"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
     [
@@ -278,6 +279,7 @@ def test_values_of_held_joints_are_in_the_unit_that_was_asked_for():
     assert cspace(line).out.endswith("with joint_3 = 0.1 m, joint_4 = -30 deg\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e", "puma560", "panda", "simplified_puma", "planar_3r", "so101"])
 @pytest.mark.parametrize("seed", range(4))
 def test_a_pose_printed_by_fk_is_accepted_in_every_form(name, seed):

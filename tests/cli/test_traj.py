@@ -30,6 +30,7 @@ def test_options_of_another_goal_are_refused_even_if_zero(goal, option):
     assert f"{option.split()[0]} does not go with {goal.split()[0]}" in result.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("name", ["panda", "ur5e", "so101"])
 def test_a_spline_that_leaves_the_limits_is_no_motion(tmp_path, name, seed):
@@ -85,6 +86,7 @@ def test_a_json_file_is_the_motion_itself(words, tmp_path):
     np.testing.assert_allclose(motion(t), read(t), atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_film_and_a_picture_of_a_motion(tmp_path):
     words = "traj planar_3r --from 2.2 -1.2 -0.6 --to 1.9 -1.1 -0.5 --velocity 2 --acceleration 6 --jerk 40"
     for name, magic in (("a.gif", b"GIF8"), ("a.png", b"\x89PNG")):

@@ -233,6 +233,7 @@ def test_simulate_holds_pulls_and_pushes_joints():
     assert "gains of --hold or --goal" in cspace(line, "--kp", "1", "--", *typed(Q)).err
 
 
+@pytest.mark.slow
 def test_simulate_lets_a_base_float(tmp_path):
     picture = tmp_path / "fall.png"
     line = (

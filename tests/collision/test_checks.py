@@ -20,6 +20,7 @@ def cell(seed, n=10):
     return robot, scene, robot.random_configuration(60, rng=seed, reach=1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_checks_agree_with_plain_distances(seed):
     robot, scene, q = cell(seed)
@@ -77,6 +78,7 @@ def test_the_gradient_is_that_of_the_distance(seed):
     assert compared >= 15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_proved_edges_are_free_and_blocked_ones_touch(seed):
     robot, scene, q = cell(seed, 5)
@@ -134,6 +136,7 @@ def test_a_robot_and_a_scene_moved_together_change_nothing(seed):
         np.testing.assert_array_equal(there.collides(q, moved)[sure], robot.collides(q, scene)[sure])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_an_attached_object_counts_as_a_part_of_the_robot(seed):
     robot, scene, q = cell(seed)

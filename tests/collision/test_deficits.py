@@ -28,6 +28,7 @@ def farthest_outside(shape, rows, rng):
     return max(gaps.min(axis=1).max(), 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", WAYS)
 def test_deficits_bound_what_is_outside(kind):
     robot = cs.Robot(from_urdf(URDF.format(WAYS[kind])))

@@ -78,6 +78,7 @@ def separation(a, b, rng):
     return best
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_the_clearance_is_that_of_the_solids(seed):
     rng = np.random.default_rng(seed)
@@ -96,6 +97,7 @@ def test_the_clearance_is_that_of_the_solids(seed):
             assert robot.collides(np.tile(q, (9, 1)), scene).tolist() == [expected < 0] * 9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_covers_do_not_change_the_answer(seed):
     rng = np.random.default_rng(100 + seed)
@@ -112,6 +114,7 @@ def test_covers_do_not_change_the_answer(seed):
     assert robot.collision.pairs.tolist() == fine.collision.pairs.tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_no_configuration_of_a_proved_edge_touches(seed):
     rng = np.random.default_rng(200 + seed)

@@ -34,6 +34,7 @@ def robot_with(kind: str, a: float, b: float) -> cs.Robot:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_covers_of_all_sizes_contain_the_solid(kind):
     for _ in range(12):
@@ -48,6 +49,7 @@ def test_covers_of_all_sizes_contain_the_solid(kind):
         assert (gaps.min(axis=1) <= 1e-9 * (high - low).max()).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("a", SIZES)
 def test_checks_agree_with_the_distance(kind, a):

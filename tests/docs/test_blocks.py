@@ -17,6 +17,7 @@ import sys
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -49,15 +50,20 @@ def blocks(page: Path) -> list[Block]:
     return found
 
 
-def has(language: str) -> list[Path]:
-    return [page for page in PAGES if any(block.language == language for block in blocks(page))]
+def has(language: str) -> list[Any]:
+    """The pages with blocks of a language, all but the README marked as slow."""
+    pages = [page for page in PAGES if any(block.language == language for block in blocks(page))]
+    return [
+        pytest.param(page, marks=() if page.name == "README.md" else pytest.mark.slow, id=name_of(page))
+        for page in pages
+    ]
 
 
 def name_of(page: Path) -> str:
     return str(page.relative_to(ROOT))
 
 
-@pytest.mark.parametrize("page", has("python"), ids=name_of)
+@pytest.mark.parametrize("page", has("python"))
 def test_python_blocks_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     namespace: dict[str, object] = {"__name__": "page"}
@@ -116,7 +122,7 @@ def check_output(expected: list[str], output: str, where: str) -> None:
         )
 
 
-@pytest.mark.parametrize("page", has("console"), ids=name_of)
+@pytest.mark.parametrize("page", has("console"))
 def test_console_blocks_run(page, tmp_path):
     for name in ("yard.txt", "cell.toml", "two_links.txt", "four_bar.toml", "two_rounds.g2o"):
         shutil.copy(ROOT / "examples" / name, tmp_path)

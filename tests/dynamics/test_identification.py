@@ -263,6 +263,7 @@ def test_the_answer_is_that_of_weighted_least_squares(rng):
     np.testing.assert_allclose(found.residuals, np.geomspace(0.01, 10, 7), rtol=0.2)
 
 
+@pytest.mark.slow
 def test_standard_errors_cover_the_errors(rng):
     """One per cent of noise on every torque, a hundred times: 99 % of the errors are within three of them."""
     base = base_parameters(ARM)

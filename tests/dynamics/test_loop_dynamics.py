@@ -280,6 +280,7 @@ def test_energy_falls_with_the_order_of_the_method():
     assert errors[0] / errors[1] > 14
 
 
+@pytest.mark.slow
 @case
 def test_loops_stay_closed_over_ten_thousand_steps(make):
     rng = np.random.default_rng(8)

@@ -53,6 +53,7 @@ def test_it_is_short_and_says_its_idea_first(path):
     assert idea.endswith(".")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", EXAMPLES, ids=names)
 def test_it_runs_and_makes_its_pictures(path, tmp_path):
     wanted = set(re.findall(r'folder / "([\w.]+)"', path.read_text(encoding="utf-8")))

@@ -27,12 +27,14 @@ def check(robot, program, count=200):
         assert len(answer.q) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["gen3_lite"])
 def test_a_header_answers_as_the_library(name, tmp_path):
     robot = arms.arm(name)
     check(robot, compiled.cpp_program(robot.export("cpp"), tmp_path, compiled.cxx(), "-O1"))
 
 
+@pytest.mark.slow
 def test_the_c_interface_links_as_c_and_answers_as_the_library(tmp_path):
     robot = arms.arm("ur5e")
     check(robot, compiled.c_program(robot.export("c"), tmp_path, compiled.cxx(), compiled.cc()))
@@ -53,6 +55,7 @@ def test_every_compiler_that_is_here(name, cxx, tmp_path):
     check(robot, compiled.cpp_program(robot.export("cpp"), tmp_path, cxx, "-O1"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rpr"])
 def test_every_kind_in_c(name, tmp_path):
     robot = arms.arm(name)

@@ -69,6 +69,7 @@ def test_an_arm_without_a_closed_form_is_refused(name, tmp_path):
     assert robot.export("cpp").text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", cs.robots.names())
 def test_every_arm_of_the_catalogue_is_a_module_on_its_own(name):
     robot = cs.load_robot(name)

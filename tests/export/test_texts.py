@@ -28,6 +28,7 @@ def code_of(text):
     return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\])*"', "", text, flags=re.S)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", cs.robots.names())
 def test_every_arm_of_the_catalogue(name):
     robot = cs.load_robot(name)

@@ -41,7 +41,7 @@ def is_module(node: ast.ImportFrom, alias: ast.alias) -> bool:
 def declared(path: Path) -> set[str]:
     """The public names that the file itself defines or gathers, read from its text."""
     names: set[str] = set()
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    for node in tree.syntax(path).body:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             names.add(node.name)
         elif isinstance(node, ast.ImportFrom) and path.name == "__init__.py" and is_ours(node):
@@ -92,7 +92,7 @@ def test_functions_inside_a_room_are_a_verb_and_an_object():
         where = path.relative_to(tree.PACKAGE)
         if str(where).startswith(tuple(STANDALONE)):
             continue
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        for node in tree.syntax(path).body:
             if isinstance(node, ast.FunctionDef) and "_" not in node.name:
                 known = node.name in exported | ONE_WORD
                 assert known, f"{where}: {node.name} needs an object, such as read_{node.name}"

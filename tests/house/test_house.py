@@ -50,7 +50,7 @@ def test_the_library_never_prints():
     for path in tree.python_files():
         if tree.room_of(path) == "cli":
             continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in tree.nodes(path):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 assert node.func.id != "print", f"{path.relative_to(tree.ROOT)}:{node.lineno} prints"
     for name, text in tree.tracked_texts():
@@ -60,7 +60,7 @@ def test_the_library_never_prints():
 
 def test_every_function_can_be_read_at_a_glance():
     for path in tree.python_files():
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in tree.nodes(path):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
                 lines = (node.end_lineno or node.lineno) - node.lineno + 1
                 assert lines <= 70, f"{path.relative_to(tree.ROOT)}: {node.name} has {lines} lines"

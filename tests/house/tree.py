@@ -5,8 +5,9 @@ from __future__ import annotations
 import ast
 import re
 import subprocess
-from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -57,6 +58,17 @@ def python_files() -> list[Path]:
     return sorted(PACKAGE.rglob("*.py"))
 
 
+@cache
+def syntax(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def nodes(path: Path) -> list[ast.AST]:
+    """Of the syntax tree of a file."""
+    return list(ast.walk(syntax(path)))
+
+
 def room_of(path: Path) -> str:
     """The room a file of the package belongs to: its folder under the package, or its own name."""
     first = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
@@ -72,6 +84,7 @@ def is_type_checking(node: ast.AST) -> bool:
     return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
 
 
+@cache
 def imports(path: Path) -> list[Import]:
     """Every import of a file. Those under `if TYPE_CHECKING` count as downward imports but do not run."""
     found: list[Import] = []
@@ -92,7 +105,7 @@ def imports(path: Path) -> list[Import]:
         for child in ast.iter_child_nodes(node):
             visit(child, at_import and not inside)
 
-    visit(ast.parse(path.read_text(encoding="utf-8")), True)
+    visit(syntax(path), True)
     return found
 
 
@@ -103,16 +116,14 @@ def includes(path: Path) -> list[tuple[int, str]]:
     return [(n, match.group(1)) for n, match in matches if match]
 
 
-def tracked_texts() -> Iterator[tuple[str, str]]:
+@cache
+def tracked_texts() -> list[tuple[str, str]]:
     """Name and text of every text file that belongs to the project (committed or about to be)."""
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listing = subprocess.run(command, cwd=ROOT, capture_output=True)
     names = [n for n in listing.stdout.decode().split("\0") if n]
-    for name in names:
-        path = ROOT / name
-        if not path.is_file():
-            continue
-        try:
-            yield name, path.read_text(encoding="utf-8")
-        except UnicodeDecodeError:
-            continue
+    texts = []
+    for path in filter(Path.is_file, (ROOT / name for name in names)):
+        with suppress(UnicodeDecodeError):
+            texts.append((path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")))
+    return texts

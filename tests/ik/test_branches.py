@@ -38,6 +38,7 @@ def named(name):
     return MADE[name] if name in MADE else load(name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*SHORT, *MADE])
 def test_arms_of_few_joints_have_names_that_differ_and_stay_next_door(name):
     robot = named(name)

@@ -98,6 +98,7 @@ CASES = [(word, "general") for word in WORDS]
 CASES += [(word, "calibrated") for word in WORDS if word.count("P") < 3]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("word", "kind"), CASES)
 def test_double_roots_of_every_kind_of_arm(word, kind):
     rng = np.random.default_rng([2, *map(ord, word + kind)])

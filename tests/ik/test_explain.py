@@ -71,6 +71,7 @@ def solved_by_steps(robot, plan, locked_at, question):
     return Split(solver, joints, {k: (locked_at or {}).get(k, 0.0) for k in joints}).others()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_every_arm_of_the_catalogue_is_explained(name):
     robot = load(name)

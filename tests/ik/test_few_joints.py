@@ -38,6 +38,7 @@ def reached(arm, word, q):
     return many_starts.tip_and_jacobian(axes, points, slides, T_zero[:3, 3], np.atleast_2d(q))[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("word", WORDS)
 def test_every_solution_is_listed(word):
     rng = np.random.default_rng(WORDS.index(word))

@@ -65,6 +65,7 @@ def test_calibrated_arms(name, size):
     expect_all(calibrated(name, size, rng), random_q(rng, 500, 6), 0.998)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ARMS)
 def test_the_companion_matrix_finds_nothing_else(name):
     """On poses of each arm the eigenvalues of the 24 × 24 matrix give no solution that is not listed."""
@@ -80,6 +81,7 @@ def test_the_companion_matrix_finds_nothing_else(name):
     assert agreed >= 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_many_starts_find_nothing_else(seed):
     rng = np.random.default_rng([5, seed])

@@ -79,6 +79,7 @@ def test_every_revolute_chain_of_the_shared_data():
     assert solved >= 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("square", [False, True], ids=["any angle", "right angles"])
 @pytest.mark.parametrize("name", CLASSES)
 def test_random_geometries_of_each_class(name, square):

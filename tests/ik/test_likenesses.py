@@ -69,6 +69,7 @@ def random_case(word, kind, seed):
     return robot, q, rng
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LIKENESSES)
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 @given(word=st.sampled_from(WORDS), kind=st.sampled_from(list(MAKERS)), seed=st.integers(0, 10**6))
@@ -79,6 +80,7 @@ def test_a_likeness_has_the_same_solutions(name, word, kind, seed):
         expect_the_same(robot, likeness, row)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LIKENESSES)
 @pytest.mark.parametrize("word", ["RRRRRR", "RRPRRR", "RPRRPR", "PRRPRP"])
 def test_a_likeness_has_the_same_certificate(name, word):

@@ -14,6 +14,7 @@ def resident_kib():
         return int(status.read().split()[1]) * 4
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads the memory in use from /proc")
 @pytest.mark.parametrize("kind", ["single", "singular", "filters", "batch", "refused"])
 def test_memory_stays_flat(kind):

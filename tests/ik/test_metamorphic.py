@@ -78,6 +78,7 @@ def compare_arms(words, kinds, rng, arms, goals):
     return np.mean(same), len(same)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "first"), CASES)
 def test_three_joints_and_a_wrist(kind, first):
     rng = np.random.default_rng([1, *map(ord, first + kind)])
@@ -105,6 +106,7 @@ def expect_catalogue(name, goals):
             expect_the_same_list(robot, likeness, q)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SHORT)
 def test_arms_of_the_catalogue(name):
     expect_catalogue(name, 3)

@@ -28,6 +28,7 @@ def test_asking_again_answers_as_the_first_time_and_as_the_list(name):
                 assert getattr(found, field) == getattr(listed, field)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e", "ur5_dh", "ur10e", "puma560", "viperx300s"])
 @pytest.mark.parametrize("q5", [0.0, np.pi, -np.pi])
 def test_a_seed_that_is_a_solution_is_the_answer(name, q5):
@@ -42,6 +43,7 @@ def test_a_seed_that_is_a_solution_is_the_answer(name, q5):
         assert gap(robot, found.q, q).min() < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["puma560", "ur5e", "irb120", "kr6_r900", "crx10ia", "scara"])
 def test_a_batch_at_singular_poses_answers_as_single_calls(name):
     robot, rng = cs.load_robot(name), np.random.default_rng(13)

@@ -97,6 +97,7 @@ def test_every_kind_of_goal_keeps_limits(name, kind):
             assert gap <= ROUNDING
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e", "puma560", "panda", "planar_3r"])
 @pytest.mark.parametrize("kind", GOALS)
 def test_a_batch_answers_like_single_goals(name, kind):

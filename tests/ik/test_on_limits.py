@@ -93,6 +93,7 @@ def test_a_configuration_of_a_redundant_arm_on_its_limits_is_within_them(name):
         assert not kept.violations()[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e", "puma560", "kr6_r900", "al5d", "scara", "stanford", "planar_2r"])
 @pytest.mark.parametrize("off", [0.0, 1e-15, 1e-12, 5e-10])
 def test_limits_at_a_solution_keep_it_on_whichever_side_rounding_puts_it(name, off):

@@ -118,6 +118,7 @@ def test_many_starts_find_nothing_else_on_machines(name):
     expect_nothing_else(MACHINES[name], 4)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(
     word=st.text("RP", min_size=4, max_size=6).filter(lambda w: w.count("P") <= 3), seed=st.integers(0, 10**6)

@@ -43,6 +43,7 @@ def test_an_unreachable_goal_is_false_and_says_by_how_much(name):
         assert not found.nearest(np.zeros(robot.dof))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e", "puma560", "kr6_r900"])
 def test_the_missing_distance_against_a_numeric_search(name):
     """The nearest goal with the same orientation, looked for by scipy from many starts."""

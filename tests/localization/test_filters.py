@@ -119,6 +119,7 @@ def test_updates_across_the_half_turn_do_not_flip(name):
     assert np.linalg.eigvalsh(P).min() > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_moving_world_and_map_together_changes_nothing_in_base(name):
     log = log_of(1, 20.0)
@@ -167,6 +168,7 @@ def test_prediction_is_a_p_a_plus_q_step_by_step():
     assert "dead reckoning" in run.reason
 
 
+@pytest.mark.slow
 def test_the_smoother_is_dense_least_squares():
     """Oracle: all poses at once with small noise, where the problem is linear; and its end is the filter."""
     noise = RandomWalk(1e-5, 1e-5, 1e-5, 1e-5, 1e-7, 1e-7)
@@ -224,6 +226,7 @@ def test_a_lag_lies_between_filter_and_smoother():
         past.smoothed()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_filters_are_consistent(name):
     """NEES over 100 runs of three states: 90 % of the steps in the 95 % band of χ², all in a wider one."""
@@ -307,6 +310,7 @@ def test_false_readings_are_rejected_and_a_kidnapping_is_said():
     assert not lost.lost[lost.times < 30.0].any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_a_filter_that_began_at_a_wrong_place_says_lost(name):
     """Some readings pass their gate by chance, so that never ten in a row are rejected."""
@@ -380,6 +384,7 @@ def test_the_answer_is_the_same_every_time():
     np.testing.assert_array_equal(a.covariances, b.covariances)
 
 
+@pytest.mark.slow
 def test_standing_still_for_an_hour_neither_drifts_nor_collapses():
     times = np.arange(0.0, 3600.0, 1.0)
     still = TimedPoses(times, np.zeros((len(times), 3)))
@@ -421,6 +426,7 @@ def test_what_a_log_lacks_is_named():
     assert localize(replace(log, readings=none)).status == "lost"
 
 
+@pytest.mark.slow
 def test_mrclam_within_the_bars_of_the_project():
     """Defaults and odometry calibrated on the first half: filter 0.18 m, smoother 0.14 m, mean of three
     robots."""

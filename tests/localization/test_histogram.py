@@ -137,6 +137,7 @@ class SlowCore:
         return int(best)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", [None, (2.0, 2.0, 0.0)])
 def test_a_drive_is_localised_as_by_the_slow_filter(monkeypatch, start):
     grid = building()

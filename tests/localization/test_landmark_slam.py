@@ -256,6 +256,7 @@ def test_no_information_along_turns_and_shifts_of_the_world(linearization):
         np.testing.assert_allclose(information, np.linalg.inv(P0), rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("linearization", "consistent"), [*zip(LINEARIZATIONS, (True, True, False), strict=True)]
 )
@@ -280,6 +281,7 @@ def test_consistency(linearization, consistent):
     assert inside == consistent
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [1, 2])
 def test_fast_slam_is_consistent_with_the_error_of_its_start(version):
     """Resampling loses what is drawn into particles, but not the start, which no reading corrects."""
@@ -704,6 +706,7 @@ def align(points, onto):
     return lambda p: (p - points.mean(0)) @ R.T + onto.mean(0)
 
 
+@pytest.mark.slow
 def test_mrclam_without_its_map():
     """Mean errors of three robots after alignment: poses below 0.27 m, landmarks below 0.25 m."""
     errors, plain = [], []

@@ -131,6 +131,7 @@ def reverse(log):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 5, 6])
 def test_a_robot_that_backs_is_mapped_as_well(seed):
     # Strips of wall that come into view beside a robot that backs must not draw it forwards.

@@ -59,6 +59,7 @@ def test_the_search_is_exhaustive(seed, reach, turn):
     assert at.sum() / (255 * 20) == pytest.approx(score, abs=0.06)  # rounding moves points between cells
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_large_windows_are_searched_as_exactly_as_small_ones(seed):
     rng = np.random.default_rng(seed)

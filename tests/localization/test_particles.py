@@ -251,6 +251,7 @@ print(hashlib.sha256(run.particles.tobytes() + run.poses.tobytes()).hexdigest())
 """
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bits_on_every_instruction_set_and_thread_count():
     found = set()
     for isa in ("baseline", "avx2", ""):
@@ -322,6 +323,7 @@ def test_many_particles_agree_with_the_kalman_filter():
     assert (ratio < 1.6).all()
 
 
+@pytest.mark.slow
 def test_standing_for_an_hour_neither_collapses_nor_drifts():
     grid = building()
     scans = simulate(route(WAY), grid, CLEAN, rng=3).scans

@@ -52,6 +52,7 @@ def test_two_corners_that_a_disc_does_not_pass_between():
     assert len(world.offset(0.5).curves) == 2
 
 
+@pytest.mark.slow
 def test_fine_polygons_come_as_near_as_they_should():
     rng = np.random.default_rng(31)
     for world in random_worlds(rng, 16):

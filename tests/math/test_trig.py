@@ -137,6 +137,7 @@ def test_atan2_within_the_stated_error(call: Callable[..., Array]) -> None:
         assert ulps(angle, np.arctan2(a.astype(np.longdouble), b.astype(np.longdouble))) <= BOUND["atan2"]
 
 
+@pytest.mark.slow
 @needs_oracle
 @np.errstate(invalid="ignore")
 @pytest.mark.parametrize("name", ["acos", "asin"])
@@ -177,6 +178,7 @@ def test_sincos_where_it_is_hardest(call: Callable[..., Array]) -> None:
         assert error.max() <= BOUND["sincos"]
 
 
+@pytest.mark.slow
 @np.errstate(invalid="ignore", under="ignore")
 def test_special_values_are_those_of_the_c_standard(call: Callable[..., Array]) -> None:
     edges = np.array([0.0, 5e-324, 1e-310, 1.0, 1e308, np.inf, np.nan])

@@ -69,6 +69,7 @@ def test_gaps_of_planar_linkages():
     assert engine.assembly_modes({"slider": 0.1}).gap == pytest.approx(0.5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_dead_points_of_four_bars(seed):
     """There the two configurations become one, and beyond there is none."""

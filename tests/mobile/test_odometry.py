@@ -100,6 +100,7 @@ def test_halving_a_step_changes_nothing_for_a_random_walk(scale):
     np.testing.assert_allclose(A @ two @ np.swapaxes(A, 1, 2) + third, whole, rtol=1e-10, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turn", [0.0, 1e-9, 0.4, 3.0, 25.0])
 def test_the_covariance_of_a_random_walk_is_the_sum_over_many_short_steps(turn):
     rng = np.random.default_rng(9)

@@ -29,6 +29,7 @@ def seeds():
 SEEDS = seeds()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_damaged_files_end_in_an_error_of_ours_or_in_a_robot(seed, tmp_path):
     rng = np.random.default_rng(seed)
@@ -47,6 +48,7 @@ def test_damaged_srdf_files_end_in_an_error_of_ours_or_in_a_robot(seed):
     assert sum(exercise_srdf(damaged_srdf(rng), panda()) for _ in range(150)) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arm", [ARM, MJCF], ids=["urdf", "mjcf"])
 def test_every_poison_in_every_attribute_is_refused_or_read(arm, tmp_path):
     """Each attribute value of the arms, each poison in its place."""
@@ -59,6 +61,7 @@ def test_every_poison_in_every_attribute_is_refused_or_read(arm, tmp_path):
             exercise(text[:at] + POISON[poison] + text[at:], tmp_path / "x")
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.text(max_size=200))
 def test_any_text_is_refused_by_every_reader(text):

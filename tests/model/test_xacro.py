@@ -225,6 +225,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow
 @needs_xacro
 @pytest.mark.parametrize(("text", "line", "says"), FAULTS.values(), ids=FAULTS.keys())
 def test_a_fault_is_told_with_file_and_line(text, line, says, tmp_path):
@@ -265,6 +266,7 @@ def test_modules_of_the_working_folder_are_not_run(tmp_path, monkeypatch):
     assert load_description("a.xacro").root == "a"
 
 
+@pytest.mark.slow
 @needs_xacro
 def test_damaged_files_end_in_an_error_of_ours_or_in_a_robot(arm):
     rng = np.random.default_rng(0)
@@ -304,6 +306,7 @@ SIZES = {
 }
 
 
+@pytest.mark.slow
 @needs_xacro
 @pytest.mark.parametrize("expression", SIZES)
 def test_a_value_that_is_too_large_is_refused_at_once(expression, tmp_path):
@@ -367,6 +370,7 @@ GROWING = {
 }
 
 
+@pytest.mark.slow
 @needs_xacro
 @pytest.mark.parametrize("kind", GROWING)
 def test_a_short_file_that_grows_without_measure_is_refused(kind, tmp_path):

@@ -103,6 +103,7 @@ def test_a_growth_is_fitted_with_its_uncertainty():
     assert scaling.fit(points[:15], "seconds") is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", CELL_FAMILIES, ids=lambda f: f.__name__)
 def test_the_oracle_agrees_with_counted_cells(family):
     for world, start, goal in questions_of_cells(9, 15, family, largest=6):
@@ -115,6 +116,7 @@ def test_the_oracle_agrees_with_counted_cells(family):
         assert (length < np.inf) == reachable, (world, start, goal)
 
 
+@pytest.mark.slow
 def test_two_oracles_agree_on_degenerate_worlds():
     for seed in range(12):
         q = question("degenerate", 1 + seed % 3, seed, bool(seed % 2))

@@ -44,6 +44,7 @@ def test_clearance_of_every_planner_in_polygons(planner):
     assert route.clearance == pytest.approx(least(route.path, rings_of(world)), abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_clearance_over_cells(seed):
     rng = np.random.default_rng(seed)

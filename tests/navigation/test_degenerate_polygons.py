@@ -57,6 +57,7 @@ def test_the_files_tell_the_truth(case):
     assert length == pytest.approx(case.length, rel=1e-15, abs=0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=named)
 def test_every_planner_on_every_world(case):
     world = case.world()

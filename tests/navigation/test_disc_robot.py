@@ -50,6 +50,7 @@ def worlds(rng, count):
         yield cs.PolygonWorld(rings, (0, 0, 12, 12), repair=True)
 
 
+@pytest.mark.slow
 def test_the_widest_way_and_the_grown_world_agree():
     """A disc a billionth smaller than the widest way goes through, one a billionth larger does not."""
     rng = np.random.default_rng(21)

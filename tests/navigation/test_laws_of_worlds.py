@@ -67,6 +67,7 @@ def test_corners_and_turns_of_outlines_change_nothing(seed):
     agree(cs.PolygonWorld(told, (0, 0, side, side)), start, goal, length)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [2.0**-30, 0.25, 3, 10, 1000, 7 * 2.0**20])
 @pytest.mark.parametrize("by", [(0, 0), (5, -3), (-1001, 4096)])
 def test_scaled_and_moved_a_world_has_the_same_ways(scale, by):
@@ -80,6 +81,7 @@ def test_scaled_and_moved_a_world_has_the_same_ways(scale, by):
 MIRRORS: Final = [np.array(m) for m in ([[-1, 0], [0, 1]], [[0, 1], [1, 0]], [[0, -1], [1, 0]])]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mirror", MIRRORS, ids=["left and right", "x and y", "a quarter turn"])
 def test_mirrored_and_turned_a_world_has_the_same_ways(mirror):
     for seed in range(CASES):

@@ -56,6 +56,7 @@ def asked(family: Any, seed: int) -> Question:
     return Question(family.__name__, SIDE, seed, False, rings, (0, 0, SIDE, SIDE), corner, other)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", [at_border, at_edge])
 @pytest.mark.parametrize("planner", PLANNERS)
 def test_paths_from_and_to_touching_corners_are_free(family, planner):

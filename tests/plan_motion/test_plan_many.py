@@ -81,6 +81,7 @@ def agree(one, other):
     return True
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", PLANNERS)
 def test_each_plan_is_the_one_that_is_found_alone(name, seed):

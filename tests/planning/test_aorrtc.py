@@ -52,6 +52,7 @@ def shortest_on_grid(robot, scene, start, goal, n):
     return np.inf
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_costs_approach_that_of_a_grid(seed):
     robot = planar_arm()
@@ -73,6 +74,7 @@ def test_costs_approach_that_of_a_grid(seed):
         assert costs[2] >= np.linalg.norm(free[apart] - free[0]) - 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_better_paths_are_free_and_proved(seed):
     robot, scene, free = cell(seed)

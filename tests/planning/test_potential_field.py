@@ -149,6 +149,7 @@ def check_rest(space, goals, plan):
     return rest.kind
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_every_stop_has_its_name_and_every_step_is_free(seed):
     robot, scene, free = cell(seed) if seed % 2 else few_joints(seed, 3)

@@ -52,6 +52,7 @@ def dijkstra_on(roadmap, space, start, goal):
     return np.inf
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("planner", PLANNERS)
 @pytest.mark.parametrize("seed", range(6))
 def test_a_path_is_free_and_begins_and_ends_as_told(seed, planner):
@@ -226,6 +227,7 @@ def judge_clearance(space, plan):
     return space.clearance(plan.sample(1.0 / 3200.0)).distance.min()
 
 
+@pytest.mark.slow
 def test_paths_of_prm_star_approach_the_shortest():
     robot = planar_arm()
     costs, best = [], []

@@ -35,6 +35,7 @@ def arm_among_balls(seed):
     return robot, scene, free[0], free[np.argmax(np.linalg.norm(free - free[0], axis=1))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("name", TREES)
 def test_a_path_is_free_and_begins_and_ends_as_told(name, seed):
@@ -72,6 +73,7 @@ def test_many_plans_are_those_of_each_alone(name):
             assert one.stats["edges"] == other.stats["edges"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("star", STARS)
 @pytest.mark.parametrize("seed", range(3))
 def test_costs_approach_those_of_a_grid_and_of_aorrtc(star, seed):

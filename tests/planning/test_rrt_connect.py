@@ -50,6 +50,7 @@ def cell(seed):
     raise AssertionError("no random scene leaves room")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_path_is_free_and_begins_and_ends_as_told(seed):
     robot, scene, free = cell(seed)
@@ -298,6 +299,7 @@ def test_options_are_in_force():
     assert other
 
 
+@pytest.mark.slow
 @pytest.mark.data
 @pytest.mark.parametrize("name", ROBOTS)
 def test_published_problems_are_solved_and_their_paths_are_free(name):

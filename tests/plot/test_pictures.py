@@ -46,6 +46,7 @@ PICTURES = {
 IN_SPACE = {"robot", "slide", "solutions", "frames"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_makes_its_figure_and_something_is_to_be_seen(name):
     artists = PICTURES[name](None)
@@ -195,6 +196,7 @@ def test_configurations_of_one_branch_share_an_entry_of_the_legend_and_a_colour(
     assert bold[0].startswith(names[0])
 
 
+@pytest.mark.slow
 def test_a_legend_is_no_longer_than_its_picture():
     robot, q = arms.elbow_arm(), np.random.default_rng(2).uniform(-1, 1, (60, 6))
     texts, legend = legend_of(plot.solutions(robot, q))
@@ -207,6 +209,7 @@ def test_a_legend_is_no_longer_than_its_picture():
     assert box.y1 <= figure.bbox.y1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lengths", [(1, 1), (1, 0.5, 0.4), (1, 0.5, 0.4, 0.3), (0.2, 1, 0.9, 0.5)])
 def test_workspaces_have_no_holes_between_samples(lengths):
     robot = cs.Robot.from_dh([[0, length, 0, 0] for length in lengths], convention="standard")

@@ -101,6 +101,7 @@ def test_facets_face_outwards():
             assert shape.distance(outside) > 0
 
 
+@pytest.mark.slow
 def test_large_shapes_are_thinned():
     rng = np.random.default_rng(6)
     assert len(bodies_of(PointCloud(rng.normal(size=(20000, 3))), GREY, AROUND)) == MOST_POINTS

@@ -94,6 +94,7 @@ print([tuple(line.get_color()) for line in plot.mechanism(linkage, q)])
 """
 
 
+@pytest.mark.slow
 def test_links_have_the_same_colours_in_every_run():
     told = set()
     for seed in ("1", "2", "3"):

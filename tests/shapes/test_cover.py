@@ -10,6 +10,7 @@ from cspace import shapes
 from shapes.solids import KINDS, every_shape
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "HalfSpace"])
 @pytest.mark.parametrize("excess", [0.15, 0.08])
 def test_covers_hold_the_shape_and_stick_out_no_farther_than_stated(kind, excess):

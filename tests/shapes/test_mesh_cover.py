@@ -76,6 +76,7 @@ def find_gaps(points, cover):
     return (np.linalg.norm(points[:, None] - cover.centers, axis=-1) - cover.radii).min(axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("within", [0.05, 0.015])
 @pytest.mark.parametrize("name", NAMES)
 def test_covers_hold_the_shape_and_stick_out_no_farther_than_stated(name, within):
@@ -132,6 +133,7 @@ def test_a_moved_shape_has_the_same_cover_moved():
     assert np.array_equal(cover.radii, moved.radii)
 
 
+@pytest.mark.slow
 def test_finer_covers_have_more_spheres_and_the_surface_alone_no_more():
     mesh = star_mesh(np.random.default_rng(8))
     counts = [len(mesh.cover(within)) for within in (0.1, 0.03, 0.01)]
@@ -140,6 +142,7 @@ def test_finer_covers_have_more_spheres_and_the_surface_alone_no_more():
     assert not mesh.cover(0.01, inside=False).solid
 
 
+@pytest.mark.slow
 def test_the_same_mesh_has_the_same_spheres_in_every_thread_and_instruction_set():
     mesh = star_mesh(np.random.default_rng(9))
     first = mesh.cover(0.015)
@@ -272,6 +275,7 @@ def test_the_folder_is_that_of_the_system(monkeypatch, tmp_path):
     assert folder is None or folder.is_absolute()
 
 
+@pytest.mark.slow
 def test_several_processes_share_the_cache(folder):
     code = (
         "import numpy as np; from cspace import shapes;"

@@ -185,6 +185,7 @@ def test_a_feed_is_never_slower_than_the_same_speed(seed, feed):
         assert held.duration <= limited.duration * (1 + 1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("near", [False, True])
 def test_long_paths_are_made_window_by_window_and_take_no_longer(near):
     # From 20,000 intervals on; where waypoints are near each other a motion brakes over hundreds of pieces.
@@ -213,6 +214,7 @@ def test_short_pieces_of_long_smooth_paths_have_fewer_intervals_by_default():
     assert fine.duration <= own.duration < fine.duration * 1.002
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_limits_of_jerk_cost_little_whatever_the_distances_of_waypoints(seed):
     # Tangents of the limits may alternate from step to step; that must not end the minimisation.
@@ -226,6 +228,7 @@ def test_limits_of_jerk_cost_little_whatever_the_distances_of_waypoints(seed):
         assert plain.duration * (1 - 1e-3) < timed.duration < 1.3 * plain.duration
 
 
+@pytest.mark.slow
 def test_windows_of_paths_with_long_and_short_pieces_take_no_longer():
     rng = np.random.default_rng(3)
     steps = 10.0 ** rng.uniform(-1, 1, (60, 1)) * rng.normal(size=(60, 3))

@@ -87,6 +87,7 @@ def test_the_excursion_is_the_largest_overshoot():
     assert not cs.spline(w[:2]).excursion.any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["quintic", "circular"])
 def test_blends_deviate_as_stated_and_stay_in_the_hull(kind):
     rng = np.random.default_rng(8)
@@ -196,6 +197,7 @@ def test_joints_that_stand_and_gaps_are_found():
                 Path(np.arange(count + 1.0), points)
 
 
+@pytest.mark.slow
 def test_ten_thousand_waypoints():
     w = np.cumsum(RNG.normal(size=(10_000, 3)), axis=0)
     for make in (cs.spline, lambda x: cs.spline(x, 5), lambda x: cs.blend(x, 0.1)):

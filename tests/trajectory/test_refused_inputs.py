@@ -210,6 +210,7 @@ def attains_goal_or_is_refused(make, goal):
     return bool(np.isfinite(q).all()) and (not motion or np.abs(q[-1] - goal).max() < 1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("profile", ["double_s", "trapezoidal", "cubic", "quintic", "septic"])
 @pytest.mark.parametrize("keyword", KEYWORDS)
 def test_motions_with_numbers_of_any_size(profile, keyword):

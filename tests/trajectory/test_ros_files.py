@@ -62,6 +62,7 @@ def test_ros_points_are_samples(tmp_path):
         to_ros(motion(names=None), path, rate=10.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [3.0, 100.0, 1000.0])
 @pytest.mark.parametrize("seed", range(4))
 def test_reading_is_the_inverse_of_writing(tmp_path, seed, rate):

@@ -17,6 +17,7 @@ def gaps(robot: cs.Robot, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.abs(np.where(turns, np.angle(np.exp(1j * d)), d)).max(axis=-1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["panda", "ur5e", "scara", "fetch_torso", "stanford", "planar_3r"])
 def test_ends_of_many_starts_are_apart(name: str) -> None:
     robot = cs.load_robot(name)

@@ -37,6 +37,7 @@ def contradictions(robot, T, found, joint, n):
     return wrong
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["panda", "iiwa14", "pr2_right", "j2s7s300", "xarm7", "tiago_arm", "rm75"])
 def test_no_sample_contradicts_the_intervals(name):
     robot = cs.load_robot(name)

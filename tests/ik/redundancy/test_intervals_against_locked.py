@@ -172,6 +172,7 @@ def at_limits(robot, rng):
     return q
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*SPHERICAL, *OTHERS])
 def test_joints_exactly_at_a_limit(name):
     robot, rng = cs.load_robot(name), np.random.default_rng(11)

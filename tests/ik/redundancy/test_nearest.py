@@ -16,6 +16,7 @@ def sampled_distance(robot, T, seed, joint, n):
     return np.nanmin(distances(b.q, seed))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["panda", "iiwa14", "pr2_right"])
 @pytest.mark.parametrize("noise", [0.02, 0.3, 2.0])
 def test_no_sample_is_nearer(name, noise):
@@ -113,6 +114,7 @@ def test_one_call_answers_like_a_batch_and_like_words():
         robot.ik(Ts[0], near=q[0, :6])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["panda", "iiwa14", "pr2_right_torso"])
 def test_seeds_in_awkward_places(name):
     """Seeds that are solutions, at the limits, turns away, and beside stretched and folded arms."""

@@ -241,6 +241,7 @@ LINKAGES = {  # links, radius, and how many curves there are at it
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("towards", [0.0, 0.8, np.pi / 2])
 @pytest.mark.parametrize("off", [0.0, 1e-6, -1e-6])
 @pytest.mark.parametrize("case", LINKAGES)

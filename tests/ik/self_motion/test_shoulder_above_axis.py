@@ -45,6 +45,7 @@ def largest_gap(rows, q):
     return np.abs(np.angle(np.exp(1j * (rows - q)))).max(axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_every_configuration_of_the_goal_is_on_a_listed_curve(seed):
     """The first joint may have values on several arcs, of which only one contains zero."""

@@ -111,6 +111,7 @@ def test_victoria_park_converges_from_dead_reckoning():
     assert answer.chi2 / answer.dof == pytest.approx(0.886, abs=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["intel.g2o", "manhattanOlson3500_g2o.g2o"])
 def test_half_of_the_loops_may_be_false(name):
     graph = cs.PoseGraph.read(shared_data() / "localization/posegraph" / name)

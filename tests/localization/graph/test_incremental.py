@@ -160,6 +160,7 @@ def test_other_pose_and_axes_change_nothing():
     assert np.allclose(*shown, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_public_graph():
     graph = cs.PoseGraph.read(shared_data() / "localization/posegraph/manhattanOlson3500_g2o.g2o")
     grown = feed(graph)

@@ -13,6 +13,7 @@ from localization.graph.graphs import chi2, jacobian, matrix, numbers, random_gr
 SPACES = pytest.mark.parametrize("spatial", [False, True], ids=["plane", "space"])
 
 
+@pytest.mark.slow
 @SPACES
 @pytest.mark.parametrize("landmarks", [0, 5])
 @pytest.mark.parametrize("method", ["gauss_newton", "levenberg_marquardt", "dog_leg"])

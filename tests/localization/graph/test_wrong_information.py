@@ -91,6 +91,7 @@ def in_millimetres(graph: cs.PoseGraph) -> cs.PoseGraph:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.0, 0.5])
 @pytest.mark.parametrize("factor", [1.0, 10.0, 100.0])
 @pytest.mark.parametrize("shape", SHAPES)
@@ -105,6 +106,7 @@ def test_true_loops_stay_and_false_ones_go_whatever_the_factor(shape, factor, sh
         assert 0.5 * factor < answer.chi2 / answer.dof < 1.5 * factor
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [1.0, 30.0])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_units_change_no_decision(shape, factor):
@@ -120,6 +122,7 @@ def test_other_robust_methods_know_the_factor_too(robust):
     assert len(gone & set(range(true))) <= 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
 def test_false_loops_alone_are_all_rejected(shape):
     """Other information does not explain them; two or three agree by chance, or with what odometry errs."""

@@ -33,6 +33,7 @@ def test_corners_are_counted():
         assert cs.OccupancyGrid(blocked).corners == corners_of(blocked)
 
 
+@pytest.mark.slow
 @pytest.mark.data
 @pytest.mark.parametrize("name", ["arena", "brc202d", "AcrosstheCape"])
 def test_every_line_of_the_grids(name):

@@ -35,6 +35,7 @@ def off_middle(noise, rng):
     return np.abs(middle[:, 1] - 2).mean()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda f: f.__name__)
 def test_walks_are_free_and_goals_are_never_called_unreachable(family):
     reachable = found = 0

@@ -54,6 +54,7 @@ def rooms(rng, n=50, walls=6):
     return blocked
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("reverse", [True, False])
 def test_ways_are_arcs_without_contact(seed, reverse):

@@ -162,6 +162,7 @@ def test_options_that_make_no_sense():
         ask(world, (1, 1), (2, 2), depth=2.5)
 
 
+@pytest.mark.slow
 def test_a_tree_that_is_kept_answers_as_one_made_anew():
     rng = np.random.default_rng(6)
     corners = rng.uniform(0, 9, (25, 2))

@@ -42,6 +42,7 @@ def test_segments_lead_to_the_goal(name):
         assert curve.length == pytest.approx(DISTANCE[name](start, goal, radius), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_no_search_over_words_is_shorter_than_dubins():
     rng = np.random.default_rng(2)
     for goal in random_poses(rng, 12, size=3.0):
@@ -50,6 +51,7 @@ def test_no_search_over_words_is_shorter_than_dubins():
         )
 
 
+@pytest.mark.slow
 def test_no_word_of_three_segments_is_shorter_than_reeds_shepp():
     rng = np.random.default_rng(3)
     equal = 0

@@ -93,6 +93,7 @@ def newton(discs, goal, kappa, p):
     return None
 
 
+@pytest.mark.slow
 def test_every_flat_place_is_a_saddle_and_there_is_one_for_each_disc():
     """Newton's method from many places, on differences of the definition, knows no others."""
     rng = np.random.default_rng(2)
@@ -159,6 +160,7 @@ def test_star_worlds_have_the_goal_as_their_only_lowest_place():
         assert np.all(f(walls) > 1 - 1e-6)
 
 
+@pytest.mark.slow
 def test_descents_arrive_from_everywhere_and_keep_out_of_obstacles():
     rng = np.random.default_rng(4)
     for k in range(12):

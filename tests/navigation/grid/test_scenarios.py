@@ -55,6 +55,7 @@ def test_every_line_has_the_length_that_the_file_prints(name):
             assert abs(grids.walked(blocked, cells_of(grid, route)) - route.length) <= 1e-9
 
 
+@pytest.mark.slow
 def test_lines_equal_an_independent_dijkstra():
     """By default some lines of each map; all of them, which takes long, with CSPACE_ALL_LINES=1."""
     share = 1 if os.environ.get("CSPACE_ALL_LINES") else 150

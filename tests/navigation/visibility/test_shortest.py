@@ -70,6 +70,7 @@ def test_recorded_worlds(planner):
             check_found(route, world)
 
 
+@pytest.mark.slow
 @pytest.mark.data
 @pytest.mark.parametrize("name", ["arena", "brc202d", "AcrosstheCape"])
 def test_every_line_of_the_grids(name):

@@ -89,6 +89,7 @@ def distance_to_lines(points, lines):
     return best
 
 
+@pytest.mark.slow
 def test_every_arc_is_as_far_from_walls_as_it_says(world):
     diagram = voronoi_diagram(world)
     rings = rings_of(world)
@@ -98,6 +99,7 @@ def test_every_arc_is_as_far_from_walls_as_it_says(world):
         assert np.allclose(line[[0, -1]], diagram.vertices[ends], rtol=0, atol=1e-6 * side_of(world))
 
 
+@pytest.mark.slow
 def test_every_point_where_two_walls_are_nearest_lies_on_it(world):
     """From free points away from their nearest wall until another is as near, by bisection."""
     rings = rings_of(world)
@@ -134,6 +136,7 @@ def test_no_way_over_a_fine_grid_is_wider(world):
         assert route.status == cs.navigate(world, nodes[tuple(a)], nodes[tuple(b)]).status
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("prefer", ["clearance", "length"])
 def test_ways_keep_the_clearance_they_claim(world, prefer):
     points = free_points(world, 24, seed=5)
@@ -166,6 +169,7 @@ def test_the_shorter_choice_is_shorter_and_the_wider_wider(world):
             assert wide.evidence.least_clearance >= quick.evidence.least_clearance - 1e-9
 
 
+@pytest.mark.slow
 def test_of_the_widest_ways_it_is_the_shortest(world):
     """Beside Dijkstra on the drawn diagram, once over what is a little wider and once a little narrower."""
     step, rings = 0.005 * side_of(world), rings_of(world)

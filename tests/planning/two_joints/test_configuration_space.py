@@ -16,6 +16,7 @@ from planning.two_joints import arms
 UNSURE = 1e-9  # of a distance [m]: nearer to contact either verdict is right
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(20))
 def test_cells_are_those_of_a_brute_force_over_polygons(seed):
     rng = np.random.default_rng(seed)
@@ -72,6 +73,7 @@ def scene_at_random(rng, T):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_a_scene_is_cut_where_the_arm_is_mounted(seed):
     """Links as samples of points against the signed distances of the shapes."""
@@ -97,6 +99,7 @@ def test_a_scene_is_cut_where_the_arm_is_mounted(seed):
     assert free.any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_curves_of_the_boundary_touch_what_they_name(seed):
     rng = np.random.default_rng(300 + seed)

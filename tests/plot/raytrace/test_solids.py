@@ -98,6 +98,7 @@ def test_the_first_meeting_lies_on_the_surface(name, camera):
         assert (np.einsum("ij,ij->i", normals[hit], ways) < 1e-9).all(), "normals face the ray"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("camera", ["eye", "light"])
 @pytest.mark.parametrize("name", BODIES)
 def test_rays_that_miss_stay_outside(name, camera):
