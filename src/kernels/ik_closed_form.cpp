@@ -56,7 +56,8 @@ void ik_many(const Arm& arm, const double* T, std::size_t n, std::size_t batch, 
         for (int k = 0; k < max_branches; ++k) {
             V angles[6];
             for (int i = 0; i < 6; ++i) angles[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
-            if (plan.polish) b.doubt = b.doubt || (b.ok[k] && !polished_angles(plan, goal.T, angles));
+            if (plan.polish && any(b.ok[k]))
+                b.doubt = b.doubt || (b.ok[k] && !polished_angles(plan, goal.T, angles));
             store_rows(angles, 6, stage + 6 * k, row, lanes);
         }
         for (int l = 0; l < lanes; ++l) {

@@ -152,13 +152,15 @@ void GridData::mark_cells(const std::vector<int>& counts) {
 }
 
 std::vector<Vec3d> GridData::sort_points(std::span<const Vec3d> points) {
-    std::vector<Vec3d> sorted(points.size());
-    if (sorted.empty()) return sorted;
-    std::vector<int> cells(sorted.size());
+    std::vector<Vec3d> sorted;
+    if (points.empty()) return sorted;
+    std::vector<int> cells(points.size()), order(points.size());
     const std::vector<int> counts = count_points(points, cells);
     mark_cells(counts);
-    visit_range(0, sorted.size(),
-                [&](std::size_t i) { sorted[std::size_t(--points_[std::size_t(cells[i])])] = points[i]; });
+    visit_range(0, points.size(),
+                [&](std::size_t i) { order[std::size_t(--points_[std::size_t(cells[i])])] = int(i); });
+    sorted.reserve(points.size());
+    visit_range(0, points.size(), [&](std::size_t i) { sorted.push_back(points[std::size_t(order[i])]); });
     visit_range(0, counts.size(), [&](std::size_t cell) {
         if (counts[cell] > most_unsorted)
             halve_points(std::span(sorted).subspan(std::size_t(points_[cell]), std::size_t(counts[cell])));

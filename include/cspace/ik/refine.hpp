@@ -457,12 +457,13 @@ CSPACE_NOINLINE V descend_abreast(const Chain& chain, const Posed& goal, double 
     return sqrt(best2);
 }
 
-// True if q, a candidate near a solution, has converged to it.
+// True if q, a candidate near a solution, has converged to it. Others are lost: the sine of a huge angle
+// takes long.
 template <class V>
 CSPACE_INLINE mask_of<V> polish_solution(const Chain& chain, const Pose<V>& goal, double length, V* q) {
-    const V first = newton_step(chain, goal, length, q);
-    const V second = newton_step(chain, goal, length, q);
-    return (first < tolerance::polish_reach) && (second < tolerance::polished);
+    const auto is_near = newton_step(chain, goal, length, q) < tolerance::polish_reach;
+    for (int i = 0; i < chain.n; ++i) q[i] = keep_lanes(is_near, q[i]);
+    return is_near && newton_step(chain, goal, length, q) < tolerance::polished;
 }
 
 // The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some generic

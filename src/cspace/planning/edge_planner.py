@@ -205,7 +205,7 @@ def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan, appr
     end = ENDS[found.status]
     status = STATUS_OF_END[end]
     if status == "found":
-        return status, f"found a path of length {shown(found.cost)} with {len(found.path)} corners"
+        return status, f"found a path of length {found.cost:.6g} with {len(found.path)} corners"
     if status == "invalid_start":
         return status, explain_rows(space, rows[0], found.starts, "start")
     if status == "invalid_goal":
