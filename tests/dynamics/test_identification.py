@@ -265,13 +265,13 @@ def test_the_answer_is_that_of_weighted_least_squares(rng):
 
 @pytest.mark.slow
 def test_standard_errors_cover_the_errors(rng):
-    """One per cent of noise on every torque, a hundred times: 99 % of the errors are within three of them."""
+    """One per cent of noise on every torque, forty times: 99 % of the errors are within three of them."""
     base = base_parameters(ARM)
     motion, _ = random_motion(ARM, rng, 400)
     tau = ARM.inverse_dynamics(*motion)
     noise = 0.01 * np.sqrt(np.mean(tau**2, axis=0))
     within = []
-    for seed in range(100):
+    for seed in range(40):
         measured = tau + noise * np.random.default_rng(1000 + seed).normal(size=tau.shape)
         found = identify(ARM, *motion, measured)
         within.append(np.abs(found.base - base.values) <= 3 * found.errors)

@@ -194,7 +194,7 @@ def test_an_elbow_that_rests_on_its_limit_is_within(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*FOLLOWED, *SPHERICAL, *OTHERS])
 def test_many_goals_agree_with_the_locked_solver(name):
-    check_arm(name, 20 if name == "gen3" else 300, 100, 31, 98)
+    check_arm(name, 20 if name == "gen3" else 100, 100, 31, 98)
 
 
 @pytest.mark.slow
