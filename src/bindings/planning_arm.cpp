@@ -121,15 +121,29 @@ NamedPlans plan_all_on_roadmap(const RoadmapWorld& world, const ConstDoubles& bo
     return {plan_each_on_roadmap(space, problems, options, world, is_lazy, threads), &checker, checker.dof()};
 }
 
+// Writes numbers to a dict under names that are made once.
+template <class... Values>
+void set_named(nb::dict& dict, PyObject* const* names, const Values&... values) {
+    std::size_t k = 0;
+    (PyDict_SetItem(dict.ptr(), names[k++], nb::cast(values).ptr()), ...);
+}
+template <std::size_t n>
+std::array<PyObject*, n> intern_names(const char* const (&names)[n]) {
+    std::array<PyObject*, n> made;
+    std::transform(names, names + n, made.begin(), PyUnicode_InternFromString);
+    return made;
+}
+
 nb::dict stats_of(const NamedPlan& named) {
+    static const auto names =
+        intern_names({"samples", "rejected", "edges", "blocked", "blocks", "nodes", "removed", "shortcuts",
+                      "proofs", "search_seconds", "simplify_seconds", "proof_seconds", "improve_seconds",
+                      "improvements", "expansions"});
     const ArmStats& s = named.plan.stats;
     nb::dict stats;
-    stats["samples"] = s.samples, stats["rejected"] = s.rejected, stats["edges"] = s.edges;
-    stats["blocked"] = s.blocked, stats["blocks"] = s.blocks, stats["nodes"] = s.nodes;
-    stats["removed"] = s.removed, stats["shortcuts"] = s.shortcuts, stats["proofs"] = s.proofs;
-    stats["search_seconds"] = s.search_seconds, stats["simplify_seconds"] = s.simplify_seconds;
-    stats["proof_seconds"] = s.proof_seconds, stats["improve_seconds"] = s.improve_seconds;
-    stats["improvements"] = s.improvements, stats["expansions"] = s.expansions;
+    set_named(stats, names.data(), s.samples, s.rejected, s.edges, s.blocked, s.blocks, s.nodes, s.removed,
+              s.shortcuts, s.proofs, s.search_seconds, s.simplify_seconds, s.proof_seconds, s.improve_seconds,
+              s.improvements, s.expansions);
     if (named.plan.status == PlanStatus::disconnected)
         stats["start_nodes"] = s.start_nodes, stats["goal_nodes"] = s.goal_nodes;
     return stats;

@@ -21,10 +21,10 @@ class Simplifier {
     static constexpr int most_rounds = 4;
     // As a share of the length of the path: of a pulled corner, and of a shortcut where corners are few; of a
     // shortcut per number of corners, and where they are many; of a round.
-    static constexpr double least_gain = 0.005, gain_per_corner = 0.03, finest_gain = 0.001;
+    static constexpr double least_gain = 0.005, gain_per_corner = 0.02, finest_gain = 0.001;
     static constexpr double least_round_gain = 0.02;
     // So many shortcuts in a row may fail, and so many per corner where there are more.
-    static constexpr int least_failures = 8, failures_per_corner = 3;
+    static constexpr int least_failures = 8, failures_per_corner = 2;
     // How far a corner is pulled towards the straight line past it.
     static constexpr double pulls[] = {0.5, 0.25};
 
@@ -77,7 +77,7 @@ class Simplifier {
             draw_pair();
             const std::size_t corners = path_.size() - 2;
             const std::size_t corner = 1 + std::min(std::size_t(u_ * double(corners)), corners - 1);
-            const double at = arcs_.upto(corner), share = v_ * v_;
+            const double at = arcs_.upto(corner), share = v_ * v_ * v_;
             failures = try_shortcut(at - share * at, at + share * (arcs_.total() - at)) ? 0 : failures + 1;
         }
     }

@@ -203,9 +203,9 @@ def join_rows(parts: list[Array], dof: int) -> tuple[Array, npt.NDArray[np.int64
 def explain_end(space: ArmSpace, rows: tuple[Array, Array], found: ArmPlan, approach: str) -> tuple[str, str]:
     """The status of a plan, and its reason in words."""
     end = ENDS[found.status]
+    if end == "found":
+        return end, f"found a path of length {found.cost:.6g} with {len(found.path)} corners"
     status = STATUS_OF_END[end]
-    if status == "found":
-        return status, f"found a path of length {found.cost:.6g} with {len(found.path)} corners"
     if status == "invalid_start":
         return status, explain_rows(space, rows[0], found.starts, "start")
     if status == "invalid_goal":
