@@ -488,11 +488,12 @@ struct Met {
 inline constexpr int perturbed_goals = 12;
 
 // The k-th perturbed goal: generic directions, both senses, decreasing distances.
+inline bool is_far(int k) { return k % 4 < 2; }
 inline Posed perturbed_goal(const Posed& goal, double length, int k) {
     constexpr double far = 1e-2, near = 1e-3;  // [rad, arm's lengths] regular, and within Newton's reach
     double d[max_joints];
     spread_configuration(k / 4, 6, d);
-    const double size = (k % 2 ? -1 : 1) * (k % 4 < 2 ? far : near) / pi;
+    const double size = (k % 2 ? -1 : 1) * (is_far(k) ? far : near) / pi;
     const Vec3d away = size * length * Vec3d{d[0], d[1], d[2]}, turn = size * Vec3d{d[3], d[4], d[5]};
     return {spatial::rotation_of_rotvec(turn) * goal.R, goal.t + away};
 }
@@ -553,10 +554,12 @@ inline void search_by_descent(const Chain& chain, const Posed& goal, double leng
 }
 
 // list_solutions(goal, add_candidate) calls add_candidate(q) for every solution of a goal, as a configuration
-// of the chain. Returns whether a new solution was found.
+// of the chain. Returns whether a new solution was found. is_empty: the solver is certain that there is none;
+// then goals nearby are looked at only if one farther away has a solution.
 template <class ListSolutions>
 inline bool search_perturbed_goals(const Chain& chain, const Posed& goal, double length,
-                                   const ListSolutions& list_solutions, Solutions& out, Met* met = nullptr) {
+                                   const ListSolutions& list_solutions, Solutions& out, Met* met = nullptr,
+                                   bool is_empty = false) {
     constexpr int most_steps = 40, room = 4 * max_solutions;
     constexpr double far = 1e-2;
     const int before = out.count;
@@ -569,11 +572,13 @@ inline bool search_perturbed_goals(const Chain& chain, const Posed& goal, double
         count = 0;
     };
     const auto add_candidate = [&](const double* candidate) {
+        is_empty = false;
         if (listed_beside(out, chain, candidate) >= 0) return;
         std::copy(candidate, candidate + chain.n, q[count]);
         if (++count == room) descend();
     };
-    for (int k = 0; k < perturbed_goals; ++k) list_solutions(perturbed_goal(goal, length, k), add_candidate);
+    for (int k = 0; k < perturbed_goals; ++k)
+        if (!is_empty || is_far(k)) list_solutions(perturbed_goal(goal, length, k), add_candidate);
     descend();
     return out.count > before;
 }

@@ -62,7 +62,7 @@ struct Search {
     void add_candidate(const double* q, bool accurate = false) {
         double scaled[n];
         for (int i = 0; i < n; ++i) scaled[i] = chain.prismatic[i] ? q[i] / size : q[i];
-        if (refine_angles(gap, scaled, 30, accurate ? missed_by_far : any_miss) > gap.reached) return;
+        if (refine_angles(gap, scaled, 30, {accurate ? missed_by_far : any_miss, true}) > gap.reached) return;
         // Half a turn away from the goal the sum of g × r vanishes too.
         if (spatial::angle_between(forward_kinematics(chain, scaled).R, goal.R) <= 1)
             keep_distinct(gap, scaled, found);

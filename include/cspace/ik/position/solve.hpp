@@ -34,7 +34,8 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
 // Refines a candidate and appends it if it reaches the goal. accurate: its joints are, if it does.
 template <int n>
 void keep_refined(const TipGap<n>& g, double* q, PositionSolutions& found, bool accurate = false) {
-    if (refine_angles(g, q, 30, accurate ? missed_by_far : any_miss) <= g.reached) keep_distinct(g, q, found);
+    if (refine_angles(g, q, 30, {accurate ? missed_by_far : any_miss, true}) <= g.reached)
+        keep_distinct(g, q, found);
 }
 
 // Distance of a point from the axis of a revolute joint, over the size of the arm, below which rounding

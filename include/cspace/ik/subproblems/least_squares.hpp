@@ -92,28 +92,45 @@ struct CurvedAngleProblem : AngleProblem<System> {
     }
 };
 
-// The damping of refine_angles, which ends at once from a start with a residual above `far`.
+// Which descents of refine_angles end early: at once those from a start with a residual above `far`; and
+// those that only seek zeros, where a residual above `clear` is not halved by some steps.
+struct Seek {
+    double far = 1e300;
+    bool zeros = false;
+    static constexpr double clear = 1e-3;
+    static constexpr int patience = 6;  // steps; a double zero takes one
+};
 struct NearbyDamping : GaussNewtonDamping {
-    double far;
-    bool starts = true;
+    Seek seek;
+    double halved = 1e300;  // the residual when it was last halved
+    int waited = -1;        // steps since then; −1 before the first
 
     void accept(double error) {
-        if (starts && error > far) enough = error;
-        starts = false;
+        if (waited < 0 && error > seek.far) enough = error;
+        wait();
+        if (error < 0.5 * halved) halved = error, waited = 0;
         GaussNewtonDamping::accept(error);
+    }
+    void reject() {
+        wait();
+        GaussNewtonDamping::reject();
+    }
+
+  private:
+    void wait() {
+        if (++waited >= Seek::patience && seek.zeros && halved > Seek::clear) enough = halved;
     }
 };
 
-// Moves the unknowns to a local minimum of the residual; returns its length there. Nothing is moved where the
-// residual exceeds `far`.
+// Moves the unknowns to a local minimum of the residual, or as far as is sought; returns its length there.
 template <class System, class Unknown>
-double refine_angles(const System& system, Unknown* t, int most_steps = 30, double far = 1e300) {
+double refine_angles(const System& system, Unknown* t, int most_steps = 30, const Seek& seek = {}) {
     constexpr double shortest_step = 1e-10;  // [rad] the step after it squares the error
     // A slope that is only rounding must not throw an unknown about.
     constexpr double least = tolerance::exact * tolerance::exact;
     Linearised<System> at;
     const GaussNewtonDamping damping{2 * std::numeric_limits<double>::epsilon(), shortest_step, least};
-    return descend_damped(AngleProblem<System>{system}, t, at, NearbyDamping{damping, far}, most_steps);
+    return descend_damped(AngleProblem<System>{system}, t, at, NearbyDamping{damping, seek}, most_steps);
 }
 // The same where the residual there may be large.
 template <class System, class Unknown>
