@@ -160,6 +160,47 @@ def test_a_slide_reaches_as_far_as_it_likes():
         assert gap(robot, robot.ik(T).q, [0.3, -0.8, far, 0.1, 0.4, -0.2]).min() < 1e-6
 
 
+def on_the_border(robot, rng, joints=3):
+    """A configuration in which the first joints, which place the wrist, are singular."""
+    while True:
+        q, j = random_q(robot, rng, 1)[0], rng.integers(joints)
+        rows = np.repeat(q[None], 81, axis=0)
+        rows[:, j] = np.linspace(-3.0, 3.0, 81)
+        sign = np.sign(np.linalg.det(robot.jacobian(rows)))
+        if len(turns := np.flatnonzero(sign[:-1] != sign[1:])):
+            break
+    k = rng.choice(turns)
+    low, high = rows[k, j], rows[k + 1, j]
+    for _ in range(60):
+        q[j] = 0.5 * (low + high)
+        low, high = (q[j], high) if np.sign(np.linalg.det(robot.jacobian(q))) == sign[k] else (low, q[j])
+    return q
+
+
+@pytest.mark.parametrize("place", ["PRR", "RPR", "RRP", "PPR", "PRP", "RPP"])
+def test_a_slide_and_a_wrist_on_the_border_of_their_reach_and_beyond(place):
+    rng, empty = np.random.default_rng([4, *map(ord, place)]), 0
+    for _ in range(4):
+        points = np.vstack([rng.uniform(-1, 1, (3, 3)), np.repeat(rng.uniform(-1, 1, (1, 3)), 3, axis=0)])
+        axes = [unit(v) for v in rng.normal(size=(6, 3))]
+        robot = arm_of(place + "RRR", axes, points, rng.uniform(-1, 1, 3))
+        for _ in range(3):
+            q = on_the_border(robot, rng)
+            T = robot.fk(q)
+            found = robot.ik(T)
+            assert gap(robot, found.q, q).min() < 1e-4
+            across = np.linalg.svd(robot.jacobian(q))[0][:3, -1]
+            for step in (-0.3, -0.01, 0.01, 0.3):
+                beyond = T.copy()
+                beyond[:3, 3] += step * unit(across)
+                answer = robot.ik(beyond)
+                if not answer:
+                    empty += 1
+                    assert answer.status == "unreachable"
+                    assert not robot.ik_many_starts(beyond, 60, rng=0, limits=False)
+    assert empty > 0 or place == "RRP"  # it reaches almost everything
+
+
 def test_axes_parallel_and_square_in_odd_places():
     """No closed form and no regular formulation: neighbours of the arm lead to its solutions."""
     robot = arm_of(
