@@ -54,6 +54,7 @@ PyObject* solve_near(PyObject* self, const double* goal, PyObject* near, bool wi
     std::int8_t branch = -1;
     PyObject* about = nullptr;
     if (solver.is_redundant()) {
+        if (solver.exceeds_reach(goal)) return nullptr;
         about = solver_object(self)->nearest_about;
         ik::RedundantSolver& own = solver.redundant();
         ik::RedundantSolver& asked = within_limits ? own : own.without_limits();
