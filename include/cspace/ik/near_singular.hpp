@@ -487,8 +487,9 @@ struct Met {
 
 inline constexpr int perturbed_goals = 12;
 
-// The k-th perturbed goal: generic directions, both senses, decreasing distances.
+// Whether the k-th perturbed goal is one of those farther away.
 inline bool is_far(int k) { return k % 4 < 2; }
+// The k-th perturbed goal: generic directions, both senses, decreasing distances.
 inline Posed perturbed_goal(const Posed& goal, double length, int k) {
     constexpr double far = 1e-2, near = 1e-3;  // [rad, arm's lengths] regular, and within Newton's reach
     double d[max_joints];
