@@ -2,9 +2,10 @@
 # AVX-512. Whoever links cspace_kernels gets the definitions by which src/kernels/dispatch.hpp declares the copies.
 file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/*.cpp)
 list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
-# Kernels that work on packs of four numbers: an AVX-512 copy of them is no faster than that for AVX2
-# (docs/decisions/compiled-boundary.md). Their headers say CSPACE_NARROW_KERNEL.
-set(narrow_kernels math_fronts localization_correlation localization_landmarks localization_particles localization_search ik_pose ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle collision search)
+# Kernels without a copy for AVX-512, which would be no faster than that for AVX2 (docs/decisions/avx512.md). Their headers say CSPACE_NARROW_KERNEL.
+set(narrow_kernels collision dynamics_regressor ik_arm_angle ik_intervals ik_locked ik_nearest ik_pose ik_subproblems ik_sweep
+                   ik_tracking localization_correlation localization_landmarks localization_particles localization_search
+                   math_fronts search spatial_rotations trajectory_jerk)
 list(TRANSFORM narrow_kernels PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/)
 list(TRANSFORM narrow_kernels APPEND .cpp)
 set(wide_files ${kernel_files})

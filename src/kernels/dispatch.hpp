@@ -3,10 +3,10 @@
 // A kernel is declared with CSPACE_KERNEL(room, result, name, (parameters)) in a header of this folder; the
 // room is its namespace, such as cspace::ik. It is defined in `namespace room::inline CSPACE_ISA` in a .cpp
 // of this folder (compiled once per instruction set), and called as kernels::name(...).
-// CSPACE_NARROW_KERNEL declares one whose packs hold four numbers: its widest copy is that for AVX2, for an
-// AVX-512 copy would gain nothing (cmake/kernels.cmake lists the others). The files compiled per instruction
-// set hold plain arrays only: a standard container instantiated there could leak its AVX2 copy into the rest
-// of the program (a test looks for leaks).
+// CSPACE_NARROW_KERNEL declares one whose widest copy is that for AVX2, because an AVX-512 copy would gain
+// nothing (listed in cmake/kernels.cmake). The files compiled per instruction set hold plain arrays only: a
+// standard container instantiated there could leak its AVX2 copy into the rest of the program (a test looks
+// for leaks).
 //
 // On x86-64 the build defines CSPACE_HAS_AVX2, and CSPACE_HAS_AVX512 where the compiler has vector
 // extensions.

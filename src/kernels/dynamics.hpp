@@ -75,7 +75,6 @@ inline std::size_t scratch_bytes(const RegressorRows& rows) { return scratch_byt
 // Rows begin to end. False if an argument among them is not finite; the results are then of no use.
 CSPACE_DYNAMICS_KERNEL(inverse_rows, Rows)
 CSPACE_DYNAMICS_KERNEL(mass_rows, Rows)
-CSPACE_DYNAMICS_KERNEL(regressor_rows, RegressorRows)
 // Also false if the mass matrix of a row is singular.
 CSPACE_DYNAMICS_KERNEL(forward_rows, Rows)
 CSPACE_DYNAMICS_KERNEL(spatial_rows, Rows)
@@ -84,3 +83,5 @@ CSPACE_DYNAMICS_KERNEL(inverse_float_rows, FloatRows)
 CSPACE_DYNAMICS_KERNEL(mass_float_rows, FloatRows)
 CSPACE_DYNAMICS_KERNEL(forward_float_rows, FloatRows)
 #undef CSPACE_DYNAMICS_KERNEL
+CSPACE_NARROW_KERNEL(cspace::dynamics, bool, regressor_rows,
+                     (const RegressorRows& rows, std::size_t begin, std::size_t end, void* scratch))

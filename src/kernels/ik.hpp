@@ -110,6 +110,6 @@ CSPACE_KERNEL(cspace::ik, void, ik_descend, (const DescentRows& rows))
 
 // --- ik_tracking.cpp -----------------------------------------------------------------------------------
 // Branches along a path of poses: see cspace/ik/tracking/follow.hpp.
-CSPACE_KERNEL(cspace::ik, void, ik_track, (const Track& track))
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_track, (const Track& track))
 // Configurations along a Cartesian path: see cspace/ik/tracking/along.hpp.
-CSPACE_KERNEL(cspace::ik, void, ik_path_rows, (const PathRows& rows))
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_path_rows, (const PathRows& rows))

@@ -8,10 +8,10 @@
 // meaningless.
 
 // q: (n, 4), of any length, order w x y z, or x y z w if scalar_last.
-CSPACE_KERNEL(cspace::spatial, bool, quaternion_matrices_n,
-              (const double* q, bool scalar_last, double* R, std::size_t n))
+CSPACE_NARROW_KERNEL(cspace::spatial, bool, quaternion_matrices_n,
+                     (const double* q, bool scalar_last, double* R, std::size_t n))
 // w: (n, 3) [rad], zero included; one longer than a turn needs care.
-CSPACE_KERNEL(cspace::spatial, bool, rotvec_matrices_n, (const double* w, double* R, std::size_t n))
+CSPACE_NARROW_KERNEL(cspace::spatial, bool, rotvec_matrices_n, (const double* w, double* R, std::size_t n))
 // axis: (n, 3), of any length; angle: (n,) [rad].
-CSPACE_KERNEL(cspace::spatial, bool, axis_angle_matrices_n,
-              (const double* axis, const double* angle, double* R, std::size_t n))
+CSPACE_NARROW_KERNEL(cspace::spatial, bool, axis_angle_matrices_n,
+                     (const double* axis, const double* angle, double* R, std::size_t n))

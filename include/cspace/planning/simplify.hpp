@@ -21,10 +21,10 @@ class Simplifier {
     static constexpr int most_rounds = 4;
     // As a share of the length of the path: of a pulled corner, and of a shortcut where corners are few; of a
     // shortcut per number of corners, and where they are many; of a round.
-    static constexpr double least_gain = 0.005, gain_per_corner = 0.02, finest_gain = 0.001;
+    static constexpr double least_gain = 0.01, gain_per_corner = 0.02, finest_gain = 0.001;
     static constexpr double least_round_gain = 0.02;
     // So many shortcuts in a row may fail, and so many per corner where there are more.
-    static constexpr int least_failures = 8, failures_per_corner = 2;
+    static constexpr double least_failures = 7, failures_per_corner = 1.5;
     // How far a corner is pulled towards the straight line past it.
     static constexpr double pulls[] = {0.5, 0.25};
 
@@ -71,7 +71,7 @@ class Simplifier {
     void cut_corners() {
         int failures = 0;
         const auto most_failures = [&] {
-            return std::max(least_failures, failures_per_corner * int(path_.size() - 2));
+            return std::max(least_failures, failures_per_corner * double(path_.size() - 2));
         };
         while (has_corners() && failures < most_failures() && space_.has_time()) {
             draw_pair();
