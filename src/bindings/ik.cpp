@@ -44,8 +44,9 @@ it is the configuration nearest to the middle of the limits.
 Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], or as locked, or within limits where it
 is one configuration that was chosen among infinitely many; status, reason, complete, residual,
 branch, self_motions, freedom, derivative, within(), nearest(), wrapped(). It is falsy if nothing reaches the goal.
-Returns SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Raises InputError for a goal that
-is not a pose, and NoClosedFormError for mimic joints, a floating base or more than sixteen joints.)doc";
+Returns SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Type checkers know which of the two
+it is for lists and for arrays whose number of axes they know (np.eye(4)), and accept either for other arrays.
+Raises InputError for a goal that is not a pose, and NoClosedFormError for mimic joints, a floating base or more than sixteen joints.)doc";
 
 namespace {
 

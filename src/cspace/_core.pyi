@@ -8,7 +8,10 @@ import numpy
 import numpy.typing
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from cspace.arrays import Matrix, Stack, UnknownRank
 from cspace.ik.solutions import Solutions
+from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.solver import Solver
 from cspace.model import Limits
 
 
@@ -149,7 +152,20 @@ def subproblem_6(h: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 3), o
 class SolverBase(KinematicsBase):
     """The compiled half of cspace.ik.Solver."""
 
-    def solve(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions | Any:
+    @overload
+    def solve(self, goal: UnknownRank, *, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any: ...
+
+    @overload
+    def solve(self, goal: Matrix | Sequence[Sequence[float]], *, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, float] | Mapping[int, float] | None = None, swivel: float | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions: ...
+
+    @overload
+    def solve(self, goal: Stack, *, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> SolutionsBatch: ...
+
+    @overload
+    def solve(self, goal: None = None, *, position: Sequence[float | None] | None = None, rotation: Matrix | Sequence[Sequence[float]] | None = None, direction: Sequence[float] | None = None, look_at: Sequence[float] | None = None, ray: tuple[Sequence[float], Sequence[float]] | None = None, angle_to: tuple[str | Sequence[float], float] | None = None, tool_axis: str | Sequence[float] = "z", angle: float | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, float] | Mapping[int, float] | None = None, swivel: float | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions: ...
+
+    @overload
+    def solve(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
         Every configuration q with fk(q) = goal.
 
@@ -176,14 +192,28 @@ class SolverBase(KinematicsBase):
         Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], or as locked, or within limits where it
         is one configuration that was chosen among infinitely many; status, reason, complete, residual,
         branch, self_motions, freedom, derivative, within(), nearest(), wrapped(). It is falsy if nothing reaches the goal.
-        Returns SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Raises InputError for a goal that
-        is not a pose, and NoClosedFormError for mimic joints, a floating base or more than sixteen joints.
+        Returns SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Type checkers know which of the two
+        it is for lists and for arrays whose number of axes they know (np.eye(4)), and accept either for other arrays.
+        Raises InputError for a goal that is not a pose, and NoClosedFormError for mimic joints, a floating base or more than sixteen joints.
         """
 
 class RobotBase(KinematicsBase):
     """The compiled half of cspace.Robot."""
 
-    def ik(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions | Any:
+    @overload
+    def ik(self, goal: UnknownRank, *, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any: ...
+
+    @overload
+    def ik(self, goal: Matrix | Sequence[Sequence[float]], *, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, float] | Mapping[int, float] | None = None, swivel: float | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions: ...
+
+    @overload
+    def ik(self, goal: Stack, *, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> SolutionsBatch: ...
+
+    @overload
+    def ik(self, goal: None = None, *, position: Sequence[float | None] | None = None, rotation: Matrix | Sequence[Sequence[float]] | None = None, direction: Sequence[float] | None = None, look_at: Sequence[float] | None = None, ray: tuple[Sequence[float], Sequence[float]] | None = None, angle_to: tuple[str | Sequence[float], float] | None = None, tool_axis: str | Sequence[float] = "z", angle: float | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, float] | Mapping[int, float] | None = None, swivel: float | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Solutions: ...
+
+    @overload
+    def ik(self, goal: Any = None, *, position: ArrayLike | Sequence[float | None] | None = None, rotation: ArrayLike | None = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: tuple[ArrayLike, ArrayLike] | None = None, angle_to: tuple[ArrayLike, ArrayLike] | None = None, tool_axis: str | ArrayLike = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, limits: Limits | bool | None = None, locked: Mapping[str, ArrayLike] | Mapping[int, ArrayLike] | None = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
         Every configuration q with fk(q) = goal.
 
@@ -210,8 +240,9 @@ class RobotBase(KinematicsBase):
         Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], or as locked, or within limits where it
         is one configuration that was chosen among infinitely many; status, reason, complete, residual,
         branch, self_motions, freedom, derivative, within(), nearest(), wrapped(). It is falsy if nothing reaches the goal.
-        Returns SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Raises InputError for a goal that
-        is not a pose, and NoClosedFormError for mimic joints, a floating base or more than sixteen joints.
+        Returns SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Type checkers know which of the two
+        it is for lists and for arrays whose number of axes they know (np.eye(4)), and accept either for other arrays.
+        Raises InputError for a goal that is not a pose, and NoClosedFormError for mimic joints, a floating base or more than sixteen joints.
         """
 
     def collides(self, q: ArrayLike, scene: Any = None, *, margin: float = 0.0, threads: int | None = None) -> Any:
@@ -398,7 +429,7 @@ class SolutionsBase:
     @property
     def goal(self) -> NDArray[numpy.float64]: ...
     @property
-    def solver(self) -> Any: ...
+    def solver(self) -> Solver: ...
     @property
     def _verdict(self) -> int: ...
     @property
@@ -1380,7 +1411,7 @@ def _chain_misses(*arguments: Any) -> None: ...
 def _tree_rows(*arguments: Any) -> bool: ...
 def _dynamics_rows(*arguments: Any) -> bool: ...
 def _float_dynamics_rows(*arguments: Any) -> bool: ...
-def _remember_checker(robot: Any, scene: Any, checker: Any) -> None: ...
+def _remember_checker(robot: RobotBase, scene: Any, checker: Any) -> None: ...
 def _ik_build(*arguments: Any) -> None: ...
 def _ik_room(solver: Any) -> int: ...
 def _ik_answer(*arguments: Any) -> Any: ...
@@ -1419,7 +1450,7 @@ def _ik_results(cls: type) -> None: ...
 def _ik_single(*arguments: Any) -> Any: ...
 def _ik_descend(*arguments: Any) -> None: ...
 def _ik_sample(*arguments: Any) -> int: ...
-def _ik_moving(robot: Any, frame: int) -> int: ...
+def _ik_moving(robot: KinematicsBase, frame: int) -> int: ...
 def _ik_track(*arguments: Any) -> None: ...
 def _ik_path_rows(*arguments: Any) -> None: ...
 def _ik_measure_pieces(*arguments: Any) -> None: ...

@@ -8,12 +8,12 @@ import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, Final
+from typing import Any, Final, NoReturn
 
 import numpy as np
 import numpy.typing as npt
 
-from cspace.errors import InputError, InputTypeError, shown
+from cspace.errors import InputError, InputTypeError, name_type, shown
 from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
@@ -21,6 +21,11 @@ __all__ += ["any_array", "bounded_number", "guard_memory", "one_array", "shape_o
 __all__ += ["outside_level", "warn_of_degrees", "whole_number"]
 
 Array = npt.NDArray[np.float64]
+UnknownRank = np.ndarray[tuple[NoReturn, NoReturn, NoReturn, NoReturn, NoReturn], np.dtype[Any]]
+"""Matches only arrays of whose number of axes type checkers know nothing, as of most functions of numpy."""
+Matrix = np.ndarray[tuple[int, int], np.dtype[Any]]
+Stack = np.ndarray[tuple[int, int, int], np.dtype[Any]] | np.ndarray[tuple[int, int, int, int], np.dtype[Any]]
+"""Matrices with one or two leading axes."""
 
 LARGEST_FLOAT: Final = sys.float_info.max
 
@@ -162,7 +167,7 @@ def whole_number(value: Any, subject: str, least: int, most: int, note: str = ""
     except TypeError:
         count = None
     if count is None or isinstance(value, (bool, np.bool_)):
-        raise InputTypeError(f"{subject} is a {type(value).__name__}; it must be a whole number")
+        raise InputTypeError(f"{subject} is {name_type(value)}; it must be a whole number")
     if not least <= count <= most:
         also = f"; {note}" if note else ""
         raise InputError(f"{subject} is {count}; it must be {least} to {most}{also}")
@@ -268,7 +273,7 @@ def as_generator(rng: int | np.random.Generator | None) -> np.random.Generator:
     if isinstance(rng, np.random.Generator):
         return rng
     if rng is not None and (isinstance(rng, bool) or not isinstance(rng, (int, np.integer))):
-        raise InputTypeError(f"rng is a {type(rng).__name__}; use an int seed, a numpy Generator or None")
+        raise InputTypeError(f"rng is {name_type(rng)}; use an int seed, a numpy Generator or None")
     if rng is not None and rng < 0:
         raise InputError(f"rng is {rng}; a seed must be 0 or more")
     return np.random.default_rng(rng)

@@ -27,6 +27,7 @@ __all__ = [
     "keyword_error",
     "module_error",
     "name_new_keywords",
+    "name_type",
     "plain_letters",
     "shorten",
     "shown",
@@ -50,6 +51,7 @@ RENAMED: Final = MappingProxyType(
     {
         "IK": "ik",
         "IK_batched": "ik",
+        "Family": "SelfMotion",
         "Price": "Stats",
         "Q": "q",
         "StillDirection": "InvariantDirection",
@@ -96,6 +98,8 @@ RENAMED: Final = MappingProxyType(
         "seed": "near= or rng",
         "sees": "sensing",
         "setFromIK": "ik",
+        "still_directions": "invariant_directions",
+        "still_points": "invariant_points",
         "tool": "with_tool",
         "why": "cause",
     }
@@ -364,7 +368,7 @@ def check_known(subject: str, name: object, known: Iterable[str]) -> None:
 def check_kind(subject: str, value: object, kind: type | tuple[type, ...], remedy: str) -> None:
     """InputTypeError for a value that is of none of some classes, with what to give instead."""
     if not isinstance(value, kind):
-        raise InputTypeError(f"{subject} is a {type(value).__name__}; {remedy}")
+        raise InputTypeError(f"{subject} is {name_type(value)}; {remedy}")
 
 
 def keyword_error(text: str) -> TypeError:
@@ -417,6 +421,8 @@ def module_error(module: ModuleType, name: str) -> AttributeError:
     text = f"module {module.__name__!r} has no attribute {name!r}"
     if (ours := RENAMED.get(name)) in module.__dict__:
         text += f": use {ours}"
+    elif call := FOREIGN_NAMES.get(name):
+        text += f": use {call}"
     return AttributeError(text, name=name, obj=module)
 
 
@@ -429,6 +435,12 @@ class Renamed:
 
         def __getattr__(self, name: str) -> object:
             raise attribute_error(self, name)
+
+
+def name_type(value: object) -> str:
+    """The type of a value with its article: a str, an int, an ndarray."""
+    name = type(value).__name__
+    return f"{'an' if re.match('[aeioAEIO]|nd', name) else 'a'} {name}"
 
 
 def shown(value: object) -> str:

@@ -151,7 +151,7 @@ def test_steps_of_a_judge_that_need_too_many_samples_are_refused():
     with pytest.raises(InputError, match="at least one corner"):
         judge.judge_path(np.empty((0, 2)))
     assert time.perf_counter() - began < 5.0
-    with pytest.raises(InputTypeError, match="scene is a int"):
+    with pytest.raises(InputTypeError, match="scene is an int"):
         MeshJudge(ROBOT, 5)
 
 

@@ -31,7 +31,7 @@ HUGE = [[10**400] * 4] * 4
 CALLS = [
     (lambda: Limits([1.0, [1.0, 2.0]], [2.0, 3.0]), InputTypeError, "^lower limits"),
     (lambda: Limits(["a"], [1.0]), InputTypeError, "^lower limits"),
-    (lambda: ARM.export("cpp", locked=np.array(0.1)), InputTypeError, "locked is a ndarray, expected joint"),
+    (lambda: ARM.export("cpp", locked=np.array(0.1)), InputTypeError, "locked is an ndarray, expected joint"),
     (lambda: ARM.ik(HUGE), InputError, "beyond the range of float64"),
     (lambda: ARM.ik(GOAL, least_squares=GOAL), InputTypeError, "least_squares must be True or False"),
     (

@@ -544,3 +544,18 @@ def test_angles_that_seem_to_be_degrees_are_noticed_at_a_terminal_alone(line, to
     app.main(line.split())
     assert ("--deg" in stream.getvalue()) == told
     assert "--deg" not in cspace(line).out
+
+
+@pytest.mark.parametrize(
+    ("line", "old", "new"),
+    [
+        ("ik panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --fixed panda_joint7=0.3", "--fixed", "--locked"),
+        ("ik panda --explain --asked position", "--asked", "--goal-parts"),
+        ("export panda --fixed panda_joint7", "--fixed", "--locked"),
+        ("export panda --fixed=panda_joint7", "--fixed", "--locked"),
+    ],
+)
+def test_an_old_option_names_the_new_one(line, old, new):
+    done = cspace(line)
+    assert done.code == 2
+    assert f"unknown option {old}: use {new};" in done.err

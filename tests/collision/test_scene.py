@@ -133,7 +133,7 @@ CALLS = {
     ),
     "a pair of one": (lambda s: s.allow("can", "can"), InputError, "names 'can' twice"),
     "a pair that is not allowed": (lambda s: s.forbid("can", "table"), UnknownNameError, "no allowed pair"),
-    "something else than a shape": (lambda s: s.add([3]), InputTypeError, "is a int; it must be a shape"),
+    "something else than a shape": (lambda s: s.add([3]), InputTypeError, "is an int; it must be a shape"),
     "one shape without brackets": (lambda s: cs.Scene(cs.Sphere(1.0)), InputTypeError, "in brackets"),
     "an unknown link": (
         lambda s: s.allow("can", "hnad").check_links(["hand"], ["hand"], "r"),

@@ -478,7 +478,7 @@ def test_bad_input():
         dynamics.constrained_forward_dynamics(linkage, q, rest, rest)
     with pytest.raises(InputError, match="dt is 0"):
         linkage.simulate(q, rest, duration=1, dt=0)
-    with pytest.raises(InputTypeError, match="control is a int"):
+    with pytest.raises(InputTypeError, match="control is an int"):
         linkage.simulate(q, rest, control=3, duration=1, dt=0.1)
     with pytest.raises(InputError, match="expected"):
         linkage.simulate(q, rest, control=lambda t, q, qd: np.zeros(2), duration=1, dt=0.1)

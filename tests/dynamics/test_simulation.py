@@ -472,7 +472,7 @@ def test_an_answer_is_one_line_a_table_and_can_be_pickled():
         ({"tolerance": -1}, InputError, "tolerance"),
         ({"time_limit": 0}, InputError, "time_limit"),
         ({"expressed_in": "tool"}, UnknownNameError, "tool"),
-        ({"control": 3}, InputTypeError, "control is a int"),
+        ({"control": 3}, InputTypeError, "control is an int"),
         ({"control": lambda t, q, qd: [1.0]}, InputError, r"control at step 0 \(t = 0 s\) has shape \(1,\)"),
         ({"control": lambda t, q, qd: np.zeros((3, 2))}, InputError, r"shape \(3, 2\), expected \(2,\)"),
         ({"control": lambda t, q, qd: None}, InputTypeError, "control at step 0.* is None"),

@@ -171,7 +171,7 @@ def test_the_language_follows_the_ending(tmp_path):
 def test_unknown_languages_are_named():
     with pytest.raises(UnknownNameError, match=r"no language 'c\+\+'.*cpp"):
         cs.load_robot("ur5e").export("c++")
-    with pytest.raises(InputTypeError, match="lang is a int"):
+    with pytest.raises(InputTypeError, match="lang is an int"):
         cs.load_robot("ur5e").export(3)
 
 

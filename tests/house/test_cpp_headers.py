@@ -87,3 +87,18 @@ def test_free_functions_of_headers_are_a_verb_and_an_object():
         if words:
             found.setdefault(str(path.relative_to(FOLDER)), set()).update(words)
     assert not found, "give them a verb and an object"
+
+
+def test_the_page_of_the_core_names_the_rooms_with_instruction_sets():
+    page = (tree.ROOT / "docs/cpp.md").read_text(encoding="utf-8")
+    sentence = next(part for part in page.split("\n\n") if part.startswith("The kernels of `"))
+    named, others = (set(re.findall(r"`(\w+)`", part)) for part in sentence.split("inline namespace"))
+    core = tree.ROOT / "include/cspace"
+    rooms = {path.name for path in core.iterdir() if path.is_dir()}
+    having = {
+        path.relative_to(core).parts[0]
+        for path in core.rglob("*.hpp")
+        if ISA in path.read_text(encoding="utf-8")
+    }
+    assert named == having
+    assert others == rooms - having

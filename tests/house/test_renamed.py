@@ -53,6 +53,7 @@ def test_locked_joints_had_other_keywords(old):
     [
         (cs.ik, "StillPoint", "InvariantPoint"),
         (cs.ik, "StillDirection", "InvariantDirection"),
+        (cs.ik, "Family", "SelfMotion"),
         (cs.navigation, "Price", "Stats"),
     ],
 )
@@ -73,6 +74,10 @@ def answers():
     route = cs.navigate(cs.PolygonWorld([], (0, 0, 4, 4)), (1, 1), (3, 3))
     track = robot.track(robot.fk(np.linspace(q, q + 0.1, 4)), start=q)
     planner = cs.navigation.PLANNERS["a_star"]
+    panda, grid = cs.load_robot("panda"), cs.OccupancyGrid(np.zeros((40, 40), dtype=bool), 1.0)
+    redundancy = panda.redundancy(panda.fk(np.full(7, 0.3)))
+    car = cs.navigation.Car()
+    car_route = cs.navigation.hybrid_a_star(grid, (5, 20, 0), (30, 20, 0), vehicle=car)
     return [
         *((found, old, new) for old, new in (("families", "self_motions"), ("missing", "out_of_reach"))),
         (found, "asked", "goal_parts"),
@@ -82,6 +87,12 @@ def answers():
         (track[0], "why", "cause"),
         (planner, "line", "summary"),
         (planner, "sees", "sensing"),
+        (redundancy, "robot", "solver"),
+        (car_route, "price", "stats"),
+        *((panda.export("cpp"), old, "locked") for old in ("held", "fixed")),
+        (panda.ik_plan(), "held", "locked"),
+        (panda.ik_plan(), "still_points", "invariant_points"),
+        (panda.ik_plan(), "still_directions", "invariant_directions"),
     ]
 
 
@@ -161,3 +172,8 @@ def test_a_choice_of_another_library_names_ours():
 
 def test_names_say_each_what_is_meant():
     assert not set(errors.RENAMED) & set(errors.RENAMED.values())
+
+
+def test_a_function_of_a_room_that_became_a_method_is_named():
+    with pytest.raises(AttributeError, match=r"'inverse_kinematics': use robot\.ik\(T\)$"):
+        _ = cs.ik.inverse_kinematics

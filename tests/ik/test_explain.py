@@ -337,7 +337,7 @@ def test_questions_that_make_no_sense_are_refused():
         robot.ik_plan(goal_parts=("rotation", "direction"))
     with pytest.raises(TypeError, match="leave goal_parts= out"):
         robot.ik_plan(goal_parts="position", locked={0: 0.1})
-    with pytest.raises(TypeError, match="asked is a float"):
+    with pytest.raises(TypeError, match="goal_parts is a float"):
         robot.ik_plan(goal_parts=1.0)
     with pytest.raises(TypeError, match="one value per joint"):
         robot.ik_plan(locked={0: [0.1, 0.2]})

@@ -138,5 +138,5 @@ def test_rows_that_end_early_are_drawn_until_then():
 
 
 def test_only_simulations_are_drawn():
-    with pytest.raises(InputTypeError, match="run is a int"):
+    with pytest.raises(InputTypeError, match="run is an int"):
         plot.simulation(3)

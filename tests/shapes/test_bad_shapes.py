@@ -27,7 +27,7 @@ CALLS = {
     ),
     "sheared pose": (lambda: shapes.Box([1, 1, 1], np.diag([1, 2, 1, 1])), "rotation part of pose of a box"),
     "two poses": (lambda: shapes.Sphere(1.0, np.tile(np.eye(4), (2, 1, 1))), "(2, 4, 4)"),
-    "name": (lambda: shapes.Sphere(1.0, name=3), "the name of a sphere is a int"),
+    "name": (lambda: shapes.Sphere(1.0, name=3), "the name of a sphere is an int"),
     "empty cloud": (lambda: shapes.PointCloud(np.empty((0, 3))), "holds 0 points"),
     "NaN in a cloud": (
         lambda: shapes.PointCloud([[0, 0, 0], [0, np.nan, 0]]),

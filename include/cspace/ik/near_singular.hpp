@@ -534,8 +534,8 @@ inline void descend_rows(const Chain& chain, const Posed& goal, double length, d
 }
 
 // Descends from `starts` configurations spread over all joints until there are `enough` solutions: where a
-// determinant vanishes all round the circle a family runs through every hidden angle, and where a completed
-// arm is singular the arm itself need not be.
+// determinant vanishes all round the circle a self-motion runs through every hidden angle, and where a
+// completed arm is singular the arm itself need not be.
 inline void search_by_descent(const Chain& chain, const Posed& goal, double length, int starts,
                               Solutions& out, int enough = max_solutions, Met* met = nullptr) {
     constexpr int most_steps = 60, abreast = 8, first_steps = 40;

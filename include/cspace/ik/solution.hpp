@@ -12,7 +12,7 @@ inline constexpr int max_arm = 8;  // joints of an arm with a closed form
 enum class Status : unsigned char {
     unreachable,  // no configuration meets the goal
     exact,        // every configuration that meets it is listed
-    singular,     // some of those listed stand for a family: joints move and the tip does not
+    singular,     // some of those listed stand for a self-motion: joints move and the tip does not
     nearest,      // nothing meets the goal; the least-squares answer, because it was asked for
 };
 
@@ -26,13 +26,13 @@ enum class FastPath : unsigned char {
 struct Solutions {
     int count = 0;
     Status status = Status::unreachable;
-    bool complete = true;  // nothing that meets the goal is left out, families by a representative
-    bool crowded = false;  // some solutions come close to each other: there may be families among them
+    bool complete = true;  // nothing that meets the goal is left out, self-motions by a representative
+    bool crowded = false;  // some solutions come close to each other: there may be self-motions among them
     double q[max_solutions][max_arm];
     signed char branch[max_solutions];         // which of the closed form's branches
-    bool self_motion[max_solutions];           // stands for a one-parameter family
+    bool self_motion[max_solutions];           // stands for a one-parameter self-motion
     bool settled[max_solutions] = {};          // known to be isolated
-    double direction[max_solutions][max_arm];  // of the family at q, unit; undefined where not a family
+    double direction[max_solutions][max_arm];  // of the self-motion at q, unit; else undefined
     double conditioning[max_solutions] = {};   // smallest singular value of the Jacobian; 0: not known
 };
 

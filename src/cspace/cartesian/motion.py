@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from inspect import signature
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,6 +38,7 @@ from cspace.trajectory.timed_path import TimedPath
 
 if TYPE_CHECKING:
     from cspace.collision import Scene
+    from cspace.collision.checks import HasGeometry
     from cspace.planning import ArmSpace
 
 RANKING_GRID: Final = 100
@@ -145,7 +146,7 @@ def move_cartesian(
         "feed": feed,
         "grid": grid,
     }
-    space = None if scene is None else space_of_curves(robot, scene, margin)
+    space = None if scene is None else space_of_curves(cast("HasGeometry", robot), scene, margin)
     motion, touches = _take_fastest(robot, path, found.branches, options, space, axis is not None)
     if shortens and touches:
         motion, stopped_by = _stop_before(robot, motion, touches, options) or (motion, stopped_by)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cspace.arrays import Array
-from cspace.collision import Edge
+from cspace.collision import Edge, Scene
+from cspace.collision.checks import HasGeometry
 from cspace.planning import ArmSpace
 from cspace.tolerances import NEARLY_STRAIGHT, SHORTEST_MARGIN
 from cspace.trajectory.path import Path
@@ -31,7 +32,7 @@ class Touch:
     text: str
 
 
-def space_of_curves(robot: Any, scene: Any, margin: float) -> ArmSpace:
+def space_of_curves(robot: HasGeometry, scene: Scene | None, margin: float) -> ArmSpace:
     """The space in which straight motions stand for curves that leave them by NEARLY_STRAIGHT.
 
     A point moves by the sum of the distances of the joints times the reach of the arm, at most: that much is

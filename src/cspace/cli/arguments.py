@@ -14,6 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, NoReturn
 
 from cspace.cli.exits import UsageError
+from cspace.errors import RENAMED
 
 OF_PI: Final = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?\*?pi(?:/(\d+(?:\.\d*)?))?")
 """Multiples of π: pi, -pi/2, 3pi/4, 0.5*pi."""
@@ -56,6 +57,11 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Raise the fault instead of printing the usage and leaving the process."""
         unguarded = re.sub(r"(?<=[\s'])\s+(?=-)", "", message)
+        for word in unguarded.removeprefix("unrecognized arguments: ").split():
+            old = word.partition("=")[0]
+            ours = "--" + RENAMED.get(old.removeprefix("--"), "").replace("_", "-")
+            if old.startswith("--") and ours in self._option_string_actions:
+                unguarded = f"unknown option {old}: use {ours}"
         raise UsageError(f"{unguarded}; see {self.prog} --help")
 
 

@@ -15,7 +15,7 @@ from cspace.collision.exact_solids import join_shapes, place_shape, split_shapes
 from cspace.collision.pack_scene import SOLIDS, PackedScene, pack_obstacles
 from cspace.collision.robot_geometry import NO_PAIRS, RobotGeometry
 from cspace.collision.scene import Scene
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.tolerances import LARGEST_NUMBER
 
 KEPT_CHECKERS: Final = 8
@@ -61,7 +61,7 @@ def checker_of(geometry: RobotGeometry, scene: Scene | None, margin: float) -> C
     scene = NOTHING if scene is None else scene
     if not isinstance(scene, Scene):
         raise InputTypeError(
-            f"scene is a {type(scene).__name__}; it must be a cspace.Scene, such as cs.Scene([cs.Box(…)])"
+            f"scene is {name_type(scene)}; it must be a cspace.Scene, such as cs.Scene([cs.Box(…)])"
         )
     gap = bounded_number(margin, "margin", 0.0, "it must be a length [m], 0 or more", largest=LARGEST_NUMBER)
     kept, key = geometry._kept, (scene.version, gap)

@@ -15,7 +15,7 @@ from cspace.arrays import Array, as_floats, positive_number
 from cspace.collision.checker import checker_of
 from cspace.collision.robot_geometry import RobotGeometry
 from cspace.collision.scene import Scene
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.kinematics.batch import thread_count
 from cspace.tables import one_line, show_fields, shown, tabulate
 from cspace.tolerances import LARGEST_NUMBER
@@ -83,8 +83,7 @@ def read_geometry(robot: HasGeometry) -> RobotGeometry:
     """The collision geometry of a robot; InputTypeError for what is not one."""
     geometry: RobotGeometry | None = getattr(robot, "collision", None)
     if geometry is None:
-        kind = type(robot).__name__
-        raise InputTypeError(f"robot is a {kind}; it must be a Robot, as cs.load_robot gives")
+        raise InputTypeError(f"robot is {name_type(robot)}; it must be a Robot, as cs.load_robot gives")
     return geometry
 
 

@@ -20,7 +20,7 @@ from cspace.collision.checks import as_configurations, flat_rows, one_configurat
 from cspace.collision.link_shapes import described_solids, skeleton_solids
 from cspace.collision.robot_geometry import SKELETON, RobotGeometry
 from cspace.collision.scene import Scene
-from cspace.errors import InputError, InputTypeError, MissingExtraError
+from cspace.errors import InputError, InputTypeError, MissingExtraError, name_type
 from cspace.kinematics import Assembly
 from cspace.model import Description
 from cspace.shapes import Box, Capsule, Cylinder, HalfSpace, PointCloud, Shape, Sphere
@@ -110,7 +110,7 @@ class MeshJudge:
         if not geometry:
             raise InputError(f"{geometry.robot} cannot be checked for collisions: {geometry.reason}")
         if not isinstance(scene, Scene | None):
-            raise InputTypeError(f"scene is a {type(scene).__name__}; it must be a cspace.Scene")
+            raise InputTypeError(f"scene is {name_type(scene)}; it must be a cspace.Scene")
         self._coal = import_coal()
         self._robot, self._geometry = robot, geometry
         self._scene = Scene() if scene is None else scene

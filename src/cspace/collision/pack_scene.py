@@ -11,7 +11,7 @@ import numpy.typing as npt
 from cspace._core import pack_solids
 from cspace.arrays import Array
 from cspace.collision.scene import Scene
-from cspace.errors import InputTypeError
+from cspace.errors import InputTypeError, name_type
 from cspace.shapes import (
     Box,
     Capsule,
@@ -118,6 +118,4 @@ def place_surface(shape: Shape, T: Array) -> tuple[Array, bool]:
     if isinstance(shape, HeightField):
         return shape.surface(T), True
     known = ", ".join(kind.__name__ for kind in PACKED)
-    raise InputTypeError(
-        f"{shape.name!r} is a {type(shape).__name__}, which no check reads; use one of {known}"
-    )
+    raise InputTypeError(f"{shape.name!r} is {name_type(shape)}, which no check reads; use one of {known}")

@@ -11,7 +11,7 @@ from typing import Final, cast
 
 from cspace.arrays import Array
 from cspace.collision.scene_files import read_scene, write_scene
-from cspace.errors import InputError, InputTypeError, Renamed, suggest
+from cspace.errors import InputError, InputTypeError, Renamed, name_type, suggest
 from cspace.shapes import HalfSpace, Shape
 from cspace.shapes.shape import check_place
 from cspace.spatial.checks import PoseLike
@@ -263,11 +263,11 @@ def check_shapes(objects: Iterable[Shape]) -> list[Shape]:
     try:
         found = list(objects)
     except TypeError:
-        raise InputTypeError(f"objects is a {type(objects).__name__}; it must be a list of shapes") from None
+        raise InputTypeError(f"objects is {name_type(objects)}; it must be a list of shapes") from None
     for k, shape in enumerate(found):
         if not isinstance(shape, Shape):
             raise InputTypeError(
-                f"object {k} of the scene is a {type(shape).__name__}; it must be a shape, such as cs.Box"
+                f"object {k} of the scene is {name_type(shape)}; it must be a shape, such as cs.Box"
             )
     return found
 

@@ -13,7 +13,7 @@ from cspace.arrays import Array, as_floats
 from cspace.dynamics.inverse import gravity_torques, inverse_dynamics
 from cspace.dynamics.mechanics import find_resistances
 from cspace.dynamics.rows import EARTH
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.kinematics.batch import check_flag
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
@@ -98,7 +98,7 @@ class ComputedTorque:
     def __post_init__(self) -> None:
         if not callable(self.motion):
             raise InputTypeError(
-                f"motion is a {type(self.motion).__name__}, expected a function of the time [s] that returns"
+                f"motion is {name_type(self.motion)}, expected a function of the time [s] that returns"
                 " q, qd and qdd"
             )
         for name in ("kp", "kd"):
@@ -143,7 +143,7 @@ def find_motion(motion: Motion, t: float, robot: KinematicModel) -> tuple[Array,
     try:
         values = tuple(answer)
     except TypeError:
-        raise InputTypeError(f"{place} is a {type(answer).__name__}, expected q, qd and qdd") from None
+        raise InputTypeError(f"{place} is {name_type(answer)}, expected q, qd and qdd") from None
     if len(values) != len(names):
         raise InputError(f"{place} has {len(values)} parts, expected q, qd and qdd")
     q, qd, qdd = (

@@ -14,7 +14,7 @@ from cspace.dynamics.constrained_motion import AllowedMotions, find_allowed_moti
 from cspace.dynamics.inverse import inverse_dynamics
 from cspace.dynamics.mass_matrix import mass_matrix
 from cspace.dynamics.rows import EARTH, Wrenches, dynamic_rows, refuse_missing, refuse_rows
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.kinematics import LoopConstraints
 from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.batch import Batch, check_output
@@ -192,7 +192,7 @@ def find_rates(
 ) -> Array:
     """The rates x (..., dof) with K x + k = 0 and given values of driven joints; k = 0 without velocities."""
     if not isinstance(driven, Mapping):
-        raise InputTypeError(f"driven is a {type(driven).__name__}, expected a dict of joint → rate")
+        raise InputTypeError(f"driven is {name_type(driven)}, expected a dict of joint → rate")
     robot = constraints.robot
     if robot.floating:
         raise InputError(f"{robot.name} has a floating base, which the driven joints do not move")

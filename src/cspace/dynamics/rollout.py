@@ -18,7 +18,7 @@ from cspace.dynamics.mechanics import Mechanics, State, WrenchLaw, find_resistan
 from cspace.dynamics.momentum import centroidal_momentum, kinetic_energy, potential_energy
 from cspace.dynamics.rows import Wrenches, check_mapping, check_wrench
 from cspace.dynamics.simulation import DenseSteps
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.kinematics import LoopConstraints
 from cspace.kinematics.batch import frame_number
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -302,7 +302,7 @@ def check_control(control: Control | None, shape: tuple[int, ...]) -> Any:
     if isinstance(control, np.ndarray | list | tuple):
         return check_torques(control, shape, "control")
     raise InputTypeError(
-        f"control is a {type(control).__name__}, expected torques, or a function of t, q and qd that returns"
+        f"control is {name_type(control)}, expected torques, or a function of t, q and qd that returns"
         " them, or dynamics.PD or dynamics.ComputedTorque"
     )
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes, one_array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.kinematics import jacobian
 from cspace.kinematics.batch import (
     Batch,
@@ -184,7 +184,7 @@ def check_mapping(wrenches: object) -> None:
     """Raise InputTypeError for wrenches that are not a mapping."""
     if wrenches is not None and not isinstance(wrenches, Mapping):
         raise InputTypeError(
-            f"wrenches is a {type(wrenches).__name__}, expected a dict of frame → (..., 6), such as"
+            f"wrenches is {name_type(wrenches)}, expected a dict of frame → (..., 6), such as"
             ' {"tool0": [0, 0, -10, 0, 0, 0]}'
         )
 

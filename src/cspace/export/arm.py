@@ -10,7 +10,7 @@ from typing import Any
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError, shown
+from cspace.errors import InputError, InputTypeError, name_type, shown
 from cspace.export.texts import in_ascii
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.ik.locked_joints import between_others, joint_number
@@ -152,8 +152,7 @@ def checked_locked_joints(solver: Solver, locked: Any) -> tuple[int, ...]:
         locked = [locked]
     if isinstance(locked, Mapping) or not isinstance(locked, Iterable) or getattr(locked, "ndim", 1) == 0:
         raise InputTypeError(
-            f"locked is a {type(locked).__name__}, expected joint names; "
-            "their values are arguments of each call"
+            f"locked is {name_type(locked)}, expected joint names; their values are arguments of each call"
         )
     chosen = [joint_number(solver, key, "locked") for key in locked]
     if len(set(chosen)) < len(chosen):

@@ -10,7 +10,7 @@ from pathlib import Path, PurePath
 from types import MappingProxyType
 from typing import Any
 
-from cspace.errors import InputError, InputTypeError, name_new_keywords, suggest
+from cspace.errors import InputError, InputTypeError, Renamed, name_new_keywords, name_type, suggest
 from cspace.export.arm import ExportedArm, exported_arm
 from cspace.export.cpp import c_files, cpp_header, words_of
 from cspace.export.python_file import python_file, python_method
@@ -31,7 +31,7 @@ SUFFIXES = MappingProxyType({"cpp": ".hpp", "c": ".h", "python": ".py"})
 
 
 @dataclass(frozen=True)
-class Export:
+class Export(Renamed):
     """An arm as source code. language: one of LANGUAGES; name: the namespace or the prefix; method: how the
     arm is solved; files: the texts by file name, first the one that users include; example: a program that
     uses it; locked: the joints whose values are arguments.
@@ -123,7 +123,7 @@ def language_of(lang: str | None, target: PurePath | None) -> str:
             )
         return BY_SUFFIX[target.suffix]
     if not isinstance(lang, str):
-        raise InputTypeError(f"lang is a {type(lang).__name__}, expected one of {', '.join(LANGUAGES)}")
+        raise InputTypeError(f"lang is {name_type(lang)}, expected one of {', '.join(LANGUAGES)}")
     if lang not in LANGUAGES:
         raise suggest("language", lang, LANGUAGES)
     return lang

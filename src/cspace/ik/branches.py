@@ -26,6 +26,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.joint_axes import Placed, are_parallel, are_square, meeting_point, place_axes
 from cspace.ik.solver import Solver
+from cspace.model import Chain
 from cspace.tolerances import BRANCH_LENGTH, BRANCH_OFFSET
 
 SPHERICAL_WRIST, THREE_PARALLEL = 1, 2
@@ -47,7 +48,7 @@ def branch_labels(solver: Solver, q: Array, numbers: tuple[int, ...]) -> tuple[s
     return tuple(words(place_axes(chain, row), n) for row, n in zip(q, numbers, strict=True))
 
 
-def words_of(chain: Any, seen: dict[str, Any]) -> Words | None:
+def words_of(chain: Chain, seen: dict[str, Any]) -> Words | None:
     """How the branches of an arm are named; None where its geometry has no names."""
     if seen["family"] < 0:
         return words_of_few(chain)
@@ -73,7 +74,7 @@ def six_joints(other: int, wrist_bit: int, forearm_end: int | None) -> Words:
     return words
 
 
-def words_of_completed(chain: Any) -> Words | None:
+def words_of_completed(chain: Chain) -> Words | None:
     """Arms of four and five revolute joints: axis 1 perpendicular to parallel axes 2 and 3."""
     h, p = chain.axes, chain.points
     if not (are_square(h[0], h[1]) and are_parallel(h[1], h[2])):
@@ -92,7 +93,7 @@ def shoulder_and_elbow_at_meeting(at: Placed, _: int) -> str:
     return f"{name_shoulder(at, wrist)}, {name_elbow(at, wrist)}"
 
 
-def words_of_few(chain: Any) -> Words | None:
+def words_of_few(chain: Chain) -> Words | None:
     """Arms of up to three joints, revolute or prismatic."""
     kinds, h = chain.joint_types, chain.axes
     turns = [i for i, kind in enumerate(kinds) if kind == "R"]

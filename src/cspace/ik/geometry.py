@@ -92,7 +92,7 @@ def geometry(robot: HasSolver) -> Geometry:
     family = FAMILIES[seen["family"]]
     detail = FIRST_THREE[seen["first_three"]] if seen["family"] == 1 else PARALLEL[seen["family"]]
     if seen["virtual_joints"]:
-        detail += f"; completed to six by {seen['virtual_joints']} joints held at zero"
+        detail += f"; completed to six by {seen['virtual_joints']} joints locked at zero"
     return Geometry(family, detail, bool(seen["reversed"]), float(seen["deviation"]), tested)
 
 
@@ -104,7 +104,7 @@ def redundant_geometry(solver: Solver, tested: tuple[Condition, ...]) -> Geometr
     names = ", ".join(solver.joint_names[k] for k in solver.redundant_joints)
     closed = _core._ik_has_closed_form(solver)
     method = "a closed form of the others" if closed else "the general method for the others"
-    return Geometry("redundant", f"{names} held, {method}", False, 0.0, tested)
+    return Geometry("redundant", f"{names} locked, {method}", False, 0.0, tested)
 
 
 def as_arrays(value: Any) -> Any:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import common_point
+from cspace.model import Chain
 from cspace.spatial import exp_so3
 from cspace.tolerances import UPRIGHT_TIP
 
@@ -34,7 +34,7 @@ def are_square(h1: Array, h2: Array) -> bool:
     return bool(abs(h1 @ h2) <= _core.AXIS_RELATION)
 
 
-def place_axes(chain: Any, q: Array) -> Placed:
+def place_axes(chain: Chain, q: Array) -> Placed:
     """The arm at q by its product of exponentials."""
     R, t = np.eye(3), np.zeros(3)
     axes, points = np.empty((2, len(q), 3))
@@ -52,7 +52,7 @@ def place_axes(chain: Any, q: Array) -> Placed:
     return Placed(axes, points, R @ chain.T_zero[:3, 3] + t, face)
 
 
-def front_at_zero(chain: Any) -> Array:
+def front_at_zero(chain: Chain) -> Array:
     """The direction perpendicular to axes 1 and 2 in which the tip lies from axis 1 at zero; if it stands
     upright, the one in which joint 2 tilts it."""
     if len(chain.axes) < 2:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import as_floats
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.kinematics import KinematicModel
 from cspace.tolerances import FARTHEST
 
@@ -34,9 +34,7 @@ def joint_number(solver: KinematicModel, key: Any, subject: str) -> int:
     if isinstance(key, str):
         return joint_named(solver, key)
     if isinstance(key, bool) or not isinstance(key, (int, np.integer)):
-        raise InputTypeError(
-            f"{subject} contains a {type(key).__name__}; name joints by their name or number"
-        )
+        raise InputTypeError(f"{subject} contains {name_type(key)}; name joints by their name or number")
     if not -len(names) <= key < len(names):
         raise InputError(f"{subject} has joint {key}, but {solver.name} has joints 0 to {len(names) - 1}")
     return int(key) % len(names)
@@ -52,7 +50,7 @@ def locked_values(solver: KinematicModel, locked: Any, own: KinematicModel | Non
         return {}
     if not isinstance(locked, Mapping):
         raise InputTypeError(
-            f"locked is a {type(locked).__name__}, expected a dict from joints to values: {{'joint_7': 0.3}}"
+            f"locked is {name_type(locked)}, expected a dict from joints to values: {{'joint_7': 0.3}}"
         )
     out: dict[int, Any] = {}
     for key, value in locked.items():
@@ -65,7 +63,7 @@ def locked_values(solver: KinematicModel, locked: Any, own: KinematicModel | Non
         out[joint] = as_floats(value, f"locked[{key!r}]", largest=FARTHEST)
         if own is not None and out[joint].ndim:
             raise InputTypeError(
-                f"locked[{key!r}] is a {type(value).__name__}, expected one number with parts of a pose"
+                f"locked[{key!r}] is {name_type(value)}, expected one number with parts of a pose"
             )
     if len(out) >= len(solver.joint_names):
         raise InputError(f"locked names every joint of {solver.name}; at least one must stay free to move")

@@ -193,8 +193,8 @@ class Solutions(Answers, _core.SolutionsBase):
         """The one solution nearest to q (dof,), each revolute joint taken by the turn that brings it closest.
 
         metric: "euclidean" (root of the sum of squares) or "max" (largest joint difference). Turns that
-        would leave the robot's limits are not taken where another one stays inside. Of a family the
-        representative counts; its `nearest` says which member comes nearest.
+        would leave the robot's limits are not taken where another one stays inside. Of a self-motion
+        the representative counts; its `nearest` says which member comes nearest.
         """
         seed = one_configuration(self.solver, q, "q")
         check_choice(metric, "metric", METRICS)

@@ -15,7 +15,7 @@ three are the classical ones of Paden and Kahan; the numbering 1 to 6 is that of
 Rot(k, θ) is the rotation about the axis k through the origin. Points (..., 3) and lengths share one unit,
 angles are in radians in (−π, π], axes may have any length above zero. Leading axes are batches and
 broadcast. Where no exact answer exists the least-squares answer is given, marked as such; where a whole
-family of answers exists one of it is given, marked as such.
+curve of answers exists one of it is given, marked as such.
 
 Sources: Paden 1986, §4.3; Kahan 1983; Elias & Wen 2022, §3. The proofs stand in the headers of
 include/cspace/ik/subproblems.

@@ -11,7 +11,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats, leading_axes, whole_number
 from cspace.buffer_pool import pooled_array
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.spatial import as_pose
@@ -106,7 +106,7 @@ def find_pose(robot: object, q: Any) -> Any:
         return q
     poses: Mapping[str, Array] | None = getattr(robot, "named_poses", None)
     if poses is None:
-        raise InputTypeError(f"a {type(robot).__name__} has no named poses; give a configuration")
+        raise InputTypeError(f"{name_type(robot)} has no named poses; give a configuration")
     return poses[q]
 
 
@@ -131,7 +131,7 @@ def limits_of(own: Limits, limits: Any, name: str) -> Limits:
         return Limits(np.full(n, -np.inf), np.full(n, np.inf))
     if not isinstance(limits, Limits):
         raise InputTypeError(
-            f"limits is a {type(limits).__name__}, expected cspace.model.Limits, or False for none"
+            f"limits is {name_type(limits)}, expected cspace.model.Limits, or False for none"
         )
     if len(limits) != n:
         raise InputError(f"limits are for {len(limits)} joints, {name} has {n}")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cspace.arrays import Array, as_floats, as_generator, leading_axes, positive_number, whole_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.kinematics.assembly import Numbers
 from cspace.kinematics.loop_constraints import LoopConstraints
 from cspace.kinematics.loop_freedom import find_rank_tolerance, find_scaled_jacobian
@@ -342,7 +342,7 @@ def check_driven(
     robot = constraints.robot
     if not isinstance(driven, Mapping):
         raise InputTypeError(
-            f"driven is a {type(driven).__name__}, expected a dict of coordinate → value, such as"
+            f"driven is {name_type(driven)}, expected a dict of coordinate → value, such as"
             f' {{"{robot.joint_names[0]}": 0.5}}'
         )
     numbers = number_coordinates(constraints, list(driven))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.kinematics.batch import check_robot, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.loop_rows import Flags, find_frames, make_rows
@@ -66,7 +66,7 @@ class LoopConstraints:
         robot, names = self.robot, set()
         for loop in self.loops:
             if not isinstance(loop, Loop):
-                raise InputTypeError(f"loops are model.Loop objects, got a {type(loop).__name__}")
+                raise InputTypeError(f"loops are model.Loop objects, got {name_type(loop)}")
             if loop.name in names:
                 raise InputError(f"two loops of {robot.name} are named {loop.name!r}")
             names.add(loop.name)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from cspace import tolerances
 from cspace.arrays import Array, as_floats, one_array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.spatial import as_pose_2d, to_xytheta
 from cspace.tolerances import FARTHEST_POINT
 
@@ -48,7 +48,7 @@ class Running:
     """What to keep in place of it."""
 
     def __reduce_ex__(self, protocol: Any) -> Any:
-        raise InputTypeError(f"a {type(self).__name__} is neither copied nor pickled; {self._instead}")
+        raise InputTypeError(f"{name_type(self)} is neither copied nor pickled; {self._instead}")
 
 
 def suggest_map(value: object) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -90,6 +91,12 @@ class Landmarks:
     names: Ids
     points: Array
     covariances: Array | None = None
+
+    if TYPE_CHECKING:  # it takes lists too
+
+        def __init__(
+            self, names: npt.ArrayLike, points: npt.ArrayLike, covariances: npt.ArrayLike | None = None
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         points = one_array(self.points, "points", (None, 2), largest=FARTHEST_POINT)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array, as_generator, positive_number
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.localization.checks import suggest_map
 from cspace.localization.filters.measurements import see_point
 from cspace.localization.filters.rows import follow_rows
@@ -39,7 +39,7 @@ def simulate(
     """
     generator = as_generator(rng)
     if not hasattr(run, "times") or not hasattr(run, "poses"):
-        raise InputTypeError(f"run is a {type(run).__name__}; give what navigation.follow returns")
+        raise InputTypeError(f"run is {name_type(run)}; give what navigation.follow returns")
     truth = TimedPoses(run.times, run.poses)
     if not len(truth):
         raise InputError("the run has no poses; simulate needs one at least")
@@ -53,7 +53,7 @@ def simulate(
         readings = draw_readings(times, poses, landmarks, read_sensor(sensor, RangeBearing), generator)
         return Log(odometry, readings=readings, landmarks=landmarks, truth=truth)
     if not hasattr(landmarks, "to_grid"):
-        what = f"landmarks is a {type(landmarks).__name__}, which is no map"
+        what = f"landmarks is {name_type(landmarks)}, which is no map"
         raise InputTypeError(f"{what}; {suggest_map(landmarks)}")
     if isinstance(sensor, RangeBearing):
         raise InputTypeError("sensor is a RangeBearing; a grid is scanned by a LaserScanner")

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, guard_memory, one_array, one_number, positive_number, whole_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.maps.byte_field import ByteField
 from cspace.maps.likelihood_field import LIKELIHOOD_FLOOR, SIGMA, check_hit_model
 from cspace.maps.occupancy_grid import OccupancyGrid
@@ -291,7 +291,7 @@ def _read_rule(
 def _read_scans(scans: Any, poses: Any) -> _Scans:
     for name in ("ranges", "angles", "most", "T_base_laser", "times"):
         if not hasattr(scans, name):
-            raise InputTypeError(f"scans is a {type(scans).__name__}; give Scans, as of log.scans")
+            raise InputTypeError(f"scans is {name_type(scans)}; give Scans, as of log.scans")
     ranges = np.ascontiguousarray(scans.ranges, np.float32)
     angles = as_floats(scans.angles, "angles")
     if ranges.ndim != 2 or ranges.shape != (len(ranges), len(angles)):

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cspace.arrays import Array
-from cspace.errors import MapError, shown
+from cspace.errors import MapError, name_type, shown
 from cspace.files import write_text
 from cspace.maps.files import check_map_path, read_map_text
 from cspace.tolerances import GEOJSON_DEPTH
@@ -47,7 +47,7 @@ def _parse_file(path: str) -> dict[str, Any]:
     except ValueError as error:
         raise MapError(f"this JSON cannot be read: {error}", path=path) from None
     if not isinstance(found, dict):
-        raise MapError(f"this is not a GeoJSON object but a {type(found).__name__}", path=path)
+        raise MapError(f"this is not a GeoJSON object but {name_type(found)}", path=path)
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import as_floats, leading_axes, positive_number
-from cspace.errors import InputTypeError
+from cspace.errors import InputTypeError, name_type
 from cspace.maps.polygon_world import PolygonWorld
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -26,7 +26,7 @@ def cast_rays(world: Any, points: Any, angles: Any, max_range: float = np.inf) -
     or a max_range that is not above zero. Amanatides and Woo 1987.
     """
     if not isinstance(world, (_core.GridBase, PolygonWorld)):
-        raise InputTypeError(f"world is a {type(world).__name__}; give an OccupancyGrid or a PolygonWorld")
+        raise InputTypeError(f"world is {name_type(world)}; give an OccupancyGrid or a PolygonWorld")
     places = as_floats(points, "points", last=(2,), largest=LARGEST_NUMBER)
     turns = as_floats(angles, "angles", largest=LARGEST_NUMBER)
     most = positive_number(max_range, "max_range", "give one length above zero, in metres", largest=np.inf)

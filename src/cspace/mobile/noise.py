@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from cspace import tolerances
 from cspace.arrays import Array, as_floats, as_generator, bounded_number, leading_axes
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile.arcs import arc_jacobians
 from cspace.spatial import adjoint_2d, exp_se2, log_se2, pose_2d, to_xytheta
@@ -256,7 +256,7 @@ def read_noise(noise: object, subject: str = "noise") -> MotionNoise:
 
 
 def _say_kind(value: object) -> str:
-    return f"the class {value.__name__}" if isinstance(value, type) else f"a {type(value).__name__}"
+    return f"the class {value.__name__}" if isinstance(value, type) else f"{name_type(value)}"
 
 
 def read_steps(steps: npt.ArrayLike, dt: npt.ArrayLike) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, any_array, as_floats, one_array, one_number, positive_number, whole_number
-from cspace.errors import InputError
+from cspace.errors import InputError, name_type
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile.arcs import chain_increments
 from cspace.mobile.timed_poses import TimedPoses, find_between, read_rows, read_times
@@ -93,7 +93,7 @@ class Odometry:
         angles = wheel_angles(ticks, per_turn=per_turn, bits=bits)
         if not isinstance(vehicle, WheelBase):
             raise InputError(
-                f"vehicle is a {type(vehicle).__name__}; ticks need one with wheels, such as"
+                f"vehicle is {name_type(vehicle)}; ticks need one with wheels, such as"
                 " DifferentialDrive(wheel_radius, track)"
             )
         return cls(checked, vehicle.twist(angles))

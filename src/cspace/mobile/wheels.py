@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from cspace import tolerances
 from cspace.arrays import Array, as_floats, bounded_number, one_number, positive_number
-from cspace.errors import InputError
+from cspace.errors import InputError, name_type
 from cspace.mobile.arcs import drive
 from cspace.tables import join_words, show_fields, tabulate
 from cspace.tolerances import FARTHEST_POINT
@@ -96,8 +96,7 @@ class WheelBase(ABC):
         if beyond.any():
             first = join_words([f"{x:g}" for x in xi[beyond][0]])
             raise InputError(
-                f"the wheels of a {type(self).__name__} do not allow the twist [vx, vy, ω] = {first}; "
-                + self._rule
+                f"the wheels of {name_type(self)} do not allow the twist [vx, vy, ω] = {first}; " + self._rule
             )
 
     _rule = "project it with vehicle.allowed_twists"

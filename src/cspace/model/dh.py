@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array, as_arrays, as_floats
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.math.wrapping import TURN
 from cspace.model.description import Description
 from cspace.model.joint import Joint
@@ -235,8 +235,9 @@ def _bodies(inertials: Sequence[Inertial | None] | None, n: int) -> list[Inertia
     bodies = _one_per_row(inertials, "inertials", n)
     for body in bodies:
         if body is not None and not isinstance(body, Inertial):
-            kind = type(body).__name__
-            raise InputTypeError(f"inertials contains a {kind}; each entry must be an Inertial or None")
+            raise InputTypeError(
+                f"inertials contains {name_type(body)}; each entry must be an Inertial or None"
+            )
     return bodies
 
 

@@ -231,7 +231,7 @@ class Limits:
             )
         if sys._getframe(2).f_globals.get("__name__", "").partition(".")[0] != "cspace":  # typed by a person
             values = np.concatenate([self.lower, self.upper])
-            remedy = "np.radians converts them; of slides these are metres, not millimetres"
+            remedy = "np.radians converts them; of prismatic joints these are metres, not millimetres"
             warn_of_degrees("Limits", values, DEGREE_LIMITS, remedy)
 
     def __len__(self) -> int:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array, one_array
-from cspace.errors import InputError, InputTypeError, shown
+from cspace.errors import InputError, InputTypeError, name_type, shown
 from cspace.spatial import single
 from cspace.spatial.checks import embed_rotation, one_pose
 from cspace.spatial.quaternions import matrix_of_quaternion
@@ -53,7 +53,7 @@ def read_joint_names(names: Sequence[str] | None, count: int | None = None) -> t
     if names is None:
         return None
     if isinstance(names, str) or not isinstance(names, Iterable) or getattr(names, "ndim", 1) == 0:
-        raise InputTypeError(f"joint_names is a {type(names).__name__}; give a list of texts")
+        raise InputTypeError(f"joint_names is {name_type(names)}; give a list of texts")
     made = tuple(name_of(name, "joint in joint_names") for name in names)
     if count is not None and len(made) != count:
         raise InputError(f"joint_names has {len(made)} names, expected {count}")

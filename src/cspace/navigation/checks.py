@@ -6,7 +6,7 @@ from typing import Any
 
 from cspace import _core
 from cspace.arrays import Array, bounded_number
-from cspace.errors import InputTypeError
+from cspace.errors import InputTypeError, name_type
 from cspace.maps import PolygonWorld
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -21,7 +21,7 @@ def need_polygons(world: Any) -> None:
 def need_grid(grid: Any, name: str = "grid") -> None:
     """InputTypeError for anything but an OccupancyGrid."""
     if not isinstance(grid, _core.GridBase):
-        raise InputTypeError(f"{name} is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+        raise InputTypeError(f"{name} is {name_type(grid)}; give an OccupancyGrid (or world.to_grid())")
 
 
 def check_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:

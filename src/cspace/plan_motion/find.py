@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from cspace.arrays import Array, shape_of
 from cspace.collision.checks import explain_contacts
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.plan_motion.goals import GoalLike, Goals
 from cspace.plan_motion.parts import solve_parts
 from cspace.plan_motion.poses import solve_any_pose, solve_pose
@@ -57,7 +57,7 @@ def find_goals(robot: Robot, space: ArmSpace, starts: Array, goal: GoalLike) -> 
 def check_kind(goal: object, shape: tuple[int, ...], dof: int) -> None:
     """Raises InputTypeError or InputError for a value that is not a goal; names the kind that it is like."""
     if len(shape) not in (1, 2):
-        said = f"has shape {shape}" if shape else f"is a {type(goal).__name__}"
+        said = f"has shape {shape}" if shape else f"is {name_type(goal)}"
         raise InputTypeError(
             f"goal {said}; it must be configurations (dof,) or (g, dof), poses (4, 4) or (g, 4, 4), a named"
             " pose, a dict of keywords of robot.ik, or a cs.planning.Region"

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from cspace._core import ArmProblems
 from cspace.arrays import Array, whole_number
 from cspace.collision import MeshJudge, Scene
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.plan_motion.find import POSE_ROWS
 from cspace.plan_motion.goal_search import GoalSearch, make_negative
 from cspace.plan_motion.goals import GoalLike, Goals
@@ -102,9 +102,7 @@ def plan_many(
     space = _make_space(robot, scene, margin)
     judge = None if verify is None else _find_judge(robot, space, verify)
     if isinstance(goals, (Mapping, str)) or not np.iterable(goals):
-        raise InputTypeError(
-            f"goals is a {type(goals).__name__}; it must be a list of goals, one per problem"
-        )
+        raise InputTypeError(f"goals is {name_type(goals)}; it must be a list of goals, one per problem")
     is_array = isinstance(goals, np.ndarray) and goals.ndim > 1
     wanted: Any = goals if is_array else list(goals)
     if not is_array:
@@ -219,6 +217,7 @@ def _verify_plans(plans: Plans, planner: ArmPlanner, judge: MeshJudge) -> Plans:
 def _make_space(robot: Robot, scene: Scene | None, margin: float) -> ArmSpace:
     """The space of a robot; InputTypeError for what is not one."""
     if not isinstance(robot, Robot):
-        kind = type(robot).__name__
-        raise InputTypeError(f"robot is a {kind}; it must be a cspace.Robot, such as cs.load_robot('panda')")
+        raise InputTypeError(
+            f"robot is {name_type(robot)}; it must be a cspace.Robot, such as cs.load_robot('panda')"
+        )
     return ArmSpace(robot, scene, margin)

@@ -8,7 +8,7 @@ import numpy as np
 
 from cspace.collision import Scene
 from cspace.collision.checks import HasGeometry
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.planning.joint_space.space import JointSpace
 from cspace.planning.two_joints.configuration_space import ConfigurationSpace, Obstacles, exact_space
 from cspace.planning.two_joints.planar_arm import is_planar_arm
@@ -84,7 +84,7 @@ def configuration_space(
     """
     for name, value in (("limits", limits), ("exact", exact)):
         if not isinstance(value, (bool, np.bool_)) and not (name == "exact" and value is None):
-            raise InputTypeError(f"{name} is a {type(value).__name__}; it must be True or False")
+            raise InputTypeError(f"{name} is {name_type(value)}; it must be True or False")
     if exact is None:
         takes_all = obstacles is None or isinstance(obstacles, Scene)
         exact = is_planar_arm(robot) or not takes_all

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from cspace._core import ArmOptions, ArmPlan, ArmPlans, ArmProblems, TimeOver
 from cspace.arrays import Array
-from cspace.errors import InputTypeError
+from cspace.errors import InputTypeError, name_type
 from cspace.planning.arm_planner import ArmPlanner, Problems, Seed
 from cspace.planning.plan_result import Plan
 from cspace.planning.plans import Plans, PlanSource
@@ -85,7 +85,7 @@ class EdgePlanner(ArmPlanner):
         """
         if not isinstance(space, ArmSpace):
             raise InputTypeError(
-                f"space is a {type(space).__name__}; planners take an ArmSpace, ArmSpace(robot, scene)"
+                f"space is {name_type(space)}; planners take an ArmSpace, ArmSpace(robot, scene)"
             )
         rows = space.as_rows(starts, "start"), space.as_rows(goals, "goal")
         try:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.math.wrapping import TURN
 from cspace.planning import ConfigurationSpace, Projection, Slice
 from cspace.plot import colors
@@ -54,7 +54,7 @@ def configuration_space(
     """
     if not hasattr(space, "obstacle_map"):
         raise InputTypeError(
-            f"space is a {type(space).__name__}; configuration_space draws a ConfigurationSpace, that of a"
+            f"space is {name_type(space)}; configuration_space draws a ConfigurationSpace, that of a"
             " planar arm with two joints. Draw a JointSpace by cs.plot.space_slice(space.slice((0, 1)))"
         )
     plane, joints = two_axes(ax)

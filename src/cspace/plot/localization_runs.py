@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.localization import ate
 from cspace.plot import colors
 from cspace.plot.axes import need_matplotlib, write_title
@@ -47,7 +47,7 @@ def run(
     the map first. Returns the artists. Raises InputTypeError for other objects, InputError for other axes.
     """
     if not hasattr(answer, "poses") or not hasattr(answer, "times"):
-        raise InputTypeError(f"answer is a {type(answer).__name__}; give what cs.localize returns")
+        raise InputTypeError(f"answer is {name_type(answer)}; give what cs.localize returns")
     panels = run_axes(axes)
     errors = None if truth is None else ate(answer, truth, align=align, interpolate=True)
     T = np.eye(3) if errors is None else errors.alignment

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.mechanisms import Mechanism
 from cspace.plot.axes import flat_axes, space_axes, write_title
 from cspace.plot.colors import INK, WALL, make_palette, mix_colors
@@ -57,7 +57,7 @@ def mechanism(drawn: Mechanism, q: ArrayLike, *, ax: Any = None, title: str = ""
     Raises InputTypeError for anything but a Mechanism, InputError for a wrong shape or NaN.
     """
     if not isinstance(drawn, Mechanism):
-        raise InputTypeError(f"the first argument is a {type(drawn).__name__}, expected a cs.Mechanism")
+        raise InputTypeError(f"the first argument is {name_type(drawn)}, expected a cs.Mechanism")
     rows = as_floats(q, "q", last=(len(drawn.joint_names),)).reshape(-1, len(drawn.joint_names))
     if not len(rows):
         raise InputError("q has no configurations to draw")

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputTypeError
+from cspace.errors import InputTypeError, name_type
 from cspace.plot import colors
 from cspace.plot.axes import draw_lines, draw_polygons, flat_axes, write_title
 from cspace.plot.worlds import world
@@ -30,7 +30,7 @@ def particles(pf: Any, *, ax: Any | None = None, grid: Any | None = None) -> lis
     grid: the map, unless the filter knows it. Returns the artists.
     """
     if not hasattr(pf, "particles") or not hasattr(pf, "modes"):
-        raise InputTypeError(f"pf is a {type(pf).__name__}; give a ParticleFilter or a MapLocalization")
+        raise InputTypeError(f"pf is {name_type(pf)}; give a ParticleFilter or a MapLocalization")
     axes = flat_axes(ax)
     known = grid if grid is not None else getattr(pf, "grid", None)
     artists = draw_map(axes, known)

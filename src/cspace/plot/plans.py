@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array, whole_number
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.planning import Plan
 from cspace.plot import colors
 from cspace.plot.axes import space_axes
@@ -47,7 +47,7 @@ def plan(plan: Plan, *, poses: int = 7, ax: Any | None = None, title: str = "") 
     poses, MissingExtraError without matplotlib.
     """
     if not isinstance(plan, Plan):
-        raise InputTypeError(f"plan is a {type(plan).__name__}; give a Plan, as cs.plan answers")
+        raise InputTypeError(f"plan is {name_type(plan)}; give a Plan, as cs.plan answers")
     rest = None if len(plan.path) else plan.stats.get("rest")
     path = plan.path if rest is None else rest.path
     if not len(path):

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.plot import colors
 from cspace.plot.axes import draw_lines, need_matplotlib, write_title
 from cspace.plot.ellipses import draw_ellipses
@@ -37,7 +37,7 @@ def graph(answer: Any, *, axes: Any = None, ellipses: bool = True, truth: Any = 
     """
     arrays = getattr(answer, "graph", answer)
     if not hasattr(arrays, "edges") or not hasattr(arrays, "sightings"):
-        raise InputTypeError(f"answer is a {type(answer).__name__}; give what PoseGraph.optimize returns")
+        raise InputTypeError(f"answer is {name_type(answer)}; give what PoseGraph.optimize returns")
     is_optimized = arrays is not answer
     rejected = tuple(loop.edge for loop in answer.rejected) if is_optimized else ()
     panels = graph_axes(axes, arrays.is_spatial, 2 if is_optimized and arrays.start_given else 1)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
 from cspace.collision import Scene
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.plot import colors
 from cspace.plot.arm_bodies import solids_of
 from cspace.plot.arm_stage import set_stage
@@ -101,7 +101,7 @@ def set_arm_stage(
 def check_scene(scene: object, *, optional: bool = False) -> None:
     """InputTypeError for what is not a scene."""
     if not (isinstance(scene, Scene) or (optional and scene is None)):
-        raise InputTypeError(f"scene is a {type(scene).__name__}; it must be a cspace.Scene")
+        raise InputTypeError(f"scene is {name_type(scene)}; it must be a cspace.Scene")
 
 
 def one_row(robot: Robot, q: ArrayLike | None) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.dynamics import Simulation
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.plot.axes import need_matplotlib, write_title
 from cspace.plot.motion_colors import REST, color_joints
 from cspace.robot import Robot
@@ -74,7 +74,7 @@ def simulation(
     another robot and another number of axes, and for degrees without a robot.
     """
     if not isinstance(run, Simulation):
-        raise InputTypeError(f"run is a {type(run).__name__}, expected what robot.simulate returns")
+        raise InputTypeError(f"run is {name_type(run)}, expected what robot.simulate returns")
     check_robot_of(run, robot, degrees)
     found = find_curves(run, robot, degrees)
     chosen: list[str] = [name for name in PANELS if name in found and shows_motion(name, found[name])]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from cspace.arrays import Array
 from cspace.ik.joint_axes import place_axes
 from cspace.ik.wrapping import revolute_joints
 from cspace.kinematics import KinematicModel
+from cspace.model import Chain
 from cspace.tolerances import DRAWN_LENGTH, DRAWN_PLANE
 
 CENTER: Final = np.zeros(3)
@@ -139,7 +140,7 @@ def body_place(i: int, before: Array, axes: Array, paths: list[Array], radii: Ar
     return np.asarray(place)
 
 
-def planar_basis(chain: Any) -> Array | None:
+def planar_basis(chain: Chain) -> Array | None:
     """The plane of a planar arm as rows x, y of a (2, 3) array, or None if the arm leaves every plane.
 
     Planar: revolute axes all parallel, prismatic axes across them, all in the base frame at zero.

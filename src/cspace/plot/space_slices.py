@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.planning import Projection, Slice
 from cspace.plot import colors
 from cspace.plot.axes import PLACE, draw_lines, flat_axes, need_matplotlib, write_title
@@ -45,7 +45,7 @@ def space_slice(
     Returns the artists. Raises InputTypeError for what is not a Slice, MissingExtraError without matplotlib.
     """
     if not hasattr(part, "obstacle_map"):
-        raise InputTypeError(f"part is a {type(part).__name__}; space_slice draws what space.slice gives")
+        raise InputTypeError(f"part is {name_type(part)}; space_slice draws what space.slice gives")
     axes = part_axes(ax, part)
     found = part.obstacle_map
     tints = colors.make_palette(len(part.obstacles))
@@ -74,9 +74,7 @@ def space_projection(
     MissingExtraError without matplotlib.
     """
     if not hasattr(part, "is_free"):
-        raise InputTypeError(
-            f"part is a {type(part).__name__}; space_projection draws what space.project gives"
-        )
+        raise InputTypeError(f"part is {name_type(part)}; space_projection draws what space.project gives")
     axes = part_axes(ax, part)
     shares = np.ma.masked_where(~part.is_free, part.share)
     artists = draw_cells(axes, part, shares)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, one_array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.plot.axes import need_matplotlib, write_title
 from cspace.plot.colors import INK
 from cspace.robot import Robot
@@ -62,7 +62,7 @@ def torques(
     mass, and for another number of axes.
     """
     if not isinstance(robot, Robot):
-        raise InputTypeError(f"robot is a {type(robot).__name__}, expected a cs.Robot")
+        raise InputTypeError(f"robot is {name_type(robot)}, expected a cs.Robot")
     rates = [np.zeros(robot.dof) if each is None else each for each in (qd, qdd)]
     state = [
         one_array(each, word, (size,))

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats, one_array, positive_number
 from cspace.dynamics import ExcitingTrajectory
 from cspace.dynamics.rows import EARTH
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.plot.axes import need_matplotlib, write_title
 from cspace.robot import Robot
 from cspace.tolerances import LIMIT_ROUNDING
@@ -90,9 +90,7 @@ def trajectory(
         title = title or describe_motion(motion, None if limits is None else motion.check(limits))
         drawn = motion
     else:
-        raise InputTypeError(
-            f"motion is a {type(motion).__name__}, expected a Trajectory or an ExcitingTrajectory"
-        )
+        raise InputTypeError(f"motion is {name_type(motion)}, expected a Trajectory or an ExcitingTrajectory")
     bounds = None if limits is None else read_limits(limits, drawn.dof)
     rates = []
     if robot is not None:
@@ -103,7 +101,7 @@ def trajectory(
 def read_frame_limits(robot: Robot | None, torque: Any, speed: Any, turn_rate: Any) -> None:
     """Raises InputTypeError for limits of a robot without one."""
     if robot is not None and not isinstance(robot, Robot):
-        raise InputTypeError(f"robot is a {type(robot).__name__}, expected a cs.Robot")
+        raise InputTypeError(f"robot is {name_type(robot)}, expected a cs.Robot")
     given = {"torque": torque, "speed": speed, "turn_rate": turn_rate}
     for name, value in given.items():
         if value is not None and robot is None:

@@ -7,7 +7,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.plot import colors
 from cspace.plot.axes import PLACE, draw_image, draw_lines, draw_polygons, flat_axes, write_title
 from cspace.plot.worlds import world
@@ -78,7 +78,7 @@ def poses_of(drive: Any) -> Array:
         return np.asarray(drive.poses)
     if hasattr(drive, "sample"):
         return np.asarray(drive.sample(drive.radius / ARCS))
-    raise InputTypeError(f"drive is a {type(drive).__name__}; give a CarRoute, a Run or a Curve")
+    raise InputTypeError(f"drive is {name_type(drive)}; give a CarRoute, a Run or a Curve")
 
 
 def title_of(drive: Any) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import as_floats, as_generator
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.tables import show_fields
 
 
@@ -53,7 +53,7 @@ class Option:
             return value
         several = hasattr(value, "__len__") and not isinstance(value, (str, bytes))
         if getattr(value, "ndim", several):
-            raise InputTypeError(f"option {self.name!r} is a {type(value).__name__}; it must be one value")
+            raise InputTypeError(f"option {self.name!r} is {name_type(value)}; it must be one value")
         if kinds[0] == "bool":
             if not isinstance(value, (bool, np.bool_)):
                 raise InputTypeError(f"{self.name} must be True or False, got {value!r}")
@@ -75,7 +75,7 @@ class Option:
                 return operator.index(value)
         except TypeError:
             pass
-        raise InputTypeError(f"{self.name} is a {type(value).__name__}; it must be a whole number")
+        raise InputTypeError(f"{self.name} is {name_type(value)}; it must be a whole number")
 
     def _real(self, value: Any) -> float:
         return inf if self.may_be_infinite and value == inf else float(as_floats(value, self.name))

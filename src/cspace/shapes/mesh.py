@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from cspace.arrays import Array, as_floats, one_array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.shapes.hull import Hull
 from cspace.shapes.mesh_cover import SphereCover, cover_mesh
 from cspace.shapes.mesh_files import read_mesh
@@ -55,7 +55,7 @@ class Mesh(Shape):
         if not len(faces):
             raise InputError("the mesh has no triangle with three different vertices")
         if not isinstance(self.solid, bool):
-            raise InputTypeError(f"solid is a {type(self.solid).__name__}; it must be True or False")
+            raise InputTypeError(f"solid is {name_type(self.solid)}; it must be True or False")
         if self.solid and (gaps := count_open_edges(faces)):
             raise InputError(
                 f"the surface of the mesh is not closed: {gaps} edges of {len(faces)} triangles have no"

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, one_array, positive_number
-from cspace.errors import InputError, InputTypeError, TimeLimitError
+from cspace.errors import InputError, InputTypeError, TimeLimitError, name_type
 from cspace.shapes.cover_cache import find_key, load_cover, store_cover
 from cspace.shapes.shape import Shape
 from cspace.spatial.poses import inverse_pose, transform_points
@@ -184,7 +184,7 @@ def find_surface(mesh: Any) -> tuple[Array, np.ndarray, bool]:
     surface = mesh._surface() if isinstance(mesh, Shape) else None
     if surface is None:
         raise InputTypeError(
-            f"mesh is a {type(mesh).__name__}; give a Mesh, a Hull or a HeightField (or use cover_shape)"
+            f"mesh is {name_type(mesh)}; give a Mesh, a Hull or a HeightField (or use cover_shape)"
         )
     vertices, faces, solid = surface
     return np.ascontiguousarray(vertices), np.ascontiguousarray(faces, dtype=np.int32), solid
@@ -193,7 +193,7 @@ def find_surface(mesh: Any) -> tuple[Array, np.ndarray, bool]:
 def check_flag(value: Any, subject: str) -> bool:
     """True or False; InputTypeError for anything else."""
     if not isinstance(value, (bool, np.bool_)):
-        raise InputTypeError(f"{subject} is a {type(value).__name__}; it must be True or False")
+        raise InputTypeError(f"{subject} is {name_type(value)}; it must be True or False")
     return bool(value)
 
 

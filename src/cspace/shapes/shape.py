@@ -10,7 +10,7 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, one_array, shape_of
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.spatial.checks import as_pose
 from cspace.tables import one_line, shown, tabulate
 from cspace.tolerances import LARGEST_NUMBER
@@ -41,7 +41,7 @@ class Shape:
         """Check pose and name; every shape calls it last."""
         object.__setattr__(self, "pose", check_place(self.pose, f"pose of a {self.title}"))
         if not isinstance(self.name, str):
-            raise InputTypeError(f"the name of a {self.title} is a {type(self.name).__name__}; give a string")
+            raise InputTypeError(f"the name of a {self.title} is {name_type(self.name)}; give a string")
 
     def _store(self, **values: Any) -> None:
         """Set fields of the frozen object; arrays become read-only."""

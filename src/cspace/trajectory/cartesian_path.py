@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from cspace._core import cartesian_poses, cartesian_twists
 from cspace.arrays import Array, as_floats, one_array, one_number
-from cspace.errors import InputError, InputTypeError, check_kind
+from cspace.errors import InputError, InputTypeError, check_kind, name_type
 from cspace.spatial import as_rotation
 from cspace.tables import count_things, one_line, show_fields, tabulate
 from cspace.tolerances import FARTHEST, TIME_ROUNDING
@@ -146,7 +146,7 @@ def _read_pieces(pieces: Sequence[CartesianPiece]) -> tuple[CartesianPiece, ...]
     """At least one piece; InputTypeError for other objects."""
     rule = "give a sequence of CartesianPiece, or make a path by line_path, arc_path, screw_path or pose_path"
     if not isinstance(pieces, Iterable):
-        raise InputTypeError(f"pieces is a {type(pieces).__name__}; {rule}")
+        raise InputTypeError(f"pieces is {name_type(pieces)}; {rule}")
     read = tuple(pieces)
     for k, piece in enumerate(read):
         check_kind(f"piece {k} of the path", piece, CartesianPiece, rule)
@@ -178,6 +178,5 @@ def check_cartesian_path(path: object) -> None:
     """Raises InputTypeError for another object, such as an array of poses."""
     if not isinstance(path, CartesianPath):
         raise InputTypeError(
-            f"path is a {type(path).__name__}; make a CartesianPath by line_path, arc_path, screw_path or"
-            " pose_path"
+            f"path is {name_type(path)}; make a CartesianPath by line_path, arc_path, screw_path or pose_path"
         )

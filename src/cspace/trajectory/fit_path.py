@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array, as_floats, positive_number
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.tolerances import CURVE_FITTED
 from cspace.trajectory.path import Path, hermite_quintics
 
@@ -71,7 +71,7 @@ def _check_curve(curve: Callable[[Array, int], Array]) -> None:
     """InputTypeError for an object that cannot be called with s and order."""
     rule = "it must accept (s, order) and return the configuration (order 0) and its derivatives by s (1, 2)"
     if not callable(curve):
-        raise InputTypeError(f"curve is a {type(curve).__name__}; {rule}")
+        raise InputTypeError(f"curve is {name_type(curve)}; {rule}")
     try:
         given = inspect.signature(curve)
     except (TypeError, ValueError):  # a compiled function without one

@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array, as_floats
-from cspace.errors import DescriptionError, InputError
+from cspace.errors import DescriptionError, InputError, name_type
 from cspace.files import path_of, read_text, write_text
 from cspace.trajectory.jerk_timed_path import LANDING, QUADRATIC, JerkTimedPath
 from cspace.trajectory.path import Path
@@ -75,7 +75,7 @@ def _describe(trajectory: Trajectory) -> dict[str, Any]:
         }
     if isinstance(trajectory, TimedPath):
         return {**_describe_timed(trajectory), **shared}
-    raise InputError(f"trajectory is a {type(trajectory).__name__}, of which no file is made; use to_csv")
+    raise InputError(f"trajectory is {name_type(trajectory)}, of which no file is made; use to_csv")
 
 
 def _describe_timed(timed: TimedPath) -> dict[str, Any]:

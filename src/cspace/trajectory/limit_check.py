@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple, Protocol
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.model import Limits
 from cspace.tables import count_things, html_table, one_line, shown, tabulate
 from cspace.tolerances import LIMIT_BINDS, LIMIT_ROUNDING
@@ -114,7 +114,7 @@ def read_limits(limits: Any, dof: int) -> Limits:
     """The limits given, or those of a robot; InputError if they are of another number of joints."""
     own = getattr(limits, "limits", limits)
     if not isinstance(own, Limits):
-        raise InputTypeError(f"limits is a {type(limits).__name__}; give Limits or a robot")
+        raise InputTypeError(f"limits is {name_type(limits)}; give Limits or a robot")
     if len(own) != dof:
         raise InputError(f"limits is of {len(own)} joints, the trajectory of {dof}; give limits for each")
     return own

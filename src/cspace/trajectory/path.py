@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from cspace._core import evaluate_path, examine_path
 from cspace.arrays import Array, as_floats, one_number, whole_number
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.model.values import freeze_array
 from cspace.tables import count_things, one_line, shown, tabulate
 from cspace.tolerances import (
@@ -66,7 +66,7 @@ class Path:
         self.breaks = freeze_array(np.array(b))
         self.control_points = freeze_array(np.array(c, order="C"))
         if isinstance(remarks, str) or not isinstance(remarks, Sequence):
-            raise InputTypeError(f"remarks is a {type(remarks).__name__}; give a list of texts")
+            raise InputTypeError(f"remarks is {name_type(remarks)}; give a list of texts")
         self.remarks = tuple(remarks)
         gap, width, self._events, moving = examine_path(
             self.control_points, self.lengths, SAME_WAYPOINT, PATH_CORNER, STILL_JOINT

@@ -19,7 +19,7 @@ from cspace.arrays import (
     whole_number,
 )
 from cspace.dynamics.rows import EARTH
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.model import Limits
 from cspace.model.values import freeze_array
@@ -140,9 +140,7 @@ def time_parametrize(
 def _check_path(path: Any, limits: Any) -> None:
     """Raise InputTypeError unless path is a Path, InputError for Limits of another number of joints."""
     if not isinstance(path, Path):
-        raise InputTypeError(
-            f"path is a {type(path).__name__}; make a Path by spline, blend, b_spline or fit_path"
-        )
+        raise InputTypeError(f"path is {name_type(path)}; make a Path by spline, blend, b_spline or fit_path")
     if isinstance(limits, Limits) and len(limits.lower) != path.dof:
         raise InputError(f"limits is of {len(limits.lower)} joints, the path of {path.dof}")
 
@@ -453,10 +451,10 @@ class _Timer:
         )
 
 
-def _choose_robot(robot: Any, limits: Any) -> KinematicModel | None:
+def _choose_robot(robot: KinematicModel | None, limits: Any) -> KinematicModel | None:
     """The robot whose dynamics and kinematics count, if there is one."""
     if robot is not None and not isinstance(robot, KinematicModel):
-        raise InputTypeError(f"robot is a {type(robot).__name__}; cspace.load_robot(name) returns one")
+        raise InputTypeError(f"robot is {name_type(robot)}; cspace.load_robot(name) returns one")
     if robot is not None:
         return robot
     return limits if isinstance(limits, KinematicModel) else None
@@ -505,7 +503,7 @@ def _read_limit(
     elif isinstance(limits, Limits):
         own = np.array(getattr(limits, name))
     else:
-        raise InputTypeError(f"limits is a {type(limits).__name__}; give Limits or a robot")
+        raise InputTypeError(f"limits is {name_type(limits)}; give Limits or a robot")
     if required and np.isinf(own).any():
         absent = [label for label, limit in zip(labels, own, strict=True) if np.isinf(limit)]
         which = "" if len(absent) == n else f" of {join_words(absent)}"

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats, one_number, positive_number, whole_number
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.model.values import read_joint_names
 from cspace.tables import count_things, one_line, show_fields, shown, tabulate
 from cspace.tolerances import CONTINUITY_ROUNDING, LEAST_FACTOR, TIME_ROUNDING
@@ -68,7 +68,7 @@ def check_trajectory(trajectory: object) -> None:
     """Raise InputTypeError unless it is a Trajectory."""
     if not isinstance(trajectory, Trajectory):
         raise InputTypeError(
-            f"trajectory is a {type(trajectory).__name__}; cspace.time_parametrize or a move returns one"
+            f"trajectory is {name_type(trajectory)}; cspace.time_parametrize or a move returns one"
         )
 
 
@@ -247,7 +247,7 @@ class Trajectory(ABC):
         """
         order = whole_number(order, "order", 0, HIGHEST_ORDER)
         if not isinstance(other, Trajectory):
-            raise InputTypeError(f"other is a {type(other).__name__}; then joins trajectories")
+            raise InputTypeError(f"other is {name_type(other)}; then joins trajectories")
         if other.dof != self.dof:
             raise InputError(
                 f"the other trajectory is of {count_things(other.dof, 'joint')}, this of {self.dof}"

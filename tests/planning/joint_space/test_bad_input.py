@@ -102,7 +102,7 @@ def test_questions_that_make_no_sense(space, call, words):
     [
         ("panda", {}, "robot is a str"),
         (cs.load_robot("panda"), {"exact": True}, "has 7 joints"),
-        (cs.load_robot("panda"), {"exact": 1}, "exact is a int"),
+        (cs.load_robot("panda"), {"exact": 1}, "exact is an int"),
         (cs.load_robot("panda"), {"limits": "no"}, "limits is a str"),
         (cs.load_robot("panda"), {"link_radius": 0.1}, "link_radius is an option of planar arms"),
         (cs.load_robot("panda"), {"height": 0.1}, "height is an option of planar arms"),
@@ -129,5 +129,5 @@ def test_scenes_that_do_not_fit():
     open_slide = cs.Robot.from_screws(np.eye(3), np.zeros((3, 3)), T, joint_types="RRP")
     with pytest.raises(CspaceError, match="has no limits"):
         cs.configuration_space(open_slide.with_spheres({"tip": [[0, 0, 0, 0.1]]}))
-    with pytest.raises(CspaceError, match="robot is a int"):
+    with pytest.raises(CspaceError, match="robot is an int"):
         cs.planning.JointSpace(3)

@@ -78,7 +78,7 @@ def test_links_in_different_planes_need_a_height():
         ({"link_radius": np.nan}, "link_radius"),
         ({"link_radius": "thin"}, "link_radius"),
         ({"height": np.inf}, "height"),
-        ({"limits": 1}, "limits is a int"),
+        ({"limits": 1}, "limits is an int"),
     ],
 )
 def test_options_out_of_range(arm, options, words):

@@ -104,9 +104,9 @@ inline void admit_polished(Solutions& out, const GeneralPlan& plan, const Posed&
 // Second derivative of the error below which a valley is straight: differences of errors leave some 1e-9.
 inline constexpr double least_bend = 1e-4;
 
-// Beside a fold a solution has a twin: along the weakest direction v the error is σ t u + ½ κ t² u + …, which
-// vanishes again at t = −2 σ/κ. False where there is no fold (σ is more than `most`, κ less than `least`): a
-// family does not bend.
+// Beside a fold a solution has a near-double: along the weakest direction v the error is σ t u + ½ κ t² u +
+// …, which vanishes again at t = −2 σ/κ. False where there is no fold (σ is more than `most`, κ less than
+// `least`): a self-motion does not bend.
 inline bool find_near_double(const GeneralPlan& plan, const Posed& goal, const double* q, double* near_double,
                              double most = 0.1, double least = least_bend) {
     PoseError error;

@@ -131,7 +131,7 @@ inline bool certify_by_tilting(const GeneralPlan& plan, const Posed& goal, doubl
     return out.count > 0 && accounts_for_tilts(plan, goal, led, out);
 }
 
-// Whether descents from all over the joints come to solutions that `out` lacks: families attract them.
+// Whether descents from all over the joints come to solutions that `out` lacks: self-motions attract them.
 inline bool lacks_by_descent(const GeneralPlan& plan, const Posed& goal, const Solutions& out) {
     Solutions more = out;
     search_by_descent(plan.chain, goal, 1, 16, more, out.count + 1);

@@ -1,5 +1,5 @@
-// One solution for each family: those found on one curve are one, and stand where its leading joint is at an
-// agreed value.
+// One solution for each self-motion: those found on one curve are one, and stand where its leading joint is
+// at an agreed value.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 
 namespace cspace::ik {
 
-// The member of a family at which its leading joint, the first that moves clearly, comes nearest to a value.
+// The member of a self-motion at which its leading joint, the first that moves clearly, comes nearest to a
+// value.
 struct Representative {
     int joint = -1;
     double value = 0;
@@ -66,7 +67,7 @@ inline void offer_between(const Chain& chain, const TipConstraint& constraint, R
     }
 }
 
-// The next member on a way along the family.
+// The next member on a way along the self-motion.
 inline void offer_next(const Chain& chain, const TipConstraint& constraint, Representative& r, int way,
                        const double* q, const double* t) {
     offer_member(chain, r, q, t);
@@ -108,7 +109,7 @@ inline void mark_passed(const Chain& chain, const TipConstraint& constraint, con
         passed[m] = passed[m] || (list.self_motion[m] && lies_near(chain, constraint, q, t, list.q[m]));
 }
 
-// Whether families cross at q: there it has more directions than one.
+// Whether self-motions cross at q: there it has more directions than one.
 inline bool is_crossing(const Chain& chain, const TipConstraint& constraint, const double* q) {
     constexpr double close = 1e-6;
     PoseError at;
@@ -130,8 +131,8 @@ inline void note_followed(const Chain& chain, const double* q, const double* t, 
     followed.tube[n] = alone * margin;
 }
 
-// `idle`: the values that leading joints take, zero if null; but where families cross none is taken to the
-// crossing, which would not tell which of them is meant. Lengths are over the arm's.
+// `unconstrained`: the values that leading joints take, zero if null; but where self-motions cross none is
+// taken to the crossing, which would not tell which of them is meant. Lengths are over the arm's.
 inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, const double* unconstrained,
                                      Solutions& out, FollowedCurves* followed = nullptr) {
     const TipConstraint constraint = {goal, true, 1};

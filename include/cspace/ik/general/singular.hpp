@@ -1,4 +1,4 @@
-// General arms at poses that leave them freedom: which of the solutions stand for a family.
+// General arms at poses that leave them freedom: which of the solutions stand for a self-motion.
 #pragma once
 
 #include "cspace/ik/general/representatives.hpp"
@@ -8,7 +8,7 @@
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-// A family needs a direction in which the arm hardly moves its tip; only then is it worth a closer look.
+// A self-motion needs a direction in which the arm hardly moves its tip; only then is it worth a closer look.
 inline void mark_self_motions(const GeneralPlan& plan, const Posed& goal, Solutions& out) {
     constexpr double hardly = 1e-6;
     for (int k = 0; k < out.count; ++k) {
@@ -84,14 +84,15 @@ inline void look_at_perturbed_goals(const GeneralArm& arm, const Chain& chain, c
         out.complete = false;
     // A wrist's list is complete but where solutions merge or joints are free, which goals nearby show.
     if (certain && there == 0 && arm.position_first.serves) return;
-    // Families attract whatever comes down near them.
+    // Self-motions attract whatever comes down near them.
     const int starts = out.count || certain ? 16 : 48;
     if (out.count == 0 || !certain) search_by_descent(chain, goal, 1, starts, out, max_solutions, &met);
     // Nothing here and something close by: the goal may lie just on the border.
     if (out.count == 0 && there > 0) out.complete = false;
 }
 
-// goal and `idle`, the values that leading joints of families take (null: zero): in metres, as is the answer.
+// goal and `unconstrained`, the values that leading joints of self-motions take (null: zero): in metres, as
+// is the answer.
 inline Solutions solve_general_carefully(const GeneralArm& arm, const Posed& goal_in_metres,
                                          const double* unconstrained = nullptr) {
     const double length = arm.plan.length;

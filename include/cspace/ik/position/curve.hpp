@@ -23,7 +23,7 @@ struct OnCurve {
 struct PairCandidates {
     int count = 0;
     double first[48], last[48];
-    int stage[48];  // 0: from the conditions; later ones represent families
+    int stage[48];  // 0: from the conditions; later ones represent self-motions
     int now = 0;
     int on_axis = -1;  // the one where both points may lie on the axis between
 };

@@ -101,7 +101,7 @@ inline void add_candidates(const TipGap<3>& g, PositionSolutions& found) {
     invariants(g, 1, behind, h);
     const PairCandidates pairs = solve_pair(f, h);
     // Sure candidates first; the doubtful ones (false pairings of the two conditions, or true ones spoilt
-    // where the elimination degenerates) and those that represent families only while nothing is found.
+    // where the elimination degenerates) and those that represent self-motions only while nothing is found.
     for (int stage = 0; stage < 5; ++stage) {
         if (found.count > 0) return;
         for (int i = 0; i < pairs.count; ++i) {

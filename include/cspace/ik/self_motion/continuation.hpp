@@ -153,7 +153,7 @@ CSPACE_NOINLINE inline bool onto_curve(const Chain& chain, const TipConstraint& 
         if (ends) break;
         measured = true;
     }
-    // An arm whose axes are parallel to ten digits only has its families to ten digits only.
+    // An arm whose axes are parallel to ten digits only has its self-motions to ten digits only.
     return size <= constraint.most;
 }
 

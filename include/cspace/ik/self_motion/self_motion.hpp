@@ -34,7 +34,7 @@ inline double kept_of_stride(const Chain& chain, const Posed& goal, double lengt
 // it returns to q, or reaches a nearby solution at one fixed distance.
 inline bool moves_freely(const Chain& chain, const Posed& goal, double length, const double* q,
                          const double* direction) {
-    // What may be missed along a family, and where rounded axes leave a valley instead of one.
+    // What may be missed along a self-motion, and where rounded axes leave a valley instead of one.
     constexpr double exactly = 1e-12, nearly = 1e-11;
     PoseError at;
     measure_error(chain, goal, length, q, at);

@@ -18,8 +18,9 @@ SAME = 1e-9  # solutions closer than this are one [rad, m over the arm's length]
 class Solutions:
     """Every configuration that reaches a pose; truthy if there is one.
 
-    q (k, dof); status: "exact", "singular" (some rows stand for a family: joints move, the tip does not),
-    "unreachable"; family (k,): which rows stand for one; complete: nothing is known to be left out.
+    q (k, dof); status: "exact", "singular" (some rows stand for a self-motion: joints move, the tip does
+    not), "unreachable"; self_motion (k,): which rows stand for one; complete: nothing is known to be
+    left out.
     """
 
     q: Array

@@ -43,7 +43,7 @@ def angle_between(h: Array, a: Array, b: Array) -> float:
 def joint_between(
     arm: dict[str, Any], i: int, pairs: list[tuple[Array, Array]], unconstrained: float
 ) -> float:
-    """The value at which joint i brings the first of each pair to the second; idle where it moves none."""
+    """The value at which joint i brings the first of each pair to the second, or `unconstrained`."""
     h, o = arm["axes"][i], arm["points"][i]
     if arm["slides"][i]:
         return float(h @ (pairs[0][1] - pairs[0][0]))
@@ -119,7 +119,7 @@ def with_more_turns(arm: dict[str, Any], T: Array, unconstrained: Array) -> list
 
 
 def solve_few_joints(arm: dict[str, Any], T: Array, unconstrained: Array) -> Solutions:
-    """Every configuration; joints that nothing fixes at their idle values."""
+    """Every configuration; joints that nothing constrains take their values in `unconstrained`."""
     found: list[Array] = []
     if np.count_nonzero(~arm["slides"]) < 2:
         candidates = with_one_turn(arm, T, unconstrained)

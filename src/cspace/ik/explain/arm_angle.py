@@ -24,12 +24,13 @@ from cspace.ik.explain.screws import (
 from cspace.ik.redundancy.arm_angle import swivel
 from cspace.ik.solver import Solver
 from cspace.math import Equation, TrigPolynomial
+from cspace.model import Chain
 from cspace.spatial import exp_so3
 
 SHOULDER, ELBOW, WRIST = (0, 1, 2), 3, (4, 5, 6)
 
 
-def points_of(chain: Any) -> tuple[Array, Array, Array]:
+def points_of(chain: Chain) -> tuple[Array, Array, Array]:
     """S, E, W at zero, (3,) each [m]."""
     S = common_point(chain.axes[:3], chain.points[:3])[0]
     W = common_point(chain.axes[4:], chain.points[4:])[0]
@@ -38,7 +39,7 @@ def points_of(chain: Any) -> tuple[Array, Array, Array]:
     return S, E, W
 
 
-def swivel_steps(chain: Any) -> tuple[Step, ...]:
+def swivel_steps(chain: Chain) -> tuple[Step, ...]:
     """Wrist, elbow, the plane of the arm, then both spherical joints."""
     S, E, W = points_of(chain)
     p, l = symbol_vector("p"), symbol_vector("l")
@@ -83,7 +84,7 @@ def swivel_steps(chain: Any) -> tuple[Step, ...]:
     )
 
 
-def ball_steps(chain: Any, joints: tuple[int, int, int], name: str, words: str) -> list[Step]:
+def ball_steps(chain: Chain, joints: tuple[int, int, int], name: str, words: str) -> list[Step]:
     """Three axes through a point make a rotation whose entries are symbols."""
     i, j, k = (joint + 1 for joint in joints)
     entries = [[TrigPolynomial.symbol(f"{name.lower()}_{a}{b}") for b in (1, 2, 3)] for a in (1, 2, 3)]

@@ -22,6 +22,7 @@ from cspace.ik.explain.wrist import wrist_constants, wrist_steps
 from cspace.ik.geometry import FIRST_THREE
 from cspace.ik.solver import Solver
 from cspace.kinematics import KinematicModel
+from cspace.model import Chain
 from cspace.tolerances import FORM_DEVIATION
 
 SPHERICAL_WRIST, THREE_PARALLEL, MIDDLE_PARALLEL, FIRST_PARALLEL = 1, 2, 3, 4
@@ -260,7 +261,7 @@ def wrist_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     )
 
 
-def few_joint_plan(chain: Any, survey: IkPlan) -> IkPlan:
+def few_joint_plan(chain: Chain, survey: IkPlan) -> IkPlan:
     """Arms of up to three joints."""
     steps = few_joint_steps(chain)
     turning = chain.joint_types.count("R")

@@ -3,8 +3,6 @@ the steps of include/cspace/ik/position/ and general/decoupled.hpp."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from cspace.arrays import Array
@@ -19,10 +17,11 @@ from cspace.ik.explain.screws import (
     turn_direction,
 )
 from cspace.math import Equation, MatrixEquation, TrigPolynomial
+from cspace.model import Chain
 from cspace.spatial.vectors import perpendicular
 
 
-def invariants_of(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
+def invariants_of(chain: Chain | Screws, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
     """The two functions of a point that joint i does not change, and their units."""
     h, o = chain.axes[i], chain.points[i]
     d = [x[k] - float(o[k]) for k in range(3)]
@@ -40,7 +39,7 @@ def equate_invariants(
     return tuple(each for each in pairs if (each.left - each.right).terms)
 
 
-def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
+def few_joint_steps(chain: Chain | Screws, goal: Vector | None = None) -> list[Step]:
     """The steps that bring the tip to a point, by default p."""
     kinds, n = chain.joint_types, len(chain.joint_types)
     goal, tip = symbol_vector("p") if goal is None else goal, number_vector(chain.T_zero[:3, 3])
@@ -65,7 +64,7 @@ def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
     return [first, last_step(chain, middle, behind, before)]
 
 
-def last_step(chain: Any, i: int, x: Vector, y: Vector) -> Step:
+def last_step(chain: Chain | Screws, i: int, x: Vector, y: Vector) -> Step:
     """Joint i maps x to y."""
     turning = chain.joint_types[i] == "R"
     carried = move_point(chain, i, x)
@@ -123,7 +122,7 @@ def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...
 
 
 def rotation_steps(
-    arm: Screws,
+    arm: Chain | Screws,
     turns: tuple[int, int, int],
     ahead: Vector,
     behind: Vector,

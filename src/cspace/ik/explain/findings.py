@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array, as_floats, leading_axes
+from cspace.errors import Renamed
 from cspace.ik.explain.page import Block
 from cspace.ik.explain.survey import InvariantDirection, InvariantPoint, Relation
 from cspace.math import Equation, MatrixEquation
@@ -50,7 +51,7 @@ class Step:
 
 
 @dataclass(frozen=True, eq=False)
-class Findings:
+class Findings(Renamed):
     """The content of an IkPlan, which says what the fields are."""
 
     robot: str

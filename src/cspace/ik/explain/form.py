@@ -104,7 +104,7 @@ class Form:
         """The table of the form with the joints behind it. numbers: theirs in the arm, else 1, 2, …"""
         rows = []
         for i, joint in enumerate(self.joint):
-            name = f"`{names[joint]}`" if joint >= 0 else "virtual, held at 0"
+            name = f"`{names[joint]}`" if joint >= 0 else "virtual, locked at 0"
             alpha = np.degrees(np.arctan2(self.sa[i], self.ca[i]))
             entries = (shown(x) for x in (alpha, self.a[i], self.d[i]))
             rows.append((f"{i + 1}", name, *entries, self.angle_text(i, numbers)))

@@ -21,6 +21,7 @@ from cspace.ik.explain.screws import goal_values
 from cspace.ik.locked_joints import between_others, value_in_words
 from cspace.ik.solver import MAX_SETTLED, Solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
+from cspace.model import Chain
 from cspace.model.screws import twists
 from cspace.spatial import exp_se3
 from cspace.spatial.vectors import frame_along
@@ -87,7 +88,7 @@ class Split:
 
 
 def locked_plan(solver: Solver, locked: Mapping[int, float], survey: IkPlan) -> IkPlan:
-    """An arm with redundant joints, or with locked joints. locked: joints that the user holds, and where."""
+    """An arm with redundant joints, or with locked joints. locked: values of joints that the user locks."""
     others = solver.lock(dict(locked))
     redundancy_degree = others.redundancy_degree()
     default = tuple(solver.joint_names.index(others.joint_names[k]) for k in others.redundant_joints)
@@ -100,7 +101,7 @@ def locked_plan(solver: Solver, locked: Mapping[int, float], survey: IkPlan) -> 
     steps = swivel_of(solver) if not locked else ()
     tables = dict(inner.tables)
     if redundancy_degree == 1 and not locked:
-        tables = {"What may be held": list_choices(solver, default), **tables}
+        tables = {"Joints that may be locked": list_choices(solver, default), **tables}
     notes = [*describe_reasons(split, default), *describe_numbering(split), *inner.notes]
     ends = [k for k in split.locked if k not in split.between]
     first = (locked_step(split, ends),) if inner else ()
@@ -147,7 +148,7 @@ def summarise_split(split: Split, redundancy_degree: int, inner: IkPlan) -> str:
     elif redundancy_degree:
         more = f"{n} joints, {redundancy_degree} more than the tip has ways to move"
     else:
-        more = f"{n} joints, some of them held"
+        more = f"{n} joints, some of them locked"
     how = inner.summary if inner else "nothing solves exactly: members are found by descents from 48 starts"
     role = "is a parameter" if len(split.locked) == 1 else "are parameters"
     locked = f"{names_of(split, split.locked)} {role} of each call"
@@ -166,18 +167,18 @@ def describe_reasons(split: Split, default: tuple[int, ...]) -> list[str]:
             + ("this one leaves" if one else "these leave")
             + " the others the simplest method (the last joints where it makes no difference)"
             if ends
-            else "neighbours alone have no method, and with one held between others there is one"
+            else "neighbours alone have no method, and with one locked between others there is one"
         )
         out.append(
-            f"The choice is made when the solver is built. Held {'is' if one else 'are'} "
+            f"The choice is made when the solver is built. Locked {'is' if one else 'are'} "
             f"{names_of(split, default)}: {cause}."
         )
     if split.between:
         values = {k: value_in_words(split.solver, k, split.at[k]) for k in split.between}
         at = ", ".join(f"$q_{k + 1}$ = {value}" for k, value in values.items())
         out.append(
-            f"A joint held between others changes a link: the numbers below are for {at}. Other values give "
-            "other numbers, and the others are classified anew, which takes microseconds."
+            f"A joint locked between others changes a link: the numbers below are for {at}. Other values "
+            "give other numbers, and the others are classified anew, which takes microseconds."
         )
     return out
 
@@ -233,7 +234,8 @@ def describe_answers(split: Split, default: tuple[int, ...], others: Solver) -> 
         out.append(f"`robot.redundancy(T)`, the feasible intervals of {locked}: {describe_intervals(others)}")
     out.append(
         "`robot.track(poses)` follows the least motion of the joints, $q' = J^+ t$ for the twist $t$ of the "
-        "path, from `start=` or from the configuration nearest to the middle of the limits; no joint is held."
+        "path, from `start=` or from the configuration nearest to the middle of the limits; no joint is "
+        "locked."
     )
     return tuple(out)
 
@@ -289,7 +291,7 @@ def locked_step(split: Split, ends: list[int]) -> Step:
             "the others, in the tip for one behind them."
         )
     if split.between:
-        words += "A joint held between others stands at the value that the numbers below belong to."
+        words += "A joint locked between others stands at the value that the numbers below belong to."
     words = words.strip()
     goal = ("Tgoal", r"T_{\text{goal}}", TrigMatrix.symbols(WHOLE))
     left = [part for k in reversed(ends) if k < split.moving[0] for part in undo_joint(split, k, chain)]
@@ -299,11 +301,13 @@ def locked_step(split: Split, ends: list[int]) -> Step:
     if ends:
         equations.append(MatrixEquation(Product((("T", "T", TrigMatrix.symbols(INNER)),)), Product(parts)))
     for k in split.between:
-        equations.append(Equation(TrigPolynomial.symbol(f"held_{k + 1}"), TrigPolynomial.number(split.at[k])))
+        equations.append(
+            Equation(TrigPolynomial.symbol(f"locked_{k + 1}"), TrigPolynomial.number(split.at[k]))
+        )
     return Step(", ".join(number), words, tuple(equations), method="given")
 
 
-def undo_joint(split: Split, k: int, chain: Any) -> list[tuple[str, str, TrigMatrix]]:
+def undo_joint(split: Split, k: int, chain: Chain) -> list[tuple[str, str, TrigMatrix]]:
     """M Rz(−q) M⁻¹: the motion of a locked joint taken back."""
     M, i = split.frame(k), k + 1
     frame, back = TrigMatrix(M.tolist()), TrigMatrix(np.linalg.inv(M).tolist())
@@ -324,7 +328,7 @@ def values_of(split: Split, inner: IkPlan) -> Any:
         goal = split.goal(q, T)
         out = dict(inner._values(q[..., list(split.moving)], goal)) if inner._values else {}
         out |= goal_values(T, WHOLE) | goal_values(goal, INNER)
-        out |= {f"held_{k + 1}": q[..., k] for k in split.between}
+        out |= {f"locked_{k + 1}": q[..., k] for k in split.between}
         kinds = split.solver.chain.joint_types
         out |= {f"{'t' if kinds[k] == 'R' else 'q'}_{AHEAD + k + 1}": q[..., k] for k in split.locked}
         return out

@@ -1,4 +1,4 @@
-"""From a robot, and what will be asked of it, a pose or parts of one, to the explanation."""
+"""From a robot, and the goal parts, a pose or parts of one, to the explanation."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputTypeError, name_new_keywords, suggest
+from cspace.errors import InputTypeError, name_new_keywords, name_type, suggest
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.explain.describe import refused_plan, settled_plan, survey_of
 from cspace.ik.explain.locked_joints import locked_plan
@@ -35,7 +35,7 @@ def ik_plan(robot: HasSolver, *, goal_parts: Any = None, locked: Any = None, too
     by name or number, with their values, {"joint4": 0.3}; of an arm with redundant joints the solver's own
     choice unless given.
 
-    The answer is built from what the solver itself holds. It prints, has to_markdown() and to_latex(), and
+    The answer is built from the plan of the solver itself. It prints, has to_markdown() and to_latex(), and
     plan.residuals(q, T) evaluates every equation. An arm that nothing solves gets a plan that is false and
     says why. Raises InputTypeError for a value that is not a robot and for goals that are none, InputError
     for joints that the arm does not have.
@@ -87,7 +87,7 @@ def goal_of_parts(goal_parts: Any, tool_axis: Any) -> PartialGoal:
         goal_parts = [word.strip() for word in goal_parts.replace("+", ",").split(",")]
     if not isinstance(goal_parts, Iterable) or isinstance(goal_parts, np.ndarray):
         raise InputTypeError(
-            f"asked is a {type(goal_parts).__name__}, expected names of parts of a pose, ('position', "
+            f"goal_parts is {name_type(goal_parts)}, expected names of parts of a pose, ('position', "
             "'direction'), or a dict with their values"
         )
     names = list(goal_parts)
@@ -164,7 +164,7 @@ def goal_joints(goal: PartialGoal) -> Block:
     rows = []
     for i, (kind, axis) in enumerate((*goal.before, *goal.behind)):
         before = i < len(goal.before)
-        what = "slides along" if kind == "P" else "turns about"
+        what = "prismatic" if kind == "P" else "revolute"
         where = "before the base" if before else "behind the tip"
         rows.append((f"`{goal.joint_names[i]}`", where, what, vector_text(axis), "base" if before else "tip"))
-    return lay_out_table(("joint", "place", "does", "direction", "seen in"), rows)
+    return lay_out_table(("joint", "place", "type", "axis", "seen in"), rows)

@@ -11,6 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.explain.page import Block, lay_out_table
 from cspace.math import Angle, TrigPolynomial
+from cspace.model import Chain
 from cspace.tables import shown
 from cspace.tolerances import SYMBOL_PARALLEL
 
@@ -27,7 +28,7 @@ class Screws:
     T_zero: Array
 
     @classmethod
-    def of(cls, chain: Any) -> Screws:
+    def of(cls, chain: Chain) -> Screws:
         """The joints of a robot."""
         return cls(chain.joint_types, chain.axes, chain.points, chain.T_zero)
 
@@ -35,11 +36,11 @@ class Screws:
         """Where the joints are at zero; a joint without a name is virtual."""
         rows = []
         for i, kind in enumerate(self.joint_types):
-            name = f"`{names[i]}`" if i < len(names) and names[i] else "virtual, held at 0"
+            name = f"`{names[i]}`" if i < len(names) and names[i] else "virtual, locked at 0"
             point = vector_text(self.points[i]) if kind == "R" else "–"
-            what = "turns" if kind == "R" else "slides"
+            what = "revolute" if kind == "R" else "prismatic"
             rows.append((f"{i + 1}", name, what, vector_text(self.axes[i]), point))
-        return lay_out_table(("i", "joint", "does", "along", "through [m]"), rows)
+        return lay_out_table(("i", "joint", "type", "along", "through [m]"), rows)
 
     def reversed(self) -> Screws:
         """The same joints read from the tip."""
@@ -88,7 +89,7 @@ def dot_product(h: Array, x: Vector) -> TrigPolynomial:
     return sum((float(h[k]) * x[k] for k in range(3)), TrigPolynomial())
 
 
-def group_of(chain: Any, i: int) -> int:
+def group_of(chain: Chain | Screws, i: int) -> int:
     """The group of parallel axes that joint i belongs to: the first joint of its kind."""
     for k in range(i):
         if np.linalg.norm(np.cross(chain.axes[k], chain.axes[i])) < SYMBOL_PARALLEL:
@@ -96,7 +97,7 @@ def group_of(chain: Any, i: int) -> int:
     return i
 
 
-def turn_direction(chain: Any, i: int, v: Vector, *, back: bool = False) -> Vector:
+def turn_direction(chain: Chain | Screws, i: int, v: Vector, *, back: bool = False) -> Vector:
     """The direction v turned by joint i, or back; a prismatic joint leaves it."""
     if chain.joint_types[i] == "P":
         return v
@@ -111,7 +112,7 @@ def turn_direction(chain: Any, i: int, v: Vector, *, back: bool = False) -> Vect
     return out
 
 
-def move_point(chain: Any, i: int, x: Vector, *, back: bool = False) -> Vector:
+def move_point(chain: Chain | Screws, i: int, x: Vector, *, back: bool = False) -> Vector:
     """The point x carried along by joint i: e^{ξ q} x, or back by e^{−ξ q}."""
     h, o = chain.axes[i], chain.points[i]
     if chain.joint_types[i] == "P":

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import angle_between, common_point
+from cspace.model import Chain
 from cspace.tables import show_fields
 
 
@@ -65,7 +65,7 @@ class InvariantDirection:
     miss: float
 
 
-def measure_relations(chain: Any, length: float) -> tuple[Relation, ...]:
+def measure_relations(chain: Chain, length: float) -> tuple[Relation, ...]:
     """What each pair of neighbouring axes shares; length: the arm's [m], the scale of what is allowed."""
     out = []
     for i in range(len(chain.joint_types) - 1):
@@ -81,7 +81,7 @@ def measure_relations(chain: Any, length: float) -> tuple[Relation, ...]:
     return tuple(out)
 
 
-def invariant_points(chain: Any, length: float) -> tuple[InvariantPoint, ...]:
+def invariant_points(chain: Chain, length: float) -> tuple[InvariantPoint, ...]:
     """Where adjacent axes meet: three in a point, or two that belong to no such three."""
     pairs = [each.joints for each in measure_relations(chain, length) if each.meet and not each.parallel]
     threes = [
@@ -90,8 +90,8 @@ def invariant_points(chain: Any, length: float) -> tuple[InvariantPoint, ...]:
         if c == b + 1
         and common_point(chain.axes[a - 1 : c], chain.points[a - 1 : c])[1] < _core.AXIS_RELATION * length
     ]
-    held = {pair for a, b, c in threes for pair in ((a, b), (b, c))}
-    groups = sorted([*threes, *(pair for pair in pairs if pair not in held)])
+    in_threes = {pair for a, b, c in threes for pair in ((a, b), (b, c))}
+    groups = sorted([*threes, *(pair for pair in pairs if pair not in in_threes)])
     out = []
     for joints in groups:
         some = slice(joints[0] - 1, joints[-1])
@@ -100,7 +100,7 @@ def invariant_points(chain: Any, length: float) -> tuple[InvariantPoint, ...]:
     return tuple(out)
 
 
-def invariant_directions(chain: Any, length: float) -> tuple[InvariantDirection, ...]:
+def invariant_directions(chain: Chain, length: float) -> tuple[InvariantDirection, ...]:
     """Runs of neighbouring parallel axes of revolute joints."""
     runs: list[list[int]] = []
     for each in measure_relations(chain, length):

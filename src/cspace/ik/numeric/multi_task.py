@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array, as_generator, one_array, positive_number, whole_number
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.ik.numeric.problem import bounds_of, further_starts, largest_speeds, middle_configuration
 from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
 from cspace.kinematics import KinematicModel
@@ -167,7 +167,7 @@ def _packed(robot: KinematicModel, tasks: Task | Iterable[Task]) -> tuple[Array,
     for task in listed:
         row = getattr(task, "_row", None)
         if row is None:
-            raise InputTypeError(f"tasks contain a {type(task).__name__}, expected PoseTask, PostureTask …")
+            raise InputTypeError(f"tasks contain {name_type(task)}, expected PoseTask, PostureTask …")
         if isinstance(task, PostureTask):
             if row.size != 2 * n + 1:
                 raise InputError(f"a PostureTask has {(row.size - 1) // 2} joints, but {robot.name} has {n}")

@@ -37,7 +37,7 @@ def redundancy(
     by keyword, one goal, as `robot.ik` takes them: position, rotation, direction, look_at, ray, angle_to,
     tool_axis. parameter: the joint, by name or number, one of those that a partial goal adds, or "swivel" of
     an arm with two spherical joints; the solver's own choice unless given (`ik(goal).freedom` names it).
-    locked: values of other joints [rad, m], so that one is left to spare.
+    locked: values of other joints [rad, m], so that one redundant joint is left.
 
     Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a redundant
     joint or with more than one, and for a joint that the goal settles. For arms with two spherical joints:

@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, whole_number
-from cspace.errors import InputError
+from cspace.errors import InputError, Renamed
 from cspace.ik.solver import Solver
 from cspace.math.wrapping import TURN
 from cspace.tables import html_table, one_line, shown, tabulate
@@ -51,7 +51,7 @@ class Interval:
 
 
 @dataclass(frozen=True, eq=False)
-class Redundancy:
+class Redundancy(Renamed):
     """The feasible intervals of a parameter for one goal, falsy if there is none.
 
     parameter: the joint that is locked. intervals: sorted by branch and lower end; they are computed from

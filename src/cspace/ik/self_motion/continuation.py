@@ -1,4 +1,4 @@
-"""The curve that a family runs along, and the part of it that joint limits leave.
+"""The curve that a self-motion runs along, and the part of it that joint limits leave.
 
 A curve that closes is periodic once its angles are unwound: after one time around it stands `shift` further,
 a multiple of 2π for joints that made full revolutions, zero for the others. It is repeated as often as the

@@ -1,4 +1,4 @@
-"""One-parameter families of configurations: the joints move, the tip stays."""
+"""One-parameter self-motions: the joints move, the tip stays."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from cspace.tolerances import MOVING_JOINT
 @tabulate()
 @dataclass(frozen=True, eq=False)
 class SelfMotion:
-    """A one-parameter family of configurations: the joints move, the tip stays.
+    """A one-parameter set of configurations: the joints move, the tip stays.
 
     row: the solution that stands for it. q: that configuration (dof,). direction: the unit joint velocity
     (dof,) along the self-motion at q. joints: the names of the joints that move at q. bounds: how far each
@@ -58,7 +58,7 @@ class SelfMotion:
     def bounds(self) -> Array:
         """The least and the largest value of each joint along the self-motion, (dof, 2) [rad, m].
 
-        The family is the curve of configurations through q that keep the tip where it is (for a position
+        The self-motion is the curve of configurations through q that keep the tip where it is (for a position
         goal: keep its position), followed from q both ways until a joint of the robot meets a limit or the
         curve closes. A joint that goes all the way round a curve without limits has bounds −π and π; one
         that is stopped on one side only, or a prismatic joint that nothing stops, has an infinite bound on
@@ -68,7 +68,7 @@ class SelfMotion:
         NaN where q breaks the limits whatever turn is taken: ik(..., near=q) picks another representative.
         Where more freedom is left than one, the curve is the one that goes on straight from `direction`; it
         need not close, and is then followed for 4000 steps of 0.05 rad at most, and no further than to where
-        families cross within rounding.
+        self-motions cross within rounding.
         Computed when first read, by steps along the tangent and back onto the curve (Allgower and Georg
         1990); extremes and limits are met to rounding.
         """
@@ -81,7 +81,7 @@ class SelfMotion:
 
         From one end of the part within limits to the other, both included; of a closed curve without limits
         from q once around, joints that go all the way round in (−π, π]. No rows where q breaks the limits
-        (see bounds). Raises InputError where the family has no end, naming the joint, and for n below 1.
+        (see bounds). Raises InputError where the self-motion has no end, naming the joint, and for n below 1.
         """
         count = whole_number(n, "n", 1, MOST_SAMPLES)
         if self._arc is None:
@@ -95,14 +95,14 @@ class SelfMotion:
         return self._with_locked(np.where(goes_round, wrap_joints(q, self._solver.joint_types), q))
 
     def nearest(self, q: Array) -> Array:
-        """The configuration of the family that is nearest to q (dof,), (dof,) [rad, m].
+        """The configuration of the self-motion that is nearest to q (dof,), (dof,) [rad, m].
 
         Limits aside; each revolute joint by the turn that brings it closest.
         """
         return self._nearest_within(q, None)
 
     def _nearest_within(self, q: Array, limits: Limits | None) -> Array:
-        """The same within limits, if any; self.q where none of the family is."""
+        """The same within limits, if any; self.q where none of the self-motion is."""
         own = self._moving
         seed = as_floats(q, "q", last=self.q.shape)
         bounds = None if limits is None else Limits(limits.lower[own], limits.upper[own])

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.files import path_of
 from cspace.localization.graph.checks import read_poses
 from cspace.localization.log import Log
@@ -70,7 +70,7 @@ def read_track(value: Any, subject: str) -> Track:
     given = getattr(value, "poses", value)
     if given is None or isinstance(given, (bytes, dict, set)):
         raise InputTypeError(
-            f"{subject} is a {type(value).__name__}; give an object with poses, an array (n, 3), or a file"
+            f"{subject} is {name_type(value)}; give an object with poses, an array (n, 3), or a file"
         )
     rows = read_poses(given, subject)
     if not len(rows):

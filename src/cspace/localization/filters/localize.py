@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
-from cspace.errors import InputError, InputTypeError, check_known
+from cspace.errors import InputError, InputTypeError, check_known, name_type
 from cspace.localization.checks import read_covariance, read_pose, suggest_map
 from cspace.localization.filters.forward import Pass, Passed
 from cspace.localization.filters.gates import associate_reading
@@ -40,6 +40,56 @@ START_DEVIATIONS = (0.01, 0.01, 0.01)
 """Standard deviations of a start [m, m, rad] unless given: one that somebody measured."""
 
 
+@overload
+def localize(
+    log: Log,
+    landmarks: Any | None = None,
+    *,
+    filter: Literal["ekf", "iekf", "ukf", "information"] = "ekf",
+    start: npt.ArrayLike | None = None,
+    start_covariance: npt.ArrayLike | None = None,
+    sensor: RangeBearing | None = None,
+    compass: Compass | None = None,
+    gps: Gps | None = None,
+    noise: MotionNoise | None = None,
+    gate: float | None = None,
+    time_limit: float | None = None,
+) -> Localization: ...
+@overload
+def localize(
+    log: Log,
+    landmarks: Any | None = None,
+    *,
+    filter: Literal["mcl", "histogram"],
+    start: npt.ArrayLike | None = None,
+    start_covariance: npt.ArrayLike | None = None,
+    sensor: RangeBearing | LaserScanner | None = None,
+    noise: MotionNoise | None = None,
+    n: int | None = None,
+    most: int | None = None,
+    threads: int = 1,
+    rng: int | np.random.Generator | None = None,
+    time_limit: float | None = None,
+) -> MapLocalization: ...
+@overload
+def localize(
+    log: Log,
+    landmarks: Any | None = None,
+    *,
+    filter: str = "ekf",
+    start: npt.ArrayLike | None = None,
+    start_covariance: npt.ArrayLike | None = None,
+    sensor: RangeBearing | LaserScanner | None = None,
+    compass: Compass | None = None,
+    gps: Gps | None = None,
+    noise: MotionNoise | None = None,
+    gate: float | None = None,
+    n: int | None = None,
+    most: int | None = None,
+    threads: int = 1,
+    rng: int | np.random.Generator | None = None,
+    time_limit: float | None = None,
+) -> Localization | MapLocalization: ...
 def localize(
     log: Log,
     landmarks: Any | None = None,
@@ -75,7 +125,7 @@ def localize(
     """
     begun = perf_counter()
     if not isinstance(log, Log):
-        raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
+        raise InputTypeError(f"log is {name_type(log)}; read one with cspace.read_log, or make a Log")
     check_known("filter", filter, FILTERS)
     of_particles = {"n": n, "most": most, "rng": rng} if filter != "mcl" else {}
     of_kalman = {"compass": compass, "gps": gps, "gate": gate} if filter in MAP_FILTERS else {}
@@ -109,7 +159,7 @@ def check_landmarks(known: Any, sensor: Any, filter: str) -> RangeBearing:
     if known is not None and not isinstance(known, Landmarks):
         remedy = "give filter='mcl'" if hasattr(known, "likelihood_field") else suggest_map(known)
         raise InputTypeError(
-            f"the map is a {type(known).__name__}, and filter={filter!r} needs Landmarks; {remedy}"
+            f"the map is {name_type(known)}, and filter={filter!r} needs Landmarks; {remedy}"
         )
     return read_sensor(sensor, RangeBearing)
 

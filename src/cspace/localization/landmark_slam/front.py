@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
-from cspace.errors import InputError, InputTypeError, TimeLimitError
+from cspace.errors import InputError, InputTypeError, TimeLimitError, name_type
 from cspace.localization.filters.rows import adjoin_rows, carry_covariance, follow_rows, relate_rows
 from cspace.localization.filters.timeline import Timeline, lay_timeline
 from cspace.localization.landmark_slam.answer import LandmarkSlam, LandmarkSlamStats
@@ -142,7 +142,7 @@ def run_filter(
 def read_rows(log: Log) -> Array:
     """The readings of a log as rows name, range, bearing (k, 3)."""
     if not isinstance(log, Log):
-        raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
+        raise InputTypeError(f"log is {name_type(log)}; read one with cspace.read_log, or make a Log")
     if not len(log.odometry.times):
         raise InputError("the log has no odometry; SLAM needs its times, at least one")
     if log.readings is None:

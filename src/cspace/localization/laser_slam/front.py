@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from cspace._core import LaserSlamRun, TimeOver, set_deadline
 from cspace.arrays import Array, positive_number, truth_value
-from cspace.errors import InputError, InputTypeError, check_known
+from cspace.errors import InputError, InputTypeError, check_known, name_type
 from cspace.localization.checks import read_pose
 from cspace.localization.filters.rows import follow_rows
 from cspace.localization.graph import GraphAnswer, PoseGraph
@@ -75,7 +75,7 @@ def slam(
     that is done, 0 to 1. Raises InputError for a log without scans or odometry, or without any return.
     """
     if not isinstance(log, Log):
-        raise InputTypeError(f"log is a {type(log).__name__}; read one with cspace.read_log, or make a Log")
+        raise InputTypeError(f"log is {name_type(log)}; read one with cspace.read_log, or make a Log")
     check_known("method", method, METHODS)
     limit = None if time_limit is None else positive_number(time_limit, "time_limit", largest=inf)
     first = read_pose(start)
@@ -88,7 +88,7 @@ def slam(
     check_bell(cell, SIGMA, f"resolution is {cell:g} m, and the bells of points {SIGMA:g} m; these may have")
     flags = truth_value(loops, "loops"), truth_value(calibrated, "calibrated")
     if not (progress is None or callable(progress)):
-        raise InputTypeError(f"progress is a {type(progress).__name__}; give a function of a share, 0 to 1")
+        raise InputTypeError(f"progress is {name_type(progress)}; give a function of a share, 0 to 1")
     mapper = Mapper(drive, first, cell, *flags, progress)
     mapper.run(inf if limit is None else limit)
     return mapper.report()

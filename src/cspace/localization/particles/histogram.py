@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, bounded_number, positive_number, whole_number
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.localization.checks import Running, read_covariance, read_pose
 from cspace.localization.filters.rows import (
     adjoin_rows,
@@ -76,7 +76,7 @@ class HistogramFilter(Running):
     ) -> None:
         if isinstance(grid, ByteField) or not hasattr(grid, "likelihood_field"):
             raise InputTypeError(
-                f"grid is a {type(grid).__name__}; give an OccupancyGrid or an EvidenceGrid, for ROS maps"
+                f"grid is {name_type(grid)}; give an OccupancyGrid or an EvidenceGrid, for ROS maps"
                 " cspace.maps.EvidenceGrid.from_ros(path)"
             )
         self.grid, self.noise = grid, read_motion(motion)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, one_array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.localization.checks import suggest_map
 from cspace.localization.log import UNKNOWN, Landmarks, Readings, Scans
 from cspace.localization.particles.beam_model import BeamTable
@@ -283,9 +283,7 @@ class SightingModel:
     def read(self, measurement: Any) -> Readings:
         """The readings, checked."""
         if not isinstance(measurement, Readings):
-            raise InputTypeError(
-                f"scan is a {type(measurement).__name__}; a filter on landmarks takes Readings"
-            )
+            raise InputTypeError(f"scan is {name_type(measurement)}; a filter on landmarks takes Readings")
         return measurement
 
 
@@ -302,7 +300,7 @@ def make_model(grid: Any, sensor: LaserScanner | RangeBearing | None) -> ScanMod
             )
         return SightingModel(grid, sensor or RangeBearing())
     if not isinstance(grid, ByteField) and not hasattr(grid, "likelihood_field"):
-        raise InputTypeError(f"grid is a {type(grid).__name__}, which is no map; {suggest_map(grid)}")
+        raise InputTypeError(f"grid is {name_type(grid)}, which is no map; {suggest_map(grid)}")
     if sensor is not None and not isinstance(sensor, LaserScanner):
         raise InputTypeError(f"a grid needs sensor=LaserScanner(…), not {type(sensor).__name__}")
     return ScanModel(grid, sensor or LaserScanner())

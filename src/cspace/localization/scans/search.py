@@ -23,7 +23,7 @@ from cspace.arrays import (
     positive_number,
     whole_number,
 )
-from cspace.errors import InputError, InputTypeError, TimeLimitError
+from cspace.errors import InputError, InputTypeError, TimeLimitError, name_type
 from cspace.maps import ByteField
 from cspace.tables import count_things, one_line, tabulate
 
@@ -91,9 +91,7 @@ def search_pose(
     search. Olson 2009; Hess, Kohler, Rapp and Andor 2016.
     """
     if not isinstance(field, ByteField):
-        raise InputTypeError(
-            f"field is a {type(field).__name__}; give a ByteField, as of grid.likelihood_field()"
-        )
+        raise InputTypeError(f"field is {name_type(field)}; give a ByteField, as of grid.likelihood_field()")
     points = _read_points(scan_points, field.resolution)
     count = whole_number(most, "most", 1, 1000)
     least = one_number(least_score, "least_score")

@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.errors import Renamed
 from cspace.navigation.curves.curve import Curve
 from cspace.navigation.route import Stats
 from cspace.tables import count_things, one_line, tabulate
@@ -25,7 +26,7 @@ REASONS: Final = (
 
 @tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
-class CarRoute:
+class CarRoute(Renamed):
     """The result of hybrid A*; truthy if a path was found.
 
     curve: the path as segments, None without one. start, goal (3,): x, y [m] and theta [rad]. status:

@@ -9,7 +9,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array, one_array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.mobile import Car
 from cspace.navigation.cars.car_route import CarRoute
 from cspace.navigation.checks import need_grid, need_number
@@ -63,7 +63,7 @@ def hybrid_a_star(
         raise InputTypeError(f"reverse is {reverse!r}; give True or False")
     car = Car() if vehicle is None else vehicle
     if not isinstance(car, Car):
-        raise InputTypeError(f"vehicle is a {type(car).__name__}; give a Car")
+        raise InputTypeError(f"vehicle is {name_type(car)}; give a Car")
     turning = car.turning_radius if radius is None else need_number(radius, "radius", car.turning_radius)
     side = max(turning / 8, grid.resolution) if box is None else need_number(box, "box", grid.resolution / 16)
     gear = turning / 2 if gear_cost is None else need_number(gear_cost, "gear_cost", 0.0)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, one_array, positive_number
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.math.wrapping import wrap_angle
 from cspace.mobile import Car, Unicycle
 from cspace.navigation.checks import need_grid
@@ -126,7 +126,7 @@ class Belief:
     def __init__(self, estimate: Estimate, controller: str) -> None:
         if not callable(estimate):
             raise InputTypeError(
-                f"estimate is a {type(estimate).__name__}, expected a function of the time and the true pose"
+                f"estimate is {name_type(estimate)}, expected a function of the time and the true pose"
                 " that returns a pose (3,)"
             )
         if controller == "dynamic_window":
@@ -176,7 +176,7 @@ def tune_controller(
 def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> None:
     """Whether a controller of that name exists and can drive the vehicle along the runs."""
     if not isinstance(vehicle, Unicycle | Car):
-        raise InputTypeError(f"vehicle is a {type(vehicle).__name__}; give a Unicycle or a Car")
+        raise InputTypeError(f"vehicle is {name_type(vehicle)}; give a Unicycle or a Car")
     if not isinstance(controller, str) or controller not in CONTROLLERS:
         raise suggest("controller", controller, CONTROLLERS)
     if controller == "dynamic_window" and not isinstance(vehicle, Unicycle):

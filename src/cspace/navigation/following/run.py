@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.errors import name_type
 from cspace.mobile import Car
 from cspace.tables import one_line, tabulate
 
@@ -86,4 +87,4 @@ class Run:
         return f"; {radius}, the car needs {self.vehicle.turning_radius:.2g} m (hybrid_a_star keeps to it)"
 
     def __repr__(self) -> str:
-        return one_line("Run", f"of a {type(self.vehicle).__name__} by {self.controller}: {self.reason}")
+        return one_line("Run", f"of {name_type(self.vehicle)} by {self.controller}: {self.reason}")

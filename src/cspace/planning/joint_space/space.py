@@ -19,7 +19,7 @@ from cspace.arrays import Array, as_floats, as_generator, one_array, positive_nu
 from cspace.collision import RobotGeometry, Scene
 from cspace.collision.checker import checker_of
 from cspace.collision.checks import HasGeometry, read_geometry
-from cspace.errors import InputError, InputTypeError, Renamed, suggest
+from cspace.errors import InputError, InputTypeError, Renamed, name_type, suggest
 from cspace.kinematics.batch import thread_count
 from cspace.math.wrapping import TURN
 from cspace.planning.joint_space.cells import ROWS_AT_ONCE, Grid, count_cells, settle_grid
@@ -76,7 +76,7 @@ class JointSpace(Renamed):
         limits: bool = True,
     ) -> None:
         if not isinstance(limits, (bool, np.bool_)):
-            raise InputTypeError(f"limits is a {type(limits).__name__}; it must be True or False")
+            raise InputTypeError(f"limits is {name_type(limits)}; it must be True or False")
         self.robot, self._limits = robot, bool(limits)
         own = read_geometry(robot)
         geometry = own if limits else without_limits(own)
@@ -310,7 +310,7 @@ def find_joint(key: object, names: tuple[str, ...], robot: str) -> int:
             raise suggest("joint", key, names, owner=robot)
         return names.index(key)
     if isinstance(key, (bool, np.bool_)) or not isinstance(key, (int, np.integer)):
-        raise InputTypeError(f"joints contains a {type(key).__name__}; give joints by name or number")
+        raise InputTypeError(f"joints contains {name_type(key)}; give joints by name or number")
     if not -len(names) <= key < len(names):
         raise InputError(f"joints has joint {key}, but {robot} has joints 0 to {len(names) - 1}")
     return int(key) % len(names)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array, as_floats, bounded_number, guard_memory, one_array
 from cspace.collision import Scene
-from cspace.errors import InputError, InputTypeError, Renamed
+from cspace.errors import InputError, InputTypeError, Renamed, name_type
 from cspace.maps import PolygonWorld
 from cspace.planning.joint_space.cells import count_cells
 from cspace.planning.two_joints.answers import KINDS, BoundaryCurve, Connection, FreeComponent
@@ -237,7 +237,7 @@ def exact_space(
         return ConfigurationSpace(arm, cut_scene(obstacles, arm, height, radius), radius)
     if not isinstance(obstacles, (PolygonWorld, list, tuple)):
         raise InputTypeError(
-            f"obstacles is a {type(obstacles).__name__}; it must be a Scene, a PolygonWorld or a list of"
+            f"obstacles is {name_type(obstacles)}; it must be a Scene, a PolygonWorld or a list of"
             " polygons (n, 2); without obstacles it is cs.Scene()"
         )
     return ConfigurationSpace(arm, cut_polygons(obstacles), radius)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.kinematics import KinematicModel
 from cspace.math.wrapping import TURN
 from cspace.tables import show_fields
@@ -79,7 +79,7 @@ def read_planar_arm(robot: object, use_limits: bool) -> PlanarArm:
     """The planar arm that a robot is; InputError for other joints and for axes that are not parallel."""
     if not isinstance(robot, KinematicModel):
         raise InputTypeError(
-            f"robot is a {type(robot).__name__}; configuration_space takes a Robot, as cs.load_robot gives"
+            f"robot is {name_type(robot)}; configuration_space takes a Robot, as cs.load_robot gives"
         )
     chain = robot.chain
     if chain.joint_types != "RR" or chain.dof != 2:

@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.collision import Scene
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, name_type
 from cspace.planning.two_joints.planar_arm import PlanarArm
 from cspace.planning.two_joints.polygons import Piece, convex_hull
 from cspace.shapes import Box, Capsule, Cylinder, HalfSpace, Hull, PointCloud, Shape, Sphere
@@ -83,7 +83,7 @@ def cut_shape(shape: Shape, plane: Plane) -> list[Piece]:
         if isinstance(shape, kind):
             return cut(shape, plane)
     raise InputTypeError(
-        f"obstacle {shape.name!r} is a {type(shape).__name__}; sections are known of "
+        f"obstacle {shape.name!r} is {name_type(shape)}; sections are known of "
         f"{', '.join(kind.__name__ for kind in CUTS)}: give a Hull, its section as a polygon,"
         " or exact=False for slices of the space with any shape"
     )
