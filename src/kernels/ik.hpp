@@ -8,6 +8,7 @@
 #include "dispatch.hpp"
 
 namespace cspace::ik {
+enum class CurveEnd;
 struct Arm;
 struct DescentRows;
 struct LimitArms;
@@ -107,6 +108,19 @@ CSPACE_NARROW_KERNEL(cspace::ik, void, swivel_solutions,
 // --- ik_numeric.cpp ------------------------------------------------------------------------------------
 // Descents on the pose error: see cspace/ik/numeric/descent.hpp.
 CSPACE_KERNEL(cspace::ik, void, ik_descend, (const DescentRows& rows))
+
+// --- ik_self_motion.cpp --------------------------------------------------------------------------------
+// The unit direction of the self-motion through q; false where there is none.
+CSPACE_KERNEL(cspace::ik, bool, ik_self_motion_direction,
+              (const Chain& chain, const double* q, bool whole_pose, double* direction))
+// The curve through q, from there in a direction: calls visit(data, q, tangent) at its points.
+CSPACE_KERNEL(cspace::ik, CurveEnd, ik_follow_self_motion,
+              (const Chain& chain, const double* q, const double* direction, bool whole_pose,
+               void (*visit)(void* data, const double* q, const double* tangent), void* data))
+// Brings k rows onto the curve through q; their tangents on entry say which way it runs. NaN in rows that do
+// not arrive.
+CSPACE_KERNEL(cspace::ik, void, ik_project_on_self_motion,
+              (const Chain& chain, const double* q, bool whole_pose, int k, double* rows, double* tangents))
 
 // --- ik_tracking.cpp -----------------------------------------------------------------------------------
 // Branches along a path of poses: see cspace/ik/tracking/follow.hpp.
