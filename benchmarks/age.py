@@ -38,7 +38,7 @@ SOURCES = {
     "simulation": [
         *("include/cspace/math", "include/cspace/model", "include/cspace/dynamics"),
         *("src/kernels/dynamics_simulation.cpp", "src/library/dynamics_roll_out.cpp"),
-        *("src/bindings/dynamics_simulation.cpp", "src/cspace/dynamics/rollout.py"),
+        *("src/bindings/dynamics_simulation.cpp", "src/cspace/dynamics/roll_out.py"),
     ],
     "trajectory": [
         *("include/cspace/math", "include/cspace/trajectory", "src/cspace/trajectory"),

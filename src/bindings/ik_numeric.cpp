@@ -8,7 +8,7 @@
 #include "bindings.hpp"
 #include "cspace/math/box_qp.hpp"
 #include "kinematics.hpp"
-#include "library/ik_tasks.hpp"
+#include "library/ik_multi_task.hpp"
 
 namespace nb = nanobind;
 using namespace cspace;
@@ -92,7 +92,7 @@ std::tuple<int, bool, double> move_to_tasks(nb::handle robot, Matrix tasks, Matr
                                             int most_steps, double settled, Errors errors) {
     const ik::TaskRows rows = rows_from(robot, tasks, postures, limits, q.shape(0), errors);
     const nb::gil_scoped_release release;
-    return ik::serve_tasks(rows, most_steps, settled, q.data(), T_world_base.data(), errors.data());
+    return ik::solve_tasks(rows, most_steps, settled, q.data(), T_world_base.data(), errors.data());
 }
 
 void resolve_rates(Array<const double, nb::shape<-1, 6, -1>> J, Array<const double, nb::shape<-1, 6>> twist,
@@ -125,8 +125,8 @@ void bind_ik_numeric(nb::module_& m) {
     m.def("_ik_descend", descend_rows, "Descends from starts to goals; q and info take the answers.");
     m.def("_ik_sample", sample_rows,
           "The different solutions that descents from many starts reach; returns their number.");
-    m.def("_task_velocity", compute_velocity, "The velocities that serve tasks best in one step.");
-    m.def("_task_serve", move_to_tasks, "Moves q and T_world_base to where tasks are served best.");
+    m.def("_task_velocity", compute_velocity, "The velocities with the least task error after one step.");
+    m.def("_task_solve", move_to_tasks, "Moves q and T_world_base to the least error of the tasks.");
     m.def("_resolved_rate", resolve_rates, "The velocities that give twists.");
     m.def("_box_qp", solve_box_program,
           "A quadratic program in a box; returns the number of steps, -1 if H is not positive definite.");

@@ -64,12 +64,12 @@ nb::tuple intervals_of(SolverArgument solver, int parameter, Goal goal) {
 }
 
 // near= is answered by the compiled entry from now on.
-void serve_near(SolverArgument solver, nb::handle about) {
+void enable_near(SolverArgument solver, nb::handle about) {
     PyObject*& slot = solver_object(solver.object)->nearest_about;
     if (!slot) slot = about.inc_ref().ptr();
 }
 // locked= with these joints is answered by the compiled entry from now on.
-void serve_locked(SolverArgument solver, const std::vector<int>& locked_joint, nb::handle about) {
+void enable_locked(SolverArgument solver, const std::vector<int>& locked_joint, nb::handle about) {
     SolverObject& slots = *solver_object(solver.object);
     LockedSet made = {0, &solver.core().redundant().lock(locked_joint)};
     for (const int joint : locked_joint) made.joints |= 1u << joint;
@@ -106,8 +106,8 @@ void bind_ik_redundancy(nb::module_& m) {
           "How many dimensions a goal leaves free with these joints locked.");
     m.def("_ik_has_closed_form", of_redundant(&RedundantSolver::has_closed_form),
           "Whether the joints that move have a closed form.");
-    m.def("_ik_serve_near", &serve_near, "Answers near= from now on, for one goal without other keywords.");
-    m.def("_ik_serve_locked", &serve_locked,
+    m.def("_ik_enable_near", &enable_near, "Answers near= from now on, for one goal without other keywords.");
+    m.def("_ik_enable_locked", &enable_locked,
           "Answers locked= with these joints from now on, for one goal without other keywords.");
     m.def("_ik_locked_room", of_redundant(&RedundantSolver::room_for),
           "Rows that the solutions of a goal may need with these joints locked.");

@@ -65,10 +65,10 @@ void measure_pieces(nb::handle robot, int frame, Matrix q, Matrix slope, Matrix 
 
 // See cspace::ik::Layers. Returns the states of the chain and its cost.
 nb::tuple cheapest_chain(Matrix q, Row cost, Array<const std::size_t, nb::ndim<1>> begin, int values,
-                         Row stride, Row period, int reach, bool is_ring) {
+                         Row stride, Array<const bool, nb::ndim<1>> wraps, int reach, bool is_ring) {
     const std::size_t states = q.shape(0), dof = q.shape(1), cells = begin.shape(0) - 1;
     require_sizes(begin.shape(0) > 1 && values > 0 && cells % std::size_t(values) == 0 &&
-                  cost.shape(0) == states && stride.shape(0) == dof && period.shape(0) == dof &&
+                  cost.shape(0) == states && stride.shape(0) == dof && wraps.shape(0) == dof &&
                   begin.data()[0] == 0 && begin.data()[cells] == states &&
                   std::is_sorted(begin.data(), begin.data() + cells + 1));
     const std::size_t layers = cells / std::size_t(values);
@@ -76,7 +76,7 @@ nb::tuple cheapest_chain(Matrix q, Row cost, Array<const std::size_t, nb::ndim<1
     {
         const nb::gil_scoped_release release;
         chain = ik::cheapest_chain({dof, q.data(), cost.data(), begin.data(), layers, values, stride.data(),
-                                    period.data(), reach, is_ring, nullptr});
+                                    wraps.data(), reach, is_ring, nullptr});
     }
     return nb::make_tuple(chain.states, chain.cost);
 }

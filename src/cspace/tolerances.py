@@ -175,12 +175,12 @@ NUMERIC_TOLERANCE: Final = 1e-9
 """Error of a descent (m of the position, rad of the rotation) that counts as reached unless given: far above
 the rounding at which descents end, far below the accuracy of any robot."""
 
-SERVED: Final = 1e-6
+TASK_DONE: Final = 1e-6
 """Error of a task (m, rad) up to which it counts as done unless given: what the small weight of a posture
 beside it may cost."""
 
 SETTLED: Final = 1e-10
-"""Step (rad, m) that ends the search for the configuration that serves tasks best: its square, which is what
+"""Step (rad, m) that ends the search for the least error of several tasks: its square, which is what
 the step can still gain, is rounding."""
 
 WEAK_DIRECTION: Final = 0.01

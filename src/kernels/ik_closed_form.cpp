@@ -32,18 +32,18 @@ CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
 
 }  // namespace
 
-template FastPath solve_quickly(const Plan&, const double*, double*, signed char*, int*);
-template Branches<double> solve_closed_form(const Plan&, const Posed&, const Care&);
+template FastPath solve_fast_path(const Plan&, const double*, double*, signed char*, int*);
+template Branches<double> solve_closed_form(const Plan&, const Posed&, const ClosedFormSettings&);
 
 FastPath ik_one(const Arm& arm, const double* T, double* q, std::int8_t* branch, int* count) {
-    if (arm.has_plan) return solve_quickly(arm.plan, T, q, branch, count);
+    if (arm.has_plan) return solve_fast_path(arm.plan, T, q, branch, count);
     return read_goal(T).is_pose ? FastPath::doubtful : FastPath::refused;
 }
 
 void ik_many(const Arm& arm, const double* T, std::size_t n, std::size_t batch, int room, double* q,
              std::int64_t* count, FastPath* quick) {
     const Plan& plan = arm.plan;
-    const Care care = care_of(plan);
+    const ClosedFormSettings settings = closed_form_settings(plan);
     const std::size_t row = std::size_t(room) * 6;
     alignas(64) double stage[native_width * max_solutions * 6];
     const bool past_cache = goes_past_cache(batch * row) && is_aligned(q);
@@ -52,7 +52,7 @@ void ik_many(const Arm& arm, const double* T, std::size_t n, std::size_t batch, 
         V m[16];
         load_rows(T + 16 * first, 16, lanes, 16, m);
         const ReadGoal<V> goal = read_goal(m);
-        Branches<V> b = closed_form(plan, goal_in_form(plan, goal.T), care);
+        Branches<V> b = closed_form(plan, goal_in_form(plan, goal.T), settings);
         for (int k = 0; k < max_branches; ++k) {
             V angles[6];
             for (int i = 0; i < 6; ++i) angles[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);

@@ -11,8 +11,8 @@ extern template void decompose_matrix(SmallSvd<6, ik::max_joints>&, bool);  // i
 namespace cspace::ik::inline CSPACE_ISA {
 
 // ik_closed_form.cpp
-extern template FastPath solve_quickly(const Plan&, const double*, double*, signed char*, int*);
-extern template Branches<double> solve_closed_form(const Plan&, const Posed&, const Care&);
+extern template FastPath solve_fast_path(const Plan&, const double*, double*, signed char*, int*);
+extern template Branches<double> solve_closed_form(const Plan&, const Posed&, const ClosedFormSettings&);
 // ik_general.cpp
 extern template bool make_general_arm(const Chain&, GeneralArm&);
 extern template bool renumber_general_arm(const GeneralArm&, const Chain&, GeneralArm&);

@@ -9,6 +9,7 @@
 #include "collision_near.hpp"
 #include "collision_robot.hpp"
 #include "cspace/collision/workspace.hpp"
+#include "cspace/kinematics/forward.hpp"
 #include "cspace/kinematics/jacobian.hpp"
 #include "cspace/math/interrupts.hpp"
 #include "cspace/shapes/distance.hpp"
@@ -75,14 +76,8 @@ class PlacedParts {
         bodies_.assign(1, identity_pose());
         for (const model::Joint& joint : robot_.given_joints()) {
             const double value = joint.ratio * q[joint.coordinate] + joint.offset;
-            Posed moved = identity_pose();
-            if (joint.prismatic) {
-                moved.t.z = value;
-            } else {
-                const double s = std::sin(value), c = std::cos(value);
-                moved.R = {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
-            }
-            bodies_.push_back(bodies_[std::size_t(joint.parent + 1)] * (joint.T_parent_joint * moved));
+            const Posed before = bodies_[std::size_t(joint.parent + 1)] * joint.T_parent_joint;
+            bodies_.push_back(kinematics::move_joint(before, joint.prismatic, value));
         }
     }
 };

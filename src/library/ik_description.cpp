@@ -12,7 +12,7 @@ namespace cspace::ik {
 namespace {
 
 // What the first three axes share, of arms with a spherical wrist and of three revolute joints.
-int shared_by_first_three(const Arm& arm) {
+int pieper_case_of(const Arm& arm) {
     if (arm.has_plan) return arm.plan.family == Family::spherical_wrist ? int(arm.plan.wrist.first.kind) : -1;
     const Chain& c = arm.plan.chain;
     if (c.n != 3 || c.prismatic[0] || c.prismatic[1] || c.prismatic[2]) return -1;
@@ -23,11 +23,11 @@ int shared_by_first_three(const Arm& arm) {
         meeting[i] = !parallel[i] && std::fabs(dot(gap, normal)) <=
                                          tolerance::axis_relation * arm.plan.form.length * norm(normal);
     }
-    return int(parallel[1]   ? FirstThree::last_parallel
-               : parallel[0] ? FirstThree::first_parallel
-               : meeting[0]  ? FirstThree::first_meet
-               : meeting[1]  ? FirstThree::last_meet
-                             : FirstThree::general);
+    return int(parallel[1]   ? PieperCase::last_parallel
+               : parallel[0] ? PieperCase::first_parallel
+               : meeting[0]  ? PieperCase::first_meet
+               : meeting[1]  ? PieperCase::last_meet
+                             : PieperCase::general);
 }
 
 // A JSON object.
@@ -79,7 +79,7 @@ struct Describe {
     static std::string describe(int x) { return std::to_string(x); }
     static std::string describe(bool x) { return x ? "true" : "false"; }
     static std::string describe(Family x) { return describe(int(x)); }
-    static std::string describe(FirstThree x) { return describe(int(x)); }
+    static std::string describe(PieperCase x) { return describe(int(x)); }
     static std::string describe(const Vec3d& v) { return PARTS(v.x, v.y, v.z); }
     static std::string describe(const Mat3d& R) { return PARTS(R.m); }
     static std::string describe(const Posed& T) { return PARTS(T.R, T.t); }
@@ -120,11 +120,11 @@ struct Describe {
     }
     static std::string describe(const ThreeTurns& t) { return PARTS(t.h, t.a, t.b, t.constant); }
     static std::string describe(const PositionFirst& p) {
-        return PARTS(p.serves, p.backwards, p.arm, p.first, p.centre_in_tip, p.wrist);
+        return PARTS(p.applies, p.backwards, p.arm, p.first, p.centre_in_tip, p.wrist);
     }
     static std::string describe(const GeneralArm& a) {
         return PARTS(a.chain, a.plan)
-            .add("position_first", a.position_first.serves ? describe(a.position_first) : Parts())
+            .add("position_first", a.position_first.applies ? describe(a.position_first) : Parts())
             .add("perturbed", list_of(a.perturbed, a.has_perturbed ? 2 : 0))
             .add(PARTS(a.alone, a.has_perturbed));
     }
@@ -134,7 +134,7 @@ struct Describe {
         return PARTS(plan.virtual_joints, plan.reversed, plan.polish, plan.form.deviation, plan.form.length)
             .add("family", describe(arm.has_plan ? int(plan.family) : -1))
             .add("general", describe(arm.is_general && !arm.has_plan))
-            .add("first_three", describe(shared_by_first_three(arm)));
+            .add("pieper_case", describe(pieper_case_of(arm)));
     }
 #undef PARTS
 };

@@ -8,6 +8,7 @@
 #include "cspace/ik/refine.hpp"
 #include "cspace/math/least_squares.hpp"
 #include "cspace/math/threads.hpp"
+#include "cspace/math/wrapping.hpp"
 #include "ik_self_motion.hpp"
 
 namespace cspace::ik {
@@ -15,7 +16,6 @@ namespace cspace::ik {
 namespace {
 
 constexpr int pose_dimensions = 6;
-constexpr double turn = 6.283185307179586;
 constexpr double same = 1e-8;     // [rad, m] configurations closer than this are one
 constexpr double behind = -1e-6;  // [m] a point to look at that lies this far behind the tip is refused
 
@@ -114,7 +114,7 @@ bool is_same(const Solver& solver, const GoalRequest& request, const double* a, 
     for (int j = 0; j < request.own; ++j) {
         const int column = request.whole.column[request.first + j];
         double d = a[j] - b[j];
-        if (column >= 0 && !solver.chain().prismatic[column]) d -= turn * std::nearbyint(d / turn);
+        if (column >= 0 && !solver.chain().prismatic[column]) d = short_way(d);
         if (!(std::fabs(d) < same)) return false;
     }
     return true;

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "cspace/math/threads.hpp"
+#include "cspace/math/wrapping.hpp"
 #include "ik_arm.hpp"
 
 namespace cspace::ik {
@@ -31,12 +32,11 @@ bool move_inside(const RowsWithin& rows, double* q) {
 
 // How far a joint is from its limits over all multiples of 2π.
 double distance_from_limits(const RowsWithin& rows, int i, double q) {
-    constexpr double turn = 6.283185307179586;
     const double lower = rows.lower[i], upper = rows.upper[i];
     if (rows.prismatic[i]) return std::fmax(0, std::fmax(lower - q, q - upper));
     if (!std::isfinite(upper - lower)) return 0;
-    const double above = q + turn * std::ceil((lower - q) / turn);
-    return above <= upper ? 0 : std::fmin(above - upper, lower - (above - turn));
+    const double above = wrap_above(q, lower);
+    return above <= upper ? 0 : std::fmin(above - upper, lower - (above - 2 * pi));
 }
 
 // Whether no joint is beyond its limits by more than `close`, and one by more than `same`.

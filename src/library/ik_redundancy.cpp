@@ -375,7 +375,7 @@ bool RedundantSolver::find_near_middle(const double* goal, double* q) const {
     return false;
 }
 
-bool RedundantSolver::has_swivel() const { return state_->swivel.serves; }
+bool RedundantSolver::has_swivel() const { return state_->swivel.applies; }
 
 void RedundantSolver::solve_swivels(const double* goals, bool one_goal, const double* swivels, std::size_t n,
                                     double* q) const {

@@ -9,7 +9,7 @@
 #include "cspace/kinematics/forward.hpp"
 #include "cspace/kinematics/jacobian.hpp"
 #include "cspace/kinematics/jacobian_rate.hpp"
-#include "cspace/kinematics/singular_values.hpp"
+#include "cspace/math/singular_values.hpp"
 #include "cspace/math/threads.hpp"
 #include "cspace/model/robot_model.hpp"
 #include "cspace/spatial/rotation.hpp"

@@ -214,13 +214,13 @@ TEST(the_least_distance_along_a_closed_arc_does_not_depend_on_where_it_is_entere
 struct HalvesSpeed {
     Vec3d linear[2] = {}, angular[2] = {};
 };
-static HalvesSpeed speed_of(const ik::Halves& halves, const Posed& goal, double length, const double (*q)[2],
-                            const double (*x)[2], double t) {
+static HalvesSpeed speed_of(const ik::SplitChain& halves, const Posed& goal, double length,
+                            const double (*q)[2], const double (*x)[2], double t) {
     Pack<2> at[4];
     for (int k = 0; k < 4; ++k)
         for (int half = 0; half < 2; ++half) set_lane(at[k], half, q[k][half] + t * x[k][half]);
-    HalvesMotion motion;
-    move_halves(halves, goal, 1 / length, at, motion);
+    SplitChainMotion motion;
+    move_split_chain(halves, goal, 1 / length, at, motion);
     HalvesSpeed out;
     for (int half = 0; half < 2; ++half)
         for (int k = 0; k < 4; ++k) {
@@ -237,7 +237,7 @@ TEST(derivatives_of_the_halves) {
     for (int trial = 0; trial < 400; ++trial) {
         const ik::Chain chain = random_chain(rng, trial);
         const double length = characteristic_length(chain), h = 1e-3;
-        const ik::Halves halves = make_halves(chain, length);
+        const ik::SplitChain halves = make_split_chain(chain, length);
         const Posed goal = arms::random_pose(rng);
         double q[4][2], x[4][2], square[2] = {0, 0};
         Pack<2> at[4];
@@ -255,10 +255,10 @@ TEST(derivatives_of_the_halves) {
                           after = speed_of(halves, goal, length, q, x, h);
         double lambda[6];
         for (double& weight : lambda) weight = arms::uniform(rng, -1, 1);
-        HalvesMotion motion;
+        SplitChainMotion motion;
         Pack<2> bent[4][4];
-        move_halves(halves, goal, 1 / length, at, motion);
-        bend_halves(motion, lambda, bent);
+        move_split_chain(halves, goal, 1 / length, at, motion);
+        bend_split_chain(motion, lambda, bent);
         const Vec3d force = {lambda[0], lambda[1], lambda[2]}, moment = {lambda[3], lambda[4], lambda[5]};
         double by_formula = square[0] + square[1], by_difference = 0;
         for (int half = 0; half < 2; ++half) {
@@ -292,7 +292,7 @@ TEST(what_is_proven_is_the_nearest) {
         const double size = trial % 3 == 0 ? 0.02 : trial % 3 == 1 ? 0.08 : 0.2;
         for (int i = 0; i < 7; ++i) seed[i] = q[i] + arms::uniform(rng, -size, size);
         const Posed goal = forward_kinematics(arm.chain, q);
-        if (!nearest_by_proof(arm.halves, goal, arm.length, seed, found)) continue;
+        if (!nearest_by_proof(arm.split_chain, goal, arm.length, seed, found)) continue;
         ++proven;
         CHECK(pose_difference(forward_kinematics(arm.chain, found), goal, 1) < 1e-9);
         const double distance = distance_from_seed(arm, make_target(arm, seed, false), found);

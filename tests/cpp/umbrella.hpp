@@ -24,7 +24,7 @@ static Answers answers() {
     using namespace cspace;
     const double q[] = {0, pi / 2};
     double J[] = {3, 0, 0, 4}, sigma[2];
-    kinematics::singular_values(J, 2, 2, sigma);
+    singular_values(J, 2, 2, sigma);
     const Vec3d z = {0, 0, 1}, x = {1, 0, 0}, y = {0, 1, 0};
     const maps::BitGrid grid(3, 4);
     navigation::GridScratch scratch;

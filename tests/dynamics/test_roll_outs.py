@@ -221,14 +221,14 @@ def test_compiled_computed_torque_is_the_same_as_a_function(method, rng):
 
 
 def test_a_long_motion_is_sampled_in_parts(monkeypatch, rng):
-    from cspace.dynamics import rollout
+    from cspace.dynamics import roll_out
 
     robot = hand(rng)
     q, qd, _, _ = start_of(robot, rng)
     phase = np.arange(len(robot.joint_names))
     control = ComputedTorque(lambda t: (np.sin(t + phase), np.cos(t + phase), -np.sin(t + phase)), 50.0, 10.0)
     whole = robot.simulate(q, qd, control=control, duration=0.05, dt=0.005)
-    monkeypatch.setattr(rollout, "MOTION_SAMPLES", 40)
+    monkeypatch.setattr(roll_out, "MOTION_SAMPLES", 40)
     parts = robot.simulate(q, qd, control=control, duration=0.05, dt=0.005)
     np.testing.assert_array_equal(parts.q, whole.q)
 

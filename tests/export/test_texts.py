@@ -51,7 +51,7 @@ def test_a_file_holds_the_headers_of_its_solver_alone():
     """A closed form comes without the general solver, an arm of three joints without either."""
     words = {
         "irb120": ({"place_wrist"}, {"eliminate_angles", "solve_few_joint_pose"}),
-        "gen3_lite": ({"eliminate_angles"}, {"solve_few_joint_pose", "solve_quickly"}),
+        "gen3_lite": ({"eliminate_angles"}, {"solve_few_joint_pose", "solve_fast_path"}),
         "planar_2r": ({"solve_few_joint_pose"}, {"eliminate_angles", "place_wrist", "solve_carefully"}),
     }
     for name, (there, missing) in words.items():

@@ -4,6 +4,7 @@ the docs share it."""
 from __future__ import annotations
 
 import re
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -67,6 +68,27 @@ def test_rooms_in_both_languages_have_the_same_rooms_inside():
     python = {path for path in folders(tree.PACKAGE) if path.split("/")[0] in both and "/" in path}
     assert {path for path in cpp if not is_python(path)} == set(CPP_ALONE)
     assert python - cpp == set(PYTHON_ALONE)
+
+
+def is_other_form(cpp: str, python: str) -> bool:
+    """Whether a name is that of a C++ file but for an underscore or its last letter. Python's plural stands
+    for arrays of what C++ has one of."""
+    a, b = cpp.replace("_", ""), python.replace("_", "")
+    same = max(len(a), len(b)) - 1
+    return a[:same] == b[:same] and python not in {cpp, f"{cpp}s"}
+
+
+def test_files_of_one_idea_have_one_name_in_both_languages():
+    for folder in sorted(folders(HEADERS)):
+        cpp = {path.stem for path in (HEADERS / folder).glob("*.hpp")}
+        python = {path.stem for path in (tree.PACKAGE / folder).glob("*.py")}
+        found = [pair for pair in product(sorted(cpp), sorted(python)) if is_other_form(*pair)]
+        assert not found, f"one idea, one name: {found} in {folder}"
+
+
+def test_other_forms_of_a_name_are_found():
+    assert all(is_other_form(*pair) for pair in [("descent", "descend"), ("roll_out", "rollout")])
+    assert not any(is_other_form(*pair) for pair in [("triangle", "triangles"), ("forward", "forces")])
 
 
 def test_a_room_whose_files_stand_in_folders_is_seen():

@@ -25,35 +25,39 @@ class Concept:
 
 WHOLE_TURN = r"\(?2(\.0)? \* (np|math|std::numbers::|M_)?\.?(pi|PI)\)?"
 
-IK = "equal to the last bit; left for the next change of the room ik"
-
 CONCEPTS = [
     Concept(
         "wrapping by 2π",
         "include/cspace/math/wrapping.hpp",
         rf"remainder\([^;]*({WHOLE_TURN}|two_pi|turn\b)"
         rf"|({WHOLE_TURN}|\bturn) \* (std::)?(round|floor|ceil|nearbyint)\("
+        r"|\b(?P<period>\w+) \* (std::)?(round|nearbyint)\([^;()]* / (?P=period)\)"
         r"|> (half_turn|pi|std::numbers::pi) \? ",
-        dict.fromkeys(["src/library/ik_goals.cpp", "src/library/ik_limits.cpp"], IK),
     ),
     Concept(
         "multiples of 2π within limits",
         "include/cspace/math/wrapping.hpp",
         r"floor\(\(([\w.]+\.)?upper[^;]*\) / (turn|\(2 \* pi\))",
     ),
+    Concept("digits of π and 2π", "include/cspace/math/trig.hpp", r"\b(3\.14159|6\.28318)"),
     Concept(
-        "digits of π and 2π",
+        "sines of several angles on lanes",
         "include/cspace/math/trig.hpp",
-        r"\b(3\.14159|6\.28318)",
-        dict.fromkeys(
-            [
-                "include/cspace/ik/redundancy/redundant_arm.hpp",
-                "include/cspace/ik/tracking/walker.hpp",
-                "src/library/ik_goals.cpp",
-                "src/library/ik_limits.cpp",
-            ],
-            IK,
-        ),
+        r"\bsincos\(angles, |Pack<4> sines, cosines;",
+    ),
+    Concept(
+        "frame turned about its z axis",
+        "include/cspace/kinematics/forward.hpp",
+        r"\bc \* x \+ s \* |\bs \* y \+ c \* x\b|\{\{\{c, -s, 0",
+        {
+            "include/cspace/collision/placement.hpp": "floats, not fused: docs/decisions/collision-lanes.md",
+            "include/cspace/ik/general/elimination.hpp": "a constant: where an angle of a polynomial begins",
+        },
+    ),
+    Concept(
+        "frame tilted about its x axis",
+        "include/cspace/kinematics/forward.hpp",
+        r"\w+\.y = \w+\.z;\s+\w+\.z = -y;",
     ),
     Concept(
         "Rodrigues' formula",
@@ -88,6 +92,11 @@ CONCEPTS = [
         r"(\w)\[(4|3)\] \* \1\[(8|5)\] - \1\[(5|4)\] \* \1\[\4\]",
     ),
     Concept(
+        "two linear equations",
+        "include/cspace/math/plane.hpp",
+        r"\([\w.]+ \* [\w.]+ - [\w.]+ \* [\w.]+\) / det",
+    ),
+    Concept(
         "inverse of two rows",
         "include/cspace/localization/landmarks/range_bearing.hpp",
         r"(\w)\[0\] \* \1\[3\] - \1\[1\] \* \1\[[12]\]",
@@ -112,6 +121,31 @@ CONCEPTS = [
         "Householder reflection",
         "include/cspace/math/linear.hpp",
         r"copysign\((std::)?(sqrt\(\w+\)|length), A\[",
+    ),
+    Concept(
+        "damped least squares by reflections",
+        "include/cspace/math/least_squares.hpp",
+        r"-(std::)?sqrt\(damping \+ ",
+    ),
+    Concept(
+        "rotation of Jacobi",
+        "include/cspace/math/small_svd.hpp",
+        r"/ \((d|(std::f)?abs\(\w+\)) \+ (std::)?(sqrt|hypot)\(",
+        {
+            "include/cspace/math/singular_values.hpp": "a matrix per lane, values alone",
+            "include/cspace/math/symmetric_eigen.hpp": "two-sided, for symmetric matrices of any size",
+        },
+    ),
+    Concept(
+        "adaptive damping of a descent",
+        "include/cspace/math/least_squares.hpp",
+        r"\b(damping|mu) = [^;]*\b(lost|growth|grow)\b|damping \*= 0\.1|rule\.reject\(\)",
+        {
+            "include/cspace/localization/graph/optimizer.hpp": "sparse, scaled by the diagonal",
+            "include/cspace/ik/refine.hpp": "damped by the square of the error and a singular value",
+            "include/cspace/ik/numeric/descent.hpp": "a start per lane, which the next start replaces",
+            "include/cspace/ik/numeric/multi_task.hpp": "each step is a quadratic program within limits",
+        },
     ),
     Concept(
         "damped normal equations",
@@ -146,7 +180,9 @@ CONCEPTS = [
     Concept(
         "wrapping by 2π in Python",
         "src/cspace/math/wrapping.py",
-        rf"np\.(mod|remainder)\(.*np\.pi|% {WHOLE_TURN}|TURN(: Final)? = {WHOLE_TURN}\n",
+        rf"np\.(mod|remainder)\(.*(np\.pi|\bTURN\))|% ({WHOLE_TURN}|TURN\b)|TURN(: Final)? = {WHOLE_TURN}\n"
+        r"|\bTURN \* (np\.)?(round|floor|ceil)\(|(round|floor|ceil)\(.* / TURN\)",
+        {"src/cspace/maps/grow.py": "directions as integers, 2⁴⁰ per revolution"},
     ),
     Concept(
         "check of one positive number",

@@ -1,4 +1,4 @@
-"""Thresholds have names: in Python all are in `tolerances`, in C++ each is a `constexpr`."""
+"""Thresholds have names: in Python small ones are in `tolerances`, in C++ each is a `constexpr`."""
 
 from __future__ import annotations
 

@@ -162,27 +162,14 @@ CSPACE_INLINE Vec3<V> link_origin(const LinkOf<V>& link, const V* q) {
     const V value = link.slide * q[link.coordinate] + link.z;
     return {link.t.x + value * link.d.x, link.t.y + value * link.d.y, link.t.z + value * link.d.z};
 }
-// The turn of each link, into its state. One configuration alone fills the lanes with its links.
+// The turn of each link, into its state.
 template <class V, class State>
 CSPACE_INLINE void turn_links(const MultibodyOf<V>& bodies, const V* q, State* links) {
-    if constexpr (Lanes<V>::count == 1) {
-        for (int k = 0; k < bodies.n_links; k += 4) {
-            auto angles = fill_lanes<Pack<4>>(0.0);
-            const int count = bodies.n_links - k < 4 ? bodies.n_links - k : 4;
-            for (int i = 0; i < count; ++i) {
-                const LinkOf<V>& link = bodies.links[k + i];
-                set_lane(angles, i, link.turn * q[link.coordinate] + link.angle);
-            }
-            Pack<4> sines, cosines;
-            sincos(angles, sines, cosines);
-            for (int i = 0; i < count; ++i) links[k + i].turn = {get_lane(sines, i), get_lane(cosines, i)};
-        }
-    } else {
-        for (int k = 0; k < bodies.n_links; ++k) {
-            const LinkOf<V>& link = bodies.links[k];
-            sincos(link.turn * q[link.coordinate] + link.angle, links[k].turn.s, links[k].turn.c);
-        }
-    }
+    const auto angle_of = [&](int k) {
+        const LinkOf<V>& link = bodies.links[k];
+        return link.turn * q[link.coordinate] + link.angle;
+    };
+    sincos_each<V>(bodies.n_links, angle_of, [&](int k, const V& s, const V& c) { links[k].turn = {s, c}; });
 }
 
 }  // namespace cspace::dynamics::inline CSPACE_ISA

@@ -105,14 +105,7 @@ CSPACE_INLINE Wrench<V> momentum_of(const M& mass, const SpatialBody<V>& body, c
 template <class V>
 CSPACE_INLINE void turn_frame(const Link& link, const Turn<V>& turn, kinematics::FrameAxes<V>& frame) {
     if (link.turned) kinematics::turn_about_z(frame, link.sin_phi, link.cos_phi);
-    const Vec3<V> y = frame.y;
-    if (link.tilt == model::Tilt::quarter) {
-        frame.y = frame.z;
-        frame.z = -y;
-    } else if (link.tilt != model::Tilt::none) {
-        frame.y = link.cos_alpha * y + link.sin_alpha * frame.z;
-        frame.z = link.cos_alpha * frame.z - link.sin_alpha * y;
-    }
+    kinematics::tilt_frame(frame, link);
     kinematics::turn_about_z(frame, turn.s, turn.c);
 }
 

@@ -62,7 +62,7 @@ inline void refine_few_joints(const Chain& chain, const Posed& goal, double leng
 inline Solutions solve_both_ways(const Arm& arm, const Posed& goal, const double* unconstrained) {
     const Posed goal_form = goal_in_form(arm.plan, goal);
     Solutions out = solve_general_carefully(arm.general, goal, unconstrained);
-    if (!out.complete || solve_closed_form(arm.plan, goal_form, care_of(arm.plan)).doubt) {
+    if (!out.complete || solve_closed_form(arm.plan, goal_form, closed_form_settings(arm.plan)).doubt) {
         const int alone = out.count;
         const Solutions form = solve_carefully(arm.plan, goal, unconstrained);
         for (int k = 0; k < form.count; ++k) {
@@ -70,10 +70,11 @@ inline Solutions solve_both_ways(const Arm& arm, const Posed& goal, const double
             for (int i = 0; i < 6; ++i) q[i] = form.q[k][i];
             accept_solution(out, arm.plan.chain, goal, arm.plan.form.length, q, form.branch[k], 2);
         }
-        Care care;
-        care.band = 2 * arm.plan.form.deviation;
+        ClosedFormSettings settings;
+        settings.band = 2 * arm.plan.form.deviation;
         const bool agree = form.count == alone && alone % 2 == 0;
-        const bool certain = out.complete || (agree && !solve_closed_form(arm.plan, goal_form, care).doubt);
+        const bool certain =
+            out.complete || (agree && !solve_closed_form(arm.plan, goal_form, settings).doubt);
         out.complete = certain && out.count == alone;
     }
     number_by_branches(arm.plan, goal, out);
@@ -83,7 +84,8 @@ inline Solutions solve_both_ways(const Arm& arm, const Posed& goal, const double
 // By the closed form at perturbed goals near this one, if they leave the virtual joints in place.
 inline bool search_perturbed_goals_in_form(const Plan& plan, const Posed& goal, Solutions& out) {
     const auto list_solutions = [&](const Posed& beside, const auto& add_candidate) {
-        const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, beside), care_of(plan));
+        const Branches<double> b =
+            solve_closed_form(plan, goal_in_form(plan, beside), closed_form_settings(plan));
         for (int k = 0; k < max_branches; ++k) {
             if (!b.ok[k]) continue;
             double q[max_joints] = {};
@@ -112,7 +114,7 @@ inline Solutions solutions_and_self_motions(const Arm& arm, const Posed& goal, c
         // Where the completed arm is singular the arm itself need not be, and where a wrist is almost free
         // rounding may put a goal on the border out of reach.
         if ((arm.plan.virtual_joints == 0 && out.count > 0) ||
-            !solve_closed_form(arm.plan, goal_in_form(arm.plan, goal), care_of(arm.plan)).doubt)
+            !solve_closed_form(arm.plan, goal_in_form(arm.plan, goal), closed_form_settings(arm.plan)).doubt)
             return out;
         if (search_perturbed_goals_in_form(arm.plan, goal, out)) out.complete = false;
         if (out.count == 0) search_by_descent(chain, goal, length, 4 * starts, out);
@@ -140,10 +142,10 @@ CSPACE_ONCE Solutions solve_pose(const Arm& arm, const Posed& goal, const double
 inline NearestPose nearest_to_goal(const Arm& arm, const Posed& goal, double weight) {
     const Plan& plan = arm.plan;
     const int n = plan.chain.n;
-    Care care;
-    care.band = std::numeric_limits<double>::infinity();
+    ClosedFormSettings settings;
+    settings.band = std::numeric_limits<double>::infinity();
     Branches<double> b{};
-    if (arm.has_plan) b = solve_closed_form(plan, goal_in_form(plan, goal), care);
+    if (arm.has_plan) b = solve_closed_form(plan, goal_in_form(plan, goal), settings);
     NearestPose best;
     best.cost = std::numeric_limits<double>::infinity();
     constexpr int spread = 16;

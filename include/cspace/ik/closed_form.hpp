@@ -1,5 +1,5 @@
-// The closed forms of arms of six revolute joints: which one serves an arm, and its evaluation, from the goal
-// T_base_tip to the joint angles of every branch, on lanes.
+// The closed forms of arms of six revolute joints: which one applies to an arm, and its evaluation, from the
+// goal T_base_tip to the joint angles of every branch, on lanes.
 #pragma once
 
 #include <initializer_list>
@@ -83,7 +83,7 @@ inline bool plan_in_direction(Plan& plan, const Chain& arm, bool backwards) {
     plan.to_form_left = inverse(plan.form.base);
     plan.to_form_right = inverse(plan.form.tool);
     const bool quartic =
-        plan.family == Family::spherical_wrist && plan.wrist.first.kind == FirstThree::general;
+        plan.family == Family::spherical_wrist && plan.wrist.first.kind == PieperCase::general;
     plan.idealised = plan.form.deviation > tolerance::geometry_exact;
     plan.polish = quartic || plan.idealised;
     return true;
@@ -109,31 +109,34 @@ CSPACE_INLINE Pose<V> goal_in_form(const Plan& plan, const Pose<V>& T_base_tip) 
 }
 
 template <class V>
-CSPACE_INLINE Branches<V> closed_form(const Plan& plan, const Pose<V>& goal, const Care& care) {
-    if (plan.family == Family::three_parallel) return solve_three_parallel(plan.parallel, goal, care);
+CSPACE_INLINE Branches<V> closed_form(const Plan& plan, const Pose<V>& goal,
+                                      const ClosedFormSettings& settings) {
+    if (plan.family == Family::three_parallel) return solve_three_parallel(plan.parallel, goal, settings);
     if constexpr (Lanes<V>::count == 1) {
-        if (plan.family == Family::middle_parallel) return solve_middle_parallel(plan.form, goal, care);
-        if (plan.family == Family::first_parallel) return solve_first_parallel(plan.form, goal, care);
+        if (plan.family == Family::middle_parallel) return solve_middle_parallel(plan.form, goal, settings);
+        if (plan.family == Family::first_parallel) return solve_first_parallel(plan.form, goal, settings);
     }
-    return solve_spherical_wrist(plan.wrist, goal, care);
+    return solve_spherical_wrist(plan.wrist, goal, settings);
 }
 
 // One goal on one lane, for the careful solvers.
-CSPACE_ONCE Branches<double> solve_closed_form(const Plan& plan, const Posed& goal, const Care& care) {
-    return closed_form(plan, goal, care);
+CSPACE_ONCE Branches<double> solve_closed_form(const Plan& plan, const Posed& goal,
+                                               const ClosedFormSettings& settings) {
+    return closed_form(plan, goal, settings);
 }
 
 // The distance from a fold at which the closed form is reliable: an idealised geometry shifts the folds.
-inline Care care_of(const Plan& plan) {
-    Care care;
-    care.band = max(tolerance::fold_band, 4 * plan.form.deviation);
-    return care;
+inline ClosedFormSettings closed_form_settings(const Plan& plan) {
+    ClosedFormSettings settings;
+    settings.band = max(tolerance::fold_band, 4 * plan.form.deviation);
+    return settings;
 }
 
 // One goal, for the types of arm that have a kernel.
-CSPACE_INLINE Abreast closed_form_abreast(const Plan& plan, const Posed& goal, const Care& care) {
-    if (plan.family == Family::three_parallel) return solve_abreast(plan.parallel, goal, care);
-    return solve_abreast(plan.wrist, goal, care);
+CSPACE_INLINE Abreast closed_form_abreast(const Plan& plan, const Posed& goal,
+                                          const ClosedFormSettings& settings) {
+    if (plan.family == Family::three_parallel) return solve_abreast(plan.parallel, goal, settings);
+    return solve_abreast(plan.wrist, goal, settings);
 }
 
 // Converts an angle of the form to that of the joint, in (−π, π].

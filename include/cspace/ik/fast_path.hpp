@@ -40,13 +40,13 @@ inline bool remove_virtual_joints(const Plan& plan, Pack<4> (&angles)[2][6], Mas
 }
 
 // T: 16 numbers, row-major. q receives up to max_branches rows of 6, and branch their numbers.
-CSPACE_ONCE FastPath solve_quickly(const Plan& plan, const double* T, double* q, signed char* branch,
-                                   int* count) {
+CSPACE_ONCE FastPath solve_fast_path(const Plan& plan, const double* T, double* q, signed char* branch,
+                                     int* count) {
     const ReadGoal<double> goal = read_goal(T);
     *count = 0;
     if (!goal.is_pose) return FastPath::refused;
     if (!plan.on_lanes) return FastPath::doubtful;
-    const Abreast found = closed_form_abreast(plan, goal_in_form(plan, goal.T), care_of(plan));
+    const Abreast found = closed_form_abreast(plan, goal_in_form(plan, goal.T), closed_form_settings(plan));
     if (found.doubt) return FastPath::doubtful;
     Pack<4> angles[2][6];
     for (int e = 0; e < 2; ++e)

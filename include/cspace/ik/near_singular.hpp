@@ -222,9 +222,10 @@ inline void add_branch(const Plan& plan, const Posed& goal, double* q, int branc
 }
 
 // The branches of the plan for one choice of unconstrained joints, as configurations of the chain.
-inline void closed_form_candidates(const Plan& plan, const Posed& goal_form, const Care& care, Solutions& out,
-                                   const Posed& goal, const CandidateSearch& search = {}) {
-    const Branches<double> b = solve_closed_form(plan, goal_form, care);
+inline void closed_form_candidates(const Plan& plan, const Posed& goal_form,
+                                   const ClosedFormSettings& settings, Solutions& out, const Posed& goal,
+                                   const CandidateSearch& search = {}) {
+    const Branches<double> b = solve_closed_form(plan, goal_form, settings);
     for (int k = search.first; k < search.last; ++k) {
         if (!b.ok[k]) continue;
         double q[max_joints] = {};
@@ -238,20 +239,22 @@ inline void closed_form_candidates(const Plan& plan, const Posed& goal_form, con
 
 // The angles t_i of unconstrained joints, from the joints of the chain. The free sum of three parallel joints
 // is the sum of their values.
-inline void set_unconstrained(const Plan& plan, const double* unconstrained, Care& care, double* t) {
+inline void set_unconstrained(const Plan& plan, const double* unconstrained, ClosedFormSettings& settings,
+                              double* t) {
     for (int i = 0; i < 6; ++i) {
         const double q = plan.joint[i] >= 0 && unconstrained ? unconstrained[plan.joint[i]] : 0.0;
         t[i] = plan.sign[i] * q + plan.form.offset[i];
     }
     if (plan.family == Family::three_parallel) t[3] += t[1] + t[2];
-    for (int i = 0; i < 6; ++i) care.unconstrained[i] = {std::cos(t[i]), std::sin(t[i])};
+    for (int i = 0; i < 6; ++i) settings.unconstrained[i] = {std::cos(t[i]), std::sin(t[i])};
 }
 
 // Whether the branches depend on the angle of joint i when it is free.
-inline bool is_free(const Plan& plan, const Posed& goal_form, const Care& care, double t, int i) {
+inline bool is_free(const Plan& plan, const Posed& goal_form, const ClosedFormSettings& settings, double t,
+                    int i) {
     constexpr double changed = 1e-3;  // [rad] rounding next to a singularity stays below
-    const Branches<double> b = solve_closed_form(plan, goal_form, care);
-    Care other = care;
+    const Branches<double> b = solve_closed_form(plan, goal_form, settings);
+    ClosedFormSettings other = settings;
     other.unconstrained[i] = {std::cos(t + 2.4), std::sin(t + 2.4)};
     const Branches<double> moved = solve_closed_form(plan, goal_form, other);
     for (int k = 0; k < max_branches; ++k) {
@@ -265,13 +268,13 @@ inline bool is_free(const Plan& plan, const Posed& goal_form, const Care& care, 
 // Where a joint of the form is free but the joint of the arm is not (the form idealises the arm, or has
 // virtual joints), the solutions lie somewhere on the self-motion of the form. Starts are angles on the full
 // circle.
-inline void sweep_free_joints(const Plan& plan, const Posed& goal_form, const Care& care, const double* t,
-                              Solutions& out, const Posed& goal) {
+inline void sweep_free_joints(const Plan& plan, const Posed& goal_form, const ClosedFormSettings& settings,
+                              const double* t, Solutions& out, const Posed& goal) {
     constexpr int turns = 16;
     for (int i = 0; i < 6; ++i) {
-        if (!is_free(plan, goal_form, care, t[i], i)) continue;
+        if (!is_free(plan, goal_form, settings, t[i], i)) continue;
         for (int k = 1; k < turns; ++k) {
-            Care turned = care;
+            ClosedFormSettings turned = settings;
             const double angle = t[i] + k * (2 * pi / turns);
             turned.unconstrained[i] = {std::cos(angle), std::sin(angle)};
             closed_form_candidates(plan, goal_form, turned, out, goal, {0, max_branches, pi, 20});
@@ -281,29 +284,29 @@ inline void sweep_free_joints(const Plan& plan, const Posed& goal_form, const Ca
 
 // Near a singularity of the completed arm that the arm itself does not have, the error of the idealised form
 // grows to its square root. Starts are the branches of goals at that distance.
-inline void try_perturbed_goals(const Plan& plan, const Posed& goal_form, Care care, Solutions& out,
-                                const Posed& goal) {
-    care.band = std::sqrt(care.band);
-    if (solve_closed_form(plan, goal_form, care).doubt)
-        closed_form_candidates(plan, goal_form, care, out, goal, {0, max_branches, pi});
+inline void try_perturbed_goals(const Plan& plan, const Posed& goal_form, ClosedFormSettings settings,
+                                Solutions& out, const Posed& goal) {
+    settings.band = std::sqrt(settings.band);
+    if (solve_closed_form(plan, goal_form, settings).doubt)
+        closed_form_candidates(plan, goal_form, settings, out, goal, {0, max_branches, pi});
 }
 
 // If the wrist of three parallel axes is free and its preferred angle puts the goal out of reach of the
 // planar arm: the nearest angle that does not.
-inline void turn_free_wrist(const Plan& plan, const Posed& goal_form, Care care, double unconstrained,
-                            Solutions& out, const Posed& goal) {
+inline void turn_free_wrist(const Plan& plan, const Posed& goal_form, ClosedFormSettings settings,
+                            double unconstrained, Solutions& out, const Posed& goal) {
     constexpr double merging = 1e-6;  // sine: two shoulders that merge pass their error on to the wrist
-    care.free = max(care.free, merging);
+    settings.free = max(settings.free, merging);
     constexpr int half = max_branches / 2;
     for (int i = 0; i < 2; ++i) {
         bool found = false;
         for (int k = 0; k < out.count; ++k) found = found || out.branch[k] / half == i;
         if (found) continue;
-        const FreeSums sums = free_sums(plan.parallel, goal_form, i, unconstrained, care);
+        const FreeSums sums = free_sums(plan.parallel, goal_form, i, unconstrained, settings);
         const int before = out.count;
         for (int k = 0; k < sums.count && out.count == before; ++k) {
-            care.unconstrained[3] = {std::cos(sums.sum[k]), std::sin(sums.sum[k])};
-            closed_form_candidates(plan, goal_form, care, out, goal, {half * i, half * (i + 1)});
+            settings.unconstrained[3] = {std::cos(sums.sum[k]), std::sin(sums.sum[k])};
+            closed_form_candidates(plan, goal_form, settings, out, goal, {half * i, half * (i + 1)});
         }
     }
 }
@@ -311,13 +314,13 @@ inline void turn_free_wrist(const Plan& plan, const Posed& goal_form, Care care,
 // If the wrist of three parallel axes is on the first axis, joint 1 may have any value that leaves the wrist
 // in reach of the planar arm. These values form arcs, one or more for each side of the wrist, or single ones.
 // Of each arc without the preferred value t1, the solutions in its middle.
-inline void turn_free_shoulder(const Plan& plan, const Posed& goal_form, const Care& care, double t1,
-                               Solutions& out, const Posed& goal) {
+inline void turn_free_shoulder(const Plan& plan, const Posed& goal_form, const ClosedFormSettings& settings,
+                               double t1, Solutions& out, const Posed& goal) {
     const Vec3d& p = goal_form.t;
-    const double free = care.free * plan.form.length;
+    const double free = settings.free * plan.form.length;
     if (p.x * p.x + p.y * p.y > free * free) return;
     // Places from t1 once around: the ends, and the middles between them.
-    const ShoulderEnds ends = shoulder_ends(plan.parallel, goal_form, care, t1);
+    const ShoulderEnds ends = shoulder_ends(plan.parallel, goal_form, settings, t1);
     constexpr int most = 2 * ShoulderEnds::most + 1;
     double place[most];
     bool in_reach[2][most];
@@ -328,7 +331,7 @@ inline void turn_free_shoulder(const Plan& plan, const Posed& goal_form, const C
         place[m] = m % 2 ? high : (low + high) / 2;
     }
     const auto turned = [&](double angle) {
-        Care at = care;
+        ClosedFormSettings at = settings;
         at.unconstrained[0] = {std::cos(t1 + angle), std::sin(t1 + angle)};
         return at;
     };
@@ -345,30 +348,30 @@ inline void turn_free_shoulder(const Plan& plan, const Posed& goal_form, const C
                 out.complete = false;
                 return;
             }
-            const Care middle = turned((place[begin] + place[m - 1]) / 2);
+            const ClosedFormSettings middle = turned((place[begin] + place[m - 1]) / 2);
             closed_form_candidates(plan, goal_form, middle, out, goal, {2 * side, 2 * side + 2});
         }
 }
 
 // A wrist of three parallel axes that is almost free passes its rounding on to the elbow, and may move it
 // past a fold. There the branches within a wider band are candidates too.
-inline void widen_fold_band(const Plan& plan, const Posed& goal_form, Care care, Solutions& out,
-                            const Posed& goal) {
+inline void widen_fold_band(const Plan& plan, const Posed& goal_form, ClosedFormSettings settings,
+                            Solutions& out, const Posed& goal) {
     constexpr double almost_free = 1e-5;  // sine of the wrist's angle
     constexpr double wide = 1e-6;
-    const Branches<double> b = solve_closed_form(plan, goal_form, care);
+    const Branches<double> b = solve_closed_form(plan, goal_form, settings);
     bool widen = false;
     for (const auto& t : b.t) widen = widen || std::fabs(std::sin(t[4])) < almost_free;
-    care.band = max(care.band, wide);
-    if (widen) closed_form_candidates(plan, goal_form, care, out, goal);
+    settings.band = max(settings.band, wide);
+    if (widen) closed_form_candidates(plan, goal_form, settings, out, goal);
 }
 
 // Solutions found by other methods get the number of the nearest branch. Each branch is used once, the
 // nearest pairs first. The others get numbers beyond the branches.
 inline void number_by_branches(const Plan& plan, const Posed& goal, Solutions& out) {
-    Care care = care_of(plan);
-    care.spread = 4 * plan.form.deviation;
-    const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, goal), care);
+    ClosedFormSettings settings = closed_form_settings(plan);
+    settings.spread = 4 * plan.form.deviation;
+    const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, goal), settings);
     const auto gap = [&](int m, int k) {
         double worst = 0;
         for (int i = 0; i < 6; ++i)
@@ -397,36 +400,37 @@ inline void number_by_branches(const Plan& plan, const Posed& goal, Solutions& o
 // free at the goal.
 inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const double* unconstrained) {
     Solutions out;
-    Care care = care_of(plan);
+    ClosedFormSettings settings = closed_form_settings(plan);
     constexpr double wide = 1e-5;  // by so much rounding of a joint before may move a fold
     const double slack = 4 * plan.form.deviation;
-    care.free = max(tolerance::free_joint, slack);
+    settings.free = max(tolerance::free_joint, slack);
     double t[6];
-    set_unconstrained(plan, unconstrained, care, t);
+    set_unconstrained(plan, unconstrained, settings, t);
     const Posed goal_form = goal_in_form(plan, goal);
     // Near singularities of the completed arm an idealised form leaves virtual joints far from zero.
     const CandidateSearch search = {0, max_branches, plan.idealised ? 0.1 : rounded_stray};
-    if (is_exact(plan)) care.band = max(care.band, wide);
-    closed_form_candidates(plan, goal_form, care, out, goal, search);
+    if (is_exact(plan)) settings.band = max(settings.band, wide);
+    closed_form_candidates(plan, goal_form, settings, out, goal, search);
     if (plan.idealised) {
-        care.spread = slack;
-        closed_form_candidates(plan, goal_form, care, out, goal, search);
+        settings.spread = slack;
+        closed_form_candidates(plan, goal_form, settings, out, goal, search);
     }
     if (plan.idealised && plan.virtual_joints && out.count == 0)
-        try_perturbed_goals(plan, goal_form, care, out, goal);
+        try_perturbed_goals(plan, goal_form, settings, out, goal);
     if (!is_exact(plan) && (plan.idealised || plan.virtual_joints))
-        sweep_free_joints(plan, goal_form, care, t, out, goal);
+        sweep_free_joints(plan, goal_form, settings, t, out, goal);
     if (plan.family == Family::three_parallel) {
-        if (!is_exact(plan)) widen_fold_band(plan, goal_form, care, out, goal);
-        turn_free_wrist(plan, goal_form, care, t[3], out, goal);
-        turn_free_shoulder(plan, goal_form, care, t[0], out, goal);
+        if (!is_exact(plan)) widen_fold_band(plan, goal_form, settings, out, goal);
+        turn_free_wrist(plan, goal_form, settings, t[3], out, goal);
+        turn_free_shoulder(plan, goal_form, settings, t[0], out, goal);
     }
-    if (is_exact(plan) && plan.family == Family::three_parallel && !covers_curves(plan, goal_form, care, out))
+    if (is_exact(plan) && plan.family == Family::three_parallel &&
+        !covers_curves(plan, goal_form, settings, out))
         for (int k = 0; k < out.count; ++k) out.settled[k] = out.settled[k] && !out.self_motion[k];
     out.crowded = plan.virtual_joints == 0;  // most goals are settled before they come here
     // Merging pairs of the true arm may lie where the form has none.
     if (plan.form.deviation > tolerance::visible_deviation &&
-        solve_closed_form(plan, goal_form, care_of(plan)).doubt)
+        solve_closed_form(plan, goal_form, closed_form_settings(plan)).doubt)
         out.complete = false;
     return out;
 }

@@ -13,7 +13,7 @@
 namespace cspace::ik::inline CSPACE_ISA {
 
 // The angle of a rotation about z.
-inline Turn<double> turn_about_z(const Mat3d& R) {
+inline Turn<double> planar_turn(const Mat3d& R) {
     const double r = std::hypot(R.m[0][0], R.m[1][0]);
     return r > 0 ? Turn<double>{R.m[0][0] / r, R.m[1][0] / r} : Turn<double>{1, 0};
 }
@@ -22,10 +22,10 @@ inline Turn<double> turn_about_z(const Mat3d& R) {
 // l. Both elbow solutions are written into rows n and n + 1, with the other joints from l + 1 on, round the
 // arm.
 inline void planar_three(const DhForm& f, int j, const Posed& planar, const Turn<double> (&others)[3],
-                         const Care& care, Branches<double>& out, int n) {
+                         const ClosedFormSettings& settings, Branches<double>& out, int n) {
     const TwoLink<double> arm =
-        two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], f.length, care, care.unconstrained[j]);
-    const Turn<double> all = turn_about_z(planar.R);
+        two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], f.length, settings, settings.unconstrained[j]);
+    const Turn<double> all = planar_turn(planar.R);
     for (int e = 0; e < 2; ++e) {
         out.t[n + e][j] = angle_of(arm.first[e]);
         out.t[n + e][j + 1] = angle_of(arm.elbow[e]);
@@ -52,7 +52,8 @@ inline TwoTurns both_angles(TwoTurnEquations e) {
 
 // Axes 2, 3, 4 parallel, axes 5 and 6 separate: the height of axis 6 and its slope relative to n determine t1
 // and t5.
-inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal, const Care& care) {
+inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal,
+                                              const ClosedFormSettings& settings) {
     Branches<double> out{};
     out.doubt = true;
     const Vec3d p = goal.t, g = matrix_column(goal.R, 2);
@@ -66,16 +67,18 @@ inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal
         const Posed seen = inverse(link_pose(f, 0, t1)) * goal;  // Rz(t2)…Rz(t4) · rest · Rz(t6)
         const Posed rest = Posed{link_pose(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * link_pose(f, 4, t5);
         const Vec3d z = matrix_column(rest.R, 2), want = matrix_column(seen.R, 2);
-        const Turn<double> t234 = align_turn(z.x, z.y, want.x, want.y, 1.0, care, care.unconstrained[3]).t;
+        const Turn<double> t234 =
+            align_turn(z.x, z.y, want.x, want.y, 1.0, settings, settings.unconstrained[3]).t;
         const Posed turned = {spatial::rotation_about(Vec3d{0, 0, 1}, t234.c, t234.s), {0, 0, 0}};
-        const Turn<double> t6 = turn_about_z(transpose((turned * rest).R) * seen.R);
-        planar_three(f, 1, {turned.R, seen.t - turned.R * rest.t}, {t5, t6, t1}, care, out, 2 * n);
+        const Turn<double> t6 = planar_turn(transpose((turned * rest).R) * seen.R);
+        planar_three(f, 1, {turned.R, seen.t - turned.R * rest.t}, {t5, t6, t1}, settings, out, 2 * n);
     }
     return out;
 }
 
 // Axes 1, 2, 3 parallel: the slope of n relative to axis 5 and the height of the goal determine t4 and t6.
-inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal, const Care& care) {
+inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal,
+                                             const ClosedFormSettings& settings) {
     Branches<double> out{};
     out.doubt = true;
     const Vec3d r = matrix_row(goal.R, 2);
@@ -93,10 +96,10 @@ inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal,
         const double x = r.x * t6.c - r.y * t6.s, y = r.x * t6.s + r.y * t6.c;
         // (k.x, k.y) turned by −t5 is (x, y cos α5 − rz sin α5).
         const Turn<double> t5 =
-            align_turn(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, care, care.unconstrained[4]).t;
+            align_turn(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, settings, settings.unconstrained[4]).t;
         const Posed rest = to_four * link_pose(f, 4, t5) *
                            Posed{spatial::rotation_about(Vec3d{0, 0, 1}, t6.c, t6.s), {0, 0, 0}};
-        planar_three(f, 0, goal * inverse(rest), {t4, t5, t6}, care, out, 2 * n);
+        planar_three(f, 0, goal * inverse(rest), {t4, t5, t6}, settings, out, 2 * n);
     }
     return out;
 }

@@ -8,7 +8,7 @@
 
 namespace cspace::ik {
 
-enum class FirstThree {
+enum class PieperCase {
     last_parallel,   // axes 2 ∥ 3
     first_meet,      // axes 1 and 2 meet
     last_meet,       // axes 2 and 3 meet
@@ -17,7 +17,7 @@ enum class FirstThree {
 };
 
 struct ThreeJoints {
-    FirstThree kind;
+    PieperCase kind;
     double a1, ca1, sa1, d2, a2, ca2, sa2;
     Vec3d w;
     double length;         // [m], the size of things
@@ -38,14 +38,15 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 // Axes 2 ∥ 3: the height of p over their plane determines t1, a planar two-link arm t2 and t3.
 template <class V>
-CSPACE_INLINE Triples<V> last_parallel(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> last_parallel(const ThreeJoints& g, const Vec3<V>& p,
+                                       const ClosedFormSettings& settings) {
     Triples<V> out;
-    const TwoAngles<V> shoulder = shoulder_angles(g.w.z + g.d2, g.ca1, g.sa1, p, g.length, care);
+    const TwoAngles<V> shoulder = shoulder_angles(g.w.z + g.d2, g.ca1, g.sa1, p, g.length, settings);
     out.doubt = shoulder.doubt;
     for (int i = 0; i < 2; ++i) {
         const Vec3<V> q = undo_joint(shoulder.root[i], g.ca1, g.sa1, p);
         const TwoLink<V> arm =
-            two_link(q.x - g.a1, q.y, g.a2, g.wrist_reach, g.length, care, care.unconstrained[1]);
+            two_link(q.x - g.a1, q.y, g.a2, g.wrist_reach, g.length, settings, settings.unconstrained[1]);
         out.doubt = out.doubt || (shoulder.ok && arm.doubt);
         for (int j = 0; j < 2; ++j) {
             const int n = 2 * i + j;
@@ -97,57 +98,63 @@ CSPACE_INLINE Triples<V> nested_triples(const TwoAngles<V>& first, const Visit& 
 // Axes 1 and 2 intersect: the distance of p from their intersection determines t3, its height along axis 1
 // t2, its bearing t1.
 template <class V>
-CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p,
+                                    const ClosedFormSettings& settings) {
     const auto [fixed, a, b] = half_square_behind(g);
     const TwoAngles<V> elbow = linear_equation<V>(fill_lanes<V>(a), fill_lanes<V>(b), 0.5 * dot(p, p) - fixed,
-                                                  std::hypot(a, b), care, care.unconstrained[2]);
+                                                  std::hypot(a, b), settings, settings.unconstrained[2]);
     return nested_triples<2, 1>(elbow, [&](const Turn<V>& t3, const auto& add) {
         const Vec3<V> v = behind_joint_two(g, t3);
         const TwoAngles<V> lift = linear_equation<V>(g.sa1 * v.y, g.sa1 * v.x, p.z - g.ca1 * v.z, g.length,
-                                                     care, care.unconstrained[1]);
+                                                     settings, settings.unconstrained[1]);
         add(lift, [&](const Turn<V>& t2) {
             const V x = t2.c * v.x - t2.s * v.y, y = g.ca1 * (t2.s * v.x + t2.c * v.y) - g.sa1 * v.z;
-            return align_turn(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
+            return align_turn(x, y, p.x, p.y, g.length, settings, settings.unconstrained[0]);
         });
     });
 }
 
 // The height of w along axis 2 determines t3 where axis 2 meets or is parallel to its neighbour.
 template <class V>
-CSPACE_INLINE TwoAngles<V> elbow_angles(const ThreeJoints& g, V height, const Care& care) {
+CSPACE_INLINE TwoAngles<V> elbow_angles(const ThreeJoints& g, V height, const ClosedFormSettings& settings) {
     return linear_equation<V>(fill_lanes<V>(g.sa2 * g.w.y), fill_lanes<V>(g.sa2 * g.w.x),
-                              height - g.ca2 * g.w.z, g.sa2 * g.wrist_reach, care, care.unconstrained[2]);
+                              height - g.ca2 * g.w.z, g.sa2 * g.wrist_reach, settings,
+                              settings.unconstrained[2]);
 }
 
 // Axes 2 and 3 intersect: the distance of p from their intersection determines t1, then a height along axis 2
 // t3, a bearing t2.
 template <class V>
-CSPACE_INLINE Triples<V> last_meet(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> last_meet(const ThreeJoints& g, const Vec3<V>& p,
+                                   const ClosedFormSettings& settings) {
     const double out_of_plane = -g.sa1 * g.d2, height = g.ca1 * g.d2;
     const V r = 0.5 * (dot(p, p) + (g.a1 * g.a1 + g.d2 * g.d2 - dot(g.w, g.w))) - height * p.z;
     const TwoAngles<V> pan =
         linear_equation<V>(g.a1 * p.x + out_of_plane * p.y, g.a1 * p.y - out_of_plane * p.x, r,
-                           g.length * std::hypot(g.a1, out_of_plane), care, care.unconstrained[0]);
+                           g.length * std::hypot(g.a1, out_of_plane), settings, settings.unconstrained[0]);
     return nested_triples<0, 2>(pan, [&](const Turn<V>& t1, const auto& add) {
         const Vec3<V> q = undo_joint(t1, g.ca1, g.sa1, p);
-        add(elbow_angles(g, q.z - g.d2, care), [&](const Turn<V>& t3) {
+        add(elbow_angles(g, q.z - g.d2, settings), [&](const Turn<V>& t3) {
             const Vec3<V> v = behind_joint_two(g, t3);
-            return align_turn(v.x, v.y, q.x - g.a1, q.y, g.length, care, care.unconstrained[1]);
+            return align_turn(v.x, v.y, q.x - g.a1, q.y, g.length, settings, settings.unconstrained[1]);
         });
     });
 }
 
 // Axes 1 ∥ 2: the height of p determines t3, its distance from axis 1 t2, its bearing t1.
 template <class V>
-CSPACE_INLINE Triples<V> first_parallel(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
-    return nested_triples<2, 1>(elbow_angles(g, p.z - g.d2, care), [&](const Turn<V>& t3, const auto& add) {
-        const Vec3<V> v = behind_joint_two(g, t3);
-        const V r = (p.x * p.x + p.y * p.y - (v.x * v.x + v.y * v.y) - g.a1 * g.a1) * (0.5 / g.a1);
-        add(linear_equation<V>(v.x, -v.y, r, g.length, care, care.unconstrained[1]), [&](const Turn<V>& t2) {
-            return align_turn(t2.c * v.x - t2.s * v.y + g.a1, t2.s * v.x + t2.c * v.y, p.x, p.y, g.length,
-                              care, care.unconstrained[0]);
+CSPACE_INLINE Triples<V> first_parallel(const ThreeJoints& g, const Vec3<V>& p,
+                                        const ClosedFormSettings& settings) {
+    return nested_triples<2, 1>(
+        elbow_angles(g, p.z - g.d2, settings), [&](const Turn<V>& t3, const auto& add) {
+            const Vec3<V> v = behind_joint_two(g, t3);
+            const V r = (p.x * p.x + p.y * p.y - (v.x * v.x + v.y * v.y) - g.a1 * g.a1) * (0.5 / g.a1);
+            add(linear_equation<V>(v.x, -v.y, r, g.length, settings, settings.unconstrained[1]),
+                [&](const Turn<V>& t2) {
+                    return align_turn(t2.c * v.x - t2.s * v.y + g.a1, t2.s * v.x + t2.c * v.y, p.x, p.y,
+                                      g.length, settings, settings.unconstrained[0]);
+                });
         });
-    });
 }
 
 // The first three joints with axes in general position: Pieper's quartic (1968).
@@ -197,13 +204,14 @@ inline PieperRoots pieper_roots(const ThreeJoints& g, double p2, double pz, doub
 }
 
 template <class V>
-CSPACE_INLINE Triples<V> any_three(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> pieper_quartic(const ThreeJoints& g, const Vec3<V>& p,
+                                        const ClosedFormSettings& settings) {
     Triples<V> out;
     const V p2 = dot(p, p);
     V count = fill_lanes<V>(0.0), close = fill_lanes<V>(0.0);
     for (auto& t : out.t[2]) t = no_turn<V>();
     for (int l = 0; l < Lanes<V>::count; ++l) {
-        const PieperRoots found = pieper_roots(g, get_lane(p2, l), get_lane(p.z, l), care.band);
+        const PieperRoots found = pieper_roots(g, get_lane(p2, l), get_lane(p.z, l), settings.band);
         set_lane(count, l, found.roots.count);
         set_lane(close, l, found.close);
         for (int i = 0; i < found.roots.count; ++i) {
@@ -217,9 +225,9 @@ CSPACE_INLINE Triples<V> any_three(const ThreeJoints& g, const Vec3<V>& p, const
         const Turn<V>& t3 = out.t[2][i];
         const V X = value_at(fx, t3) + p2 * (0.5 / g.a1), Y = value_at(fy, t3) + p.z * (1 / g.sa1);
         const Vec3<V> v = behind_joint_two(g, t3);
-        const Aligned<V> lift = align_turn(v.x, v.y, X, Y, g.length, care, care.unconstrained[1]);
+        const Aligned<V> lift = align_turn(v.x, v.y, X, Y, g.length, settings, settings.unconstrained[1]);
         const V x = X + g.a1, y = g.ca1 * Y - g.sa1 * v.z;
-        const Aligned<V> pan = align_turn(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
+        const Aligned<V> pan = align_turn(x, y, p.x, p.y, g.length, settings, settings.unconstrained[0]);
         out.ok[i] = count > double(i);
         out.t[0][i] = pan.t;
         out.t[1][i] = lift.t;

@@ -292,34 +292,6 @@ inline void copy_measured(const PoseError& from, PoseError& to) {
         for (int k = 0; k < 6; ++k) to.jacobian.us[i][k] = from.jacobian.us[i][k];
 }
 
-// The damped step from a Jacobian that is not decomposed: the rows of √damping times the identity are
-// reflected into J one after the other (Golub & Van Loan 2013, section 6.5.3).
-inline void damped_step_by_reflections(const PoseError& error, double damping, double* dq) {
-    const int n = error.jacobian.columns;
-    const double root = std::sqrt(damping);
-    double J[max_joints][6], e[6], R[max_joints][max_joints];
-    for (int k = 0; k < 6; ++k) e[k] = error.e[k];
-    for (int i = 0; i < n; ++i)
-        for (int k = 0; k < 6; ++k) J[i][k] = error.jacobian.us[i][k];
-    for (int k = 0; k < n; ++k) {
-        const double square = dot_n(J[k], J[k], 6), diagonal = -std::sqrt(damping + square);
-        const double head = root - diagonal, factor = 2 / (head * head + square);
-        R[k][k] = diagonal;
-        for (int j = k + 1; j < n; ++j) {
-            const double along = factor * dot_n(J[k], J[j], 6);
-            R[k][j] = -along * head;
-            for (int i = 0; i < 6; ++i) J[j][i] -= along * J[k][i];
-        }
-        const double along = factor * dot_n(J[k], e, 6);
-        dq[k] = -along * head;
-        for (int i = 0; i < 6; ++i) e[i] -= along * J[k][i];
-    }
-    for (int k = n - 1; k >= 0; --k) {
-        for (int j = k + 1; j < n; ++j) dq[k] -= R[k][j] * dq[j];
-        dq[k] /= R[k][k];
-    }
-}
-
 // Moves q to the nearest configuration that reaches the goal, or to a local minimum of the error, by damped
 // least squares; returns the remaining error. On return `error` belongs to q and its Jacobian is decomposed.
 // Damping by the square of the error converges fast to a self-motion (Yamashita & Fukushima 2001). Larger
@@ -344,7 +316,7 @@ inline double descend_to_goal(const Chain& chain, const Posed& goal, double leng
             svd.decompose_once();
             damped_pose_step(error, damped, dq);
         } else {
-            damped_step_by_reflections(error, damped, dq);
+            damped_step_by_reflections(error.jacobian.columns, error.jacobian.us, error.e, damped, dq);
         }
         const double trial_size = take_step(chain, goal, length, q, dq, next, trial);
         const bool closer = trial_size < size, stalled = trial_size > 0.99 * size;

@@ -12,7 +12,7 @@ namespace cspace::ik {
 // Settings of the careful solver: the width of the band in which two solutions may merge, the distance kept
 // between merging solutions, the size below which a lever arm counts as zero and its joint as free, and the
 // angles t_i (as cosine and sine) of joints that the pose leaves free.
-struct Care {
+struct ClosedFormSettings {
     double band = tolerance::fold_band;
     double spread = 0;
     double free = tolerance::free_joint;
@@ -46,13 +46,13 @@ struct Aligned {
     mask_of<V> doubt;
 };
 template <class V>
-CSPACE_INLINE Aligned<V> align_turn(V x, V y, V u, V v, double unit, const Care& care,
+CSPACE_INLINE Aligned<V> align_turn(V x, V y, V u, V v, double unit, const ClosedFormSettings& settings,
                                     const Turn<double>& unconstrained) {
     const V n2 = u * u + v * v;
-    const mask_of<V> is_free = n2 <= care.free * care.free * unit * unit;
+    const mask_of<V> is_free = n2 <= settings.free * settings.free * unit * unit;
     const V scale = 1.0 / select_lanes(is_free, fill_lanes<V>(1.0), n2);
     const Turn<V> t = {(x * u + y * v) * scale, (x * v - y * u) * scale};
-    return {choose_turn(is_free, unconstrained, t), n2 <= care.band * unit * unit};
+    return {choose_turn(is_free, unconstrained, t), n2 <= settings.band * unit * unit};
 }
 // The turn about the unit axis h that takes v to u, both at one angle from h; none where they lie on it.
 template <class V>
@@ -82,20 +82,20 @@ CSPACE_INLINE V root_above(V x, V floor) {
 
 // a cos t + b sin t = r: none, one (doubt) or two angles. `unit` is the typical size of a and b.
 template <class V>
-CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Care& care,
+CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const ClosedFormSettings& settings,
                                            const Turn<double>& unconstrained) {
     const V n2 = a * a + b * b;
     const V room = n2 - r * r;
     const double unit2 = unit * unit;
-    const mask_of<V> is_free = n2 <= care.free * care.free * unit2;
+    const mask_of<V> is_free = n2 <= settings.free * settings.free * unit2;
     const V scale = 1.0 / select_lanes(is_free, fill_lanes<V>(1.0), n2);
-    const V h = root_above(room, care.spread * n2);
+    const V h = root_above(room, settings.spread * n2);
     TwoAngles<V> out;
     out.root[0] = {(a * r - b * h) * scale, (b * r + a * h) * scale};
     out.root[1] = {(a * r + b * h) * scale, (b * r - a * h) * scale};
     for (auto& t : out.root) t = choose_turn(is_free, unconstrained, t);
     // A short lever feels an error of r more: the band is one of lengths of the arm, not of the lever.
-    const V band = care.band * (n2 + unit2);
+    const V band = settings.band * (n2 + unit2);
     out.ok = (room >= -band) || (is_free && (abs(r) <= tolerance::reached * unit));
     out.doubt = (out.ok && (room <= band)) || (n2 <= band);
     return out;
@@ -105,9 +105,9 @@ CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Car
 // sin t px − cos t py = (height − cos α pz) / sin α.
 template <class V>
 CSPACE_INLINE TwoAngles<V> shoulder_angles(double height, double ca, double sa, const Vec3<V>& p, double unit,
-                                           const Care& care) {
+                                           const ClosedFormSettings& settings) {
     const V k = (height - ca * p.z) * (1 / sa);
-    return linear_equation<V>(-p.y, p.x, k, unit, care, care.unconstrained[0]);
+    return linear_equation<V>(-p.y, p.x, k, unit, settings, settings.unconstrained[0]);
 }
 
 // A planar arm of links l1, l2 reaching (x, y): γ is the angle at the elbow, ± for its two sides.
@@ -117,25 +117,25 @@ struct TwoLink {
     mask_of<V> ok, doubt;
 };
 template <class V>
-CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, double unit, const Care& care,
-                                  const Turn<double>& unconstrained) {
+CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, double unit,
+                                  const ClosedFormSettings& settings, const Turn<double>& unconstrained) {
     const V r2 = x * x + y * y;
     const double product = 2 * l1 * l2, size2 = (l1 + l2) * (l1 + l2);
     const V room_out = (size2 - r2) * (1 / product);                 // 1 − cos γ
     const V room_in = (r2 - (l1 - l2) * (l1 - l2)) * (1 / product);  // 1 + cos γ
     TwoLink<V> out;
     const V cosine = 0.5 * (room_in - room_out);
-    const V sine = root_above(room_out * room_in, fill_lanes<V>(care.spread));
+    const V sine = root_above(room_out * room_in, fill_lanes<V>(settings.spread));
     out.elbow[0] = {cosine, sine};
     out.elbow[1] = {cosine, -sine};
     const V along = l1 + l2 * cosine, across = l2 * sine;
-    const mask_of<V> is_free = r2 <= care.free * care.free * size2;
+    const mask_of<V> is_free = r2 <= settings.free * settings.free * size2;
     const V scale = 1.0 / select_lanes(is_free, fill_lanes<V>(1.0), r2);
     out.first[0] = {(x * along + y * across) * scale, (y * along - x * across) * scale};
     out.first[1] = {(x * along - y * across) * scale, (y * along + x * across) * scale};
     for (auto& t : out.first) t = choose_turn(is_free, unconstrained, t);
     const V least = min(room_out, room_in);
-    const double band = care.band * (size2 + unit * unit) / product;
+    const double band = settings.band * (size2 + unit * unit) / product;
     out.ok = least >= -band;
     out.doubt = out.ok && ((least <= band) || (r2 <= band * size2));
     return out;
@@ -178,7 +178,7 @@ struct WristView {
 };
 template <class V>
 CSPACE_INLINE WristView<V> look_at_wrist(const Wrist& w, const Vec3<V>& z, const Vec3<V>& x,
-                                         const Care& care) {
+                                         const ClosedFormSettings& settings) {
     WristView<V> view;
     view.z = z;
     view.x = x;
@@ -188,10 +188,10 @@ CSPACE_INLINE WristView<V> look_at_wrist(const Wrist& w, const Vec3<V>& z, const
     const V high = -cosine_gap(z.z, rho2, w.c_diff, w.s_diff) * w.inv;
     const V least = min(low, high);
     view.c5 = 0.5 * (high - low);
-    view.s5 = root_above(low * high, fill_lanes<V>(care.spread));
-    view.t4_is_free = rho2 <= care.free * care.free;
+    view.s5 = root_above(low * high, fill_lanes<V>(settings.spread));
+    view.t4_is_free = rho2 <= settings.free * settings.free;
     view.inverse_rho2 = 1.0 / select_lanes(view.t4_is_free, fill_lanes<V>(1.0), rho2);
-    const double band = care.band * (1 + std::fabs(w.inv));
+    const double band = settings.band * (1 + std::fabs(w.inv));
     view.ok = least >= -band;
     view.doubt = view.ok && ((least <= band) || (rho2 <= band));
     return view;

@@ -147,7 +147,7 @@ inline Bend measure_bend(const Plan& plan, const double* q, double noise) {
     const WristPlace at = place_of_wrist(plan, q, noise);
     const double sine = norm(cross(at.axis[3], at.axis[5]));
     Bend out = plan.family == Family::three_parallel                ? bend_behind_shoulder(at, sine)
-               : plan.wrist.first.kind == FirstThree::last_parallel ? bend_behind_parallel(at, sine)
+               : plan.wrist.first.kind == PieperCase::last_parallel ? bend_behind_parallel(at, sine)
                                                                     : bend_behind_three(at, sine);
     out.blur += blur_across(at, sine, out.blur);
     return out;
@@ -157,7 +157,7 @@ inline Bend measure_bend(const Plan& plan, const double* q, double noise) {
 // orientation, without being straight on the way. Axes 2 ∥ 3, and a wrist of right angles.
 inline bool turns_first_joint(const Plan& plan, const double* q) {
     constexpr double on_axis = 1e-12, apart = 1e-4;
-    if (plan.family != Family::spherical_wrist || plan.wrist.first.kind != FirstThree::last_parallel ||
+    if (plan.family != Family::spherical_wrist || plan.wrist.first.kind != PieperCase::last_parallel ||
         !plan.wrist.last.right_angled)
         return false;
     const WristPlace at = place_of_wrist(plan, q, pose_noise);
@@ -203,10 +203,11 @@ inline bool leaves_certificate(const Plan& plan, const double* q, Looseness loos
 // Whether the rows of self-motions cover those of three parallel axes with a free wrist. The sum of their
 // angles moves the end of the planar arm of two links round a circle. Where all of the circle is in reach,
 // each elbow has a curve. Where the circle leaves the reach, inwards or outwards, the two curves are one.
-inline bool covers_curves(const Plan& plan, const Posed& goal_form, const Care& care, const Solutions& out) {
+inline bool covers_curves(const Plan& plan, const Posed& goal_form, const ClosedFormSettings& settings,
+                          const Solutions& out) {
     constexpr double same_shoulder = 1e-4, clear = 1e-6;
     const ThreeParallel& arm = plan.parallel;
-    const TwoAngles<double> shoulder = shoulder_angles(arm, goal_form.t, care);
+    const TwoAngles<double> shoulder = shoulder_angles(arm, goal_form.t, settings);
     for (const Turn<double>& t1 : shoulder.root) {
         bool elbow[2] = {};
         const double pan = joint_angle(plan, 0, angle_of(t1));

@@ -18,31 +18,15 @@ struct FrameAxes {
 
 namespace cspace::kinematics::inline CSPACE_ISA {
 
-// The sine and cosine of each joint angle of a chain; s and c have n entries rounded up to four.
-// One configuration alone fills the lanes with its joints.
+// The sine and cosine of each joint angle of a chain.
 template <class V>
 CSPACE_INLINE void chain_sines(const model::Chain& chain, const V* q, V* s, V* c) {
-    if constexpr (Lanes<V>::count == 1) {
-        for (int i = 0; i < chain.n; i += 4) {
-            auto angles = fill_lanes<Pack<4>>(0.0);
-            const int count = chain.n - i < 4 ? chain.n - i : 4;
-            for (int k = 0; k < count; ++k) {
-                const model::ChainJoint& joint = chain.joints[i + k];
-                set_lane(angles, k, joint.turn * q[joint.coordinate] + joint.angle);
-            }
-            Pack<4> sines, cosines;
-            sincos(angles, sines, cosines);
-            for (int k = 0; k < 4; ++k) {
-                s[i + k] = get_lane(sines, k);
-                c[i + k] = get_lane(cosines, k);
-            }
-        }
-    } else {
-        for (int i = 0; i < chain.n; ++i) {
-            const model::ChainJoint& joint = chain.joints[i];
-            sincos(joint.turn * q[joint.coordinate] + joint.angle, s[i], c[i]);
-        }
-    }
+    const auto angle_of = [&](int i) {
+        const model::ChainJoint& joint = chain.joints[i];
+        return joint.turn * q[joint.coordinate] + joint.angle;
+    };
+    sincos_each<V>(chain.n, angle_of,
+                   [&](int i, const V& sine, const V& cosine) { s[i] = sine, c[i] = cosine; });
 }
 
 // A frame by its axes and its origin. Without arrays inside, a compiler keeps all of it in registers.
@@ -62,8 +46,8 @@ CSPACE_INLINE void turn_about_z(FrameAxes<V>& frame, const S& s, const S& c) {
     frame.y = c * frame.y - s * x;
 }
 // Rotates the frame about its x axis by the α of a joint.
-template <class V>
-CSPACE_INLINE void tilt_frame(FrameAxes<V>& frame, const model::ChainJoint& joint) {
+template <class V, class Joint>
+CSPACE_INLINE void tilt_frame(FrameAxes<V>& frame, const Joint& joint) {
     const Vec3<V> y = frame.y;
     switch (joint.tilt) {
         case model::Tilt::none:
@@ -102,6 +86,19 @@ CSPACE_INLINE Pose<V> follow_chain(const model::Chain& chain, const Pose<V>& fir
     return to_pose(frame);
 }
 
+// The frame of a joint, moved along or about its z axis by the value of the joint.
+template <class V>
+CSPACE_INLINE Pose<V> move_joint(Pose<V> T, bool prismatic, const V& value) {
+    if (prismatic) {
+        T.t = T.t + value * matrix_column(T.R, 2);
+        return T;
+    }
+    V s, c;
+    sincos(value, s, c);
+    FrameAxes<V> frame = frame_axes(T);
+    turn_about_z(frame, s, c);
+    return to_pose(frame);
+}
 // The moving frames of all joints of a tree, in the base.
 template <class V>
 CSPACE_INLINE void joint_poses(const model::Tree& tree, const V* q, const Pose<V>& T_world_base,
@@ -109,18 +106,8 @@ CSPACE_INLINE void joint_poses(const model::Tree& tree, const V* q, const Pose<V
     for (int k = 0; k < tree.n_joints; ++k) {
         const model::Joint& joint = tree.joints[k];
         const Pose<V>& parent = joint.parent < 0 ? T_world_base : T_world_joint[joint.parent];
-        Pose<V> T = parent * fill_pose<V>(joint.T_parent_joint);
         const V value = joint.ratio * q[joint.coordinate] + joint.offset;
-        if (joint.prismatic) {
-            T.t = T.t + value * matrix_column(T.R, 2);
-        } else {
-            V s, c;
-            sincos(value, s, c);
-            FrameAxes<V> frame = frame_axes(T);
-            turn_about_z(frame, s, c);
-            T = to_pose(frame);
-        }
-        T_world_joint[k] = T;
+        T_world_joint[k] = move_joint(parent * fill_pose<V>(joint.T_parent_joint), joint.prismatic, value);
     }
 }
 

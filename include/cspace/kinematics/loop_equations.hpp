@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "cspace/kinematics/forward.hpp"
 #include "cspace/kinematics/loop_places.hpp"
-#include "cspace/math/trig.hpp"
 
 namespace cspace::kinematics::inline CSPACE_ISA {
 
@@ -14,16 +14,8 @@ inline void place_loops(const ClosedLoops& loops, const double* q, LoopPlaces& p
     for (int k = 0; k < loops.n_joints; ++k) {
         const LoopJoint& joint = loops.joints[k];
         const double value = joint.ratio * q[joint.coordinate] + joint.offset;
-        Posed move = identity_pose();
-        if (joint.turns) {
-            double s, c;
-            sincos(value, s, c);
-            move.R = {{{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}}};
-        } else {
-            move.t.z = value;
-        }
-        const Posed at = joint.before * move;
-        places.joints[k] = joint.parent < 0 ? at : places.joints[joint.parent] * at;
+        const Posed before = joint.parent < 0 ? joint.before : places.joints[joint.parent] * joint.before;
+        places.joints[k] = move_joint(before, !joint.turns, value);
     }
     for (int l = 0; l < loops.n_loops; ++l) {
         int side = 0;

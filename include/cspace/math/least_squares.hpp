@@ -58,6 +58,36 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[rows][columns], const 
     }
 }
 
+// The same step for n columns of J (n, rows) without their squares, which halve the digits: the rows of
+// √damping times the identity are reflected into J one after the other (Golub & Van Loan 2013, section
+// 6.5.3).
+template <int rows, int columns>
+void damped_step_by_reflections(int n, const double (&columns_of_J)[columns][rows],
+                                const double (&error)[rows], double damping, double* dx) {
+    const double root = std::sqrt(damping);
+    double J[columns][rows], e[rows], R[columns][columns];
+    for (int k = 0; k < rows; ++k) e[k] = error[k];
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < rows; ++k) J[i][k] = columns_of_J[i][k];
+    for (int k = 0; k < n; ++k) {
+        const double square = dot_n(J[k], J[k], rows), diagonal = -std::sqrt(damping + square);
+        const double head = root - diagonal, factor = 2 / (head * head + square);
+        R[k][k] = diagonal;
+        for (int j = k + 1; j < n; ++j) {
+            const double along = factor * dot_n(J[k], J[j], rows);
+            R[k][j] = -along * head;
+            for (int i = 0; i < rows; ++i) J[j][i] -= along * J[k][i];
+        }
+        const double along = factor * dot_n(J[k], e, rows);
+        dx[k] = -along * head;
+        for (int i = 0; i < rows; ++i) e[i] -= along * J[k][i];
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        for (int j = k + 1; j < n; ++j) dx[k] -= R[k][j] * dx[j];
+        dx[k] /= R[k][k];
+    }
+}
+
 // Moves the unknowns to a local minimum of the error, which never grows; returns it. `at` belongs to x on
 // return. A step that does not reduce the error is rejected, and the damping increased.
 //

@@ -25,6 +25,13 @@ struct MatrixRows {
 }  // namespace cspace
 
 namespace cspace::inline CSPACE_ISA {
+
+inline double dot_n(const double* a, const double* b, int n) {
+    double sum = 0;
+    for (int k = 0; k < n; ++k) sum += a[k] * b[k];
+    return sum;
+}
+
 namespace linear {
 
 // Swaps the rows k and i, from column k on, of those lanes where row i has the larger entry in column k.

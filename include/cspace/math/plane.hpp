@@ -16,6 +16,11 @@ constexpr Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y}; }
 constexpr Point operator*(double s, Point a) { return {s * a.x, s * a.y}; }
 constexpr double dot(Point a, Point b) { return a.x * b.x + a.y * b.y; }
 constexpr double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
+// The point x with a · x = p and b · x = q, by Cramer's rule; a and b are not parallel.
+constexpr Point solve_two(Point a, Point b, double p, double q) {
+    const double det = cross(a, b);
+    return {(p * b.y - q * a.y) / det, (q * a.x - p * b.x) / det};
+}
 constexpr double squared_norm(Point a) { return dot(a, a); }
 inline double norm(Point a) { return std::sqrt(dot(a, a)); }
 inline double distance(Point a, Point b) { return norm(b - a); }

@@ -24,12 +24,6 @@ struct SmallSvd {
 
 namespace cspace::inline CSPACE_ISA {
 
-inline double dot_n(const double* a, const double* b, int n) {
-    double sum = 0;
-    for (int k = 0; k < n; ++k) sum += a[k] * b[k];
-    return sum;
-}
-
 // The projection of v onto the span of the orthonormal vectors basis[0 … k), of unit length. Returns its
 // length before that.
 inline double project_vector(const double* const* basis, int k, int n, double* v) {

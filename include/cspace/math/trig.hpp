@@ -224,6 +224,27 @@ CSPACE_INLINE void sincos(V x, V& s, V& c) {
     s = trig::from_carrier<V>(sine);
     c = trig::from_carrier<V>(cosine);
 }
+// Passes i, sine and cosine of angle(i) to write, for i < n. Where V is one number, four angles fill the
+// lanes.
+template <class V, class Angle, class Write>
+CSPACE_INLINE void sincos_each(int n, const Angle& angle, const Write& write) {
+    if constexpr (Lanes<V>::count == 1) {
+        for (int i = 0; i < n; i += 4) {
+            auto angles = fill_lanes<Pack<4>>(0.0);
+            const int count = n - i < 4 ? n - i : 4;
+            for (int k = 0; k < count; ++k) set_lane(angles, k, angle(i + k));
+            Pack<4> sines, cosines;
+            sincos(angles, sines, cosines);
+            for (int k = 0; k < count; ++k) write(i + k, get_lane(sines, k), get_lane(cosines, k));
+        }
+    } else {
+        for (int i = 0; i < n; ++i) {
+            V s, c;
+            sincos(angle(i), s, c);
+            write(i, s, c);
+        }
+    }
+}
 // The angle of the vector (x, y) in [−π, π].
 template <class V>
 CSPACE_INLINE V atan2(V y, V x) {

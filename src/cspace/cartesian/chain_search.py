@@ -11,7 +11,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.kinematics import KinematicModel
 from cspace.kinematics.manipulability import generic_rank
-from cspace.math.wrapping import TURN, wrap_near
+from cspace.math.wrapping import TURN, turns_within, wrap_near
 from cspace.model import Limits
 from cspace.tolerances import CHAIN_AT_LIMIT, CHAIN_LEAST_VOLUME
 from cspace.trajectory.cartesian_path import CartesianPath, Indices
@@ -221,10 +221,9 @@ class ChainSearch:
             q, cell = np.concatenate([self.start[None], q[later]]), np.concatenate([[own], cell[later]])
         begin = np.searchsorted(cell, np.arange(n * m + 1)).astype(np.uint64)
         stride = np.where(self.revolute, LONGEST_STEP, np.inf)
-        period = np.where(self.wide, TURN, 0.0)
         q = np.ascontiguousarray(q)
         states, _ = _core._ik_cheapest_chain(
-            q, self._measure_cost(q), begin, m, stride, period, reach, is_ring
+            q, self._measure_cost(q), begin, m, stride, self.wide, reach, is_ring
         )
         chain = ConfigurationChain(q[states], values.ravel()[cell[states]])
         if len(states) == n:
@@ -255,17 +254,16 @@ class ChainSearch:
         """The chain with continuous angles; without a start, each joint is moved by the multiple of 2π that
         keeps it within its limits, if there is one."""
         step = np.diff(q, axis=0)
-        step -= np.where(self.wide, TURN * np.round(step / TURN), 0.0)
+        step = np.where(self.wide, wrap_near(step, 0.0), step)
         out: Array = q[0] + np.concatenate([np.zeros((1, q.shape[1])), np.cumsum(step, axis=0)])
         if self.start is not None:
             return out
         low, high = out.min(axis=0), out.max(axis=0)
         lower, upper = self.bounds.lower, self.bounds.upper
         limited = self.wide & np.isfinite(lower) & np.isfinite(upper)
-        turns = np.where(limited, np.ceil((np.where(limited, lower, 0.0) - low) / TURN), 0.0)
-        fits = high + TURN * turns <= upper
-        moved = limited & ((low < lower) | (high > upper)) & fits
-        return np.asarray(out + np.where(moved, TURN * turns, 0.0))
+        fewest, most = turns_within(low, high, lower, upper)
+        moved = limited & ((low < lower) | (high > upper)) & (fewest <= most)
+        return np.asarray(out + np.where(moved, TURN * fewest, 0.0))
 
     def _explain_end(self, chain: ConfigurationChain, has_next: bool) -> ConfigurationChain:
         s = float(self.stations.s[len(chain.q)])

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import guard_memory
 from cspace.dynamics.loop_dynamics import check_state, constrained_forward_dynamics
 from cspace.dynamics.mechanics import WrenchLaw
-from cspace.dynamics.rollout import Control, check_control, run_steps, spread_rows
+from cspace.dynamics.roll_out import Control, check_control, run_steps, spread_rows
 from cspace.dynamics.rows import EARTH, Wrenches
 from cspace.dynamics.simulate import FRICTION_SPEED, check_start, make_answer, make_mechanics, make_task
 from cspace.dynamics.simulation import Simulation

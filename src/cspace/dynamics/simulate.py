@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import guard_memory, positive_number, whole_number
 from cspace.dynamics.forward import forward_dynamics
 from cspace.dynamics.mechanics import Mechanics, State, WrenchLaw, find_resistances
-from cspace.dynamics.rollout import (
+from cspace.dynamics.roll_out import (
     AT_LIMIT,
     BROKEN,
     ENDED,

@@ -17,7 +17,7 @@ from cspace.export.texts import fill_template, in_ascii, read_template
 TABLES_AT_START = "#define CSPACE_TABLES_AT_START\n\n"
 """Tables are computed when the program starts; on first use they would need the C++ run-time library."""
 
-ENUMS = {"family": "ik::Family", "kind": "ik::FirstThree"}
+ENUMS = {"family": "ik::Family", "kind": "ik::PieperCase"}
 INFINITY = "std::numeric_limits<double>::infinity()"
 
 

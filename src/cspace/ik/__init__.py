@@ -6,7 +6,7 @@ from cspace.ik import subproblems
 from cspace.ik.conditions import Condition, NoClosedFormError
 from cspace.ik.explain import IkPlan, InvariantDirection, InvariantPoint, Relation, Step, ik_plan
 from cspace.ik.geometry import Geometry, geometry
-from cspace.ik.numeric.descend import ik_many_starts, ik_numeric
+from cspace.ik.numeric.descent import ik_many_starts, ik_numeric
 from cspace.ik.numeric.multi_task import TaskSolution, ik_tasks, task_velocity
 from cspace.ik.numeric.resolved_rate import resolved_rate
 from cspace.ik.numeric.solution import NumericSolution, SampledSolutions

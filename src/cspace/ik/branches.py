@@ -59,7 +59,7 @@ def words_of(chain: Chain, seen: dict[str, Any]) -> Words | None:
     if seen["family"] == THREE_PARALLEL:
         # The wrist is where axes 5 and 6 meet; the forearm ends at axis 4.
         return six_joints(5, wrist_bit=1, forearm_end=3)
-    if seen["family"] == SPHERICAL_WRIST and seen["first_three"] == LAST_PARALLEL:
+    if seen["family"] == SPHERICAL_WRIST and seen["pieper_case"] == LAST_PARALLEL:
         return six_joints(3, wrist_bit=0, forearm_end=None)
     return None
 

@@ -26,7 +26,7 @@ PARALLEL = {
     3: "axes 2, 3, 4; axes 5 and 6 apart (a quartic)",
     4: "axes 1, 2, 3 (a quartic)",
 }
-FIRST_THREE = {
+PIEPER_CASES = {
     0: "axes 2 and 3 parallel",
     1: "axes 1 and 2 meet",
     2: "axes 2 and 3 meet",
@@ -87,10 +87,10 @@ def geometry(robot: HasSolver) -> Geometry:
     if seen["general"]:
         return Geometry("general", "", False, 0.0, tested, f"{explain_missing_form(solver)}. {GENERAL}")
     if seen["family"] < 0:
-        shared = FIRST_THREE.get(seen["first_three"], "up to three joints")
+        shared = PIEPER_CASES.get(seen["pieper_case"], "up to three joints")
         return Geometry("fewer than six joints", f"{solver.joint_types}, {shared}", False, 0.0, tested)
     family = FAMILIES[seen["family"]]
-    detail = FIRST_THREE[seen["first_three"]] if seen["family"] == 1 else PARALLEL[seen["family"]]
+    detail = PIEPER_CASES[seen["pieper_case"]] if seen["family"] == 1 else PARALLEL[seen["family"]]
     if seen["virtual_joints"]:
         detail += f"; completed to six by {seen['virtual_joints']} joints locked at zero"
     return Geometry(family, detail, bool(seen["reversed"]), float(seen["deviation"]), tested)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import InputError
-from cspace.math.wrapping import TURN, wrap_angle
+from cspace.math.wrapping import TURN, count_turns, turns_within, wrap_above, wrap_angle
 from cspace.tolerances import MOST_WINDINGS, ON_LIMIT
 
 Flags = npt.NDArray[np.bool_]
@@ -41,9 +41,7 @@ def copies_inside(q: Array, turns: Flags, lower: Array, upper: Array, wanted: Ar
     """Each joint value moved by a multiple of 2π, as near to `wanted` turns as the limits allow or `wanted`
     where no multiple is inside; a value beyond a limit by `slack` or less is set to it. All (n,) or alike.
     """
-    with np.errstate(invalid="ignore"):
-        least = np.ceil((lower - slack - q) / TURN)
-        most = np.floor((upper + slack - q) / TURN)
+    least, most = turns_within(q, q, lower - slack, upper + slack)
     taken = np.where(least <= most, np.clip(wanted, least, most), wanted)
     moved = q + np.where(turns, TURN * taken, 0.0)
     inside = np.clip(moved, lower, upper)
@@ -54,7 +52,7 @@ def nearest_winding(q: Array, seed: Array, kinds: Sequence[str], lower: Array, u
     """Each revolute joint moved by the multiple of 2π that brings it closest to the seed, of those that bring
     it inside its limits if there are any; a joint that rounding takes past a limit is set to it.
     """
-    wanted = np.round((seed - q) / TURN)
+    wanted = count_turns(seed - q)
     return copies_inside(q, revolute_joints(kinds), lower, upper, wanted, ON_LIMIT)
 
 
@@ -82,7 +80,7 @@ def measure_violations(
     joint = out[-1]
     below, above = lower[joint] - q[out], q[out] - upper[joint]
     with np.errstate(invalid="ignore"):  # of a limit at infinity, which is not the one that is broken
-        around = np.fmin(np.mod(below, TURN), np.mod(above, TURN))
+        around = np.fmin(wrap_above(below, 0.0), wrap_above(above, 0.0))
     excess[out] = np.where(revolute_joints(kinds)[joint], around, np.maximum(below, above))
     return excess
 
@@ -120,7 +118,7 @@ def joint_windings(angle: float, kind: str, lower: float, upper: float) -> tuple
     lower, upper = lower - ON_LIMIT, upper + ON_LIMIT
     if kind == "P":
         return angle, int(lower <= angle <= upper)
-    least, most = np.ceil((lower - angle) / TURN), np.floor((upper - angle) / TURN)
+    least, most = turns_within(angle, angle, lower, upper)
     if least > most:
         return angle, 0
     if not np.isfinite(most - least):

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
-from cspace.math.wrapping import TURN
+from cspace.math.wrapping import TURN, wrap_above
 from cspace.tolerances import SAME_PLACE, TANGENT_PLACE
 
 Flags = npt.NDArray[np.bool_]
@@ -63,8 +63,8 @@ def is_within(angle: Array, start: float, width: float) -> Flags:
     """Whether angles lie in a range modulo 2π; its ends count, up to rounding."""
     if width >= TURN:
         return np.ones(np.shape(angle), dtype=bool)
-    past = np.mod(angle - start + SAME_PLACE, TURN)
-    return np.asarray(past <= width + 2.0 * SAME_PLACE)
+    past = wrap_above(angle - start, -SAME_PLACE)
+    return np.asarray(past <= width + SAME_PLACE)
 
 
 def critical_arcs(arm: PlanarArm) -> list[Arc]:
@@ -139,7 +139,7 @@ def _reachable_by_more(arm: PlanarArm, rest: PlanarArm, circles: list[Arc], poin
         cosine = (abs(point) ** 2 + abs(center) ** 2 - arc.radius**2) / (2.0 * abs(point) * abs(center))
         if abs(cosine) <= 1.0:
             middle, opening = cmath.phase(point / center) - start, math.acos(cosine)
-            past = [(middle + turn) % TURN for turn in (opening, -opening)]
+            past = wrap_above(middle + np.array([opening, -opening]), 0.0)
             changes += [change for change in past if change < width]
     ordered = np.sort(np.array(changes))
     turns = start + (ordered[1:] + ordered[:-1]) / 2.0
@@ -195,7 +195,7 @@ def _split(arc: Arc, others: list[Arc]) -> list[tuple[float, float]]:
 
 def _onto(arc: Arc, angle: float) -> float:
     """The angle shifted by a multiple of 2π to the first value at or after the start of the arc."""
-    return float(arc.start + (angle - arc.start) % TURN)
+    return float(wrap_above(np.asarray(angle), arc.start))
 
 
 def _side(arm: PlanarArm, arc: Arc, angle: float) -> int:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cspace.arrays import Array, positive_number
-from cspace.math.wrapping import TURN
+from cspace.math.wrapping import wrap_above
 from cspace.tables import show_fields
 from cspace.tolerances import OFFSET_PIECE, OFFSET_SLACK
 
@@ -126,9 +126,9 @@ def _make_tracks(walls: list[Array], radius: float) -> _Tracks:
             rows.append((*(ring[k] + radius * normal[k]), *along[k], length, *nothing, np.nan))
             turn = along[k, 0] * along[f, 1] - along[k, 1] * along[f, 0]
             if turn < 0 or (turn == 0 and along[k] @ along[f] < 0):
-                sweep = float(np.arctan2(-turn, along[k] @ along[f]))
+                sweep = float(wrap_above(np.arctan2(-turn, along[k] @ along[f]), 0.0))
                 begin = float(np.arctan2(normal[k, 1], normal[k, 0]))
-                rows.append((*(after[k] + radius * normal[k]), *nothing, sweep % TURN, *after[k], begin))
+                rows.append((*(after[k] + radius * normal[k]), *nothing, sweep, *after[k], begin))
     table = np.array(rows, float).reshape(-1, 8)
     return _Tracks(table[:, :2], table[:, 2:4], table[:, 4], table[:, 5:7], table[:, 7])
 
@@ -172,7 +172,7 @@ def _find_cuts(tracks: _Tracks, k: int, radius: float) -> Array:
         )
         meets = [feet + half[:, None] * u, feet - half[:, None] * u, off / 2 + high, off / 2 - high]
         at = np.vstack(meets)
-        turn = (tracks.angle[k] - np.arctan2(at[:, 1], at[:, 0])) % TURN
+        turn = wrap_above(tracks.angle[k] - np.arctan2(at[:, 1], at[:, 0]), 0.0)
         return np.asarray(turn[np.isfinite(turn) & (turn < tracks.size[k])])
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, name_type
-from cspace.math.wrapping import TURN
+from cspace.math.wrapping import TURN, turns_within, wrap_above
 from cspace.planning import ConfigurationSpace, Projection, Slice
 from cspace.plot import colors
 from cspace.plot.axes import PLACE, draw_lines, draw_polygons, flat_axes, need_matplotlib, write_title
@@ -196,7 +196,7 @@ def round_outline(corners: Array, radius: float) -> Array:
         arcs = [np.arange(0.0, TURN, ARC_STEP)]
     else:
         entering = np.roll(leaving, 1)
-        turns = np.mod(leaving - entering, TURN)
+        turns = wrap_above(leaving - entering, 0.0)
         arcs = [a + np.linspace(0.0, t, 2 + int(t / ARC_STEP)) for a, t in zip(entering, turns, strict=True)]
     return np.vstack(
         [p + radius * np.column_stack([np.cos(a), np.sin(a)]) for p, a in zip(corners, arcs, strict=True)]
@@ -208,8 +208,7 @@ def copies_of(space: ConfigurationSpace | Slice | Projection, curves: list[Array
     found = []
     for curve in curves:
         low, high = curve.min(axis=0), curve.max(axis=0)
-        first = np.where(space.wraps, np.ceil((space.lower - high) / TURN), 0.0)
-        last = np.where(space.wraps, np.floor((space.upper - low) / TURN), 0.0)
+        first, last = np.where(space.wraps, turns_within(high, low, space.lower, space.upper), 0.0)
         for i in np.arange(first[0], last[0] + 1.0):
             for j in np.arange(first[1], last[1] + 1.0):
                 found.append(curve + TURN * np.array([i, j]))
@@ -218,7 +217,7 @@ def copies_of(space: ConfigurationSpace | Slice | Projection, curves: list[Array
 
 def wrap_into(space: ConfigurationSpace | Slice | Projection, q: Array) -> Array:
     """The copy of a configuration that lies in the picture."""
-    return np.where(space.wraps, space.lower + np.mod(q - space.lower, TURN), q)
+    return np.where(space.wraps, wrap_above(q, space.lower), q)
 
 
 def mark_angles(axis: Any, low: float, high: float) -> None:

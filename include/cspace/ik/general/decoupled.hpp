@@ -27,7 +27,7 @@ struct TurnedTwice {
 };
 
 struct PositionFirst {
-    bool serves = false;
+    bool applies = false;
     bool backwards = false;  // the wrist is at the base
     Chain arm;               // all six joints, read so that the wrist comes last
     Chain first;             // three of them, up to the wrist's centre
@@ -102,7 +102,7 @@ inline PositionFirst position_first(const Chain& six) {
         out.arm = backwards ? reverse_chain(six) : six;
         Vec3d centre;
         if (!slides || !wrist_centre(out.arm, centre)) continue;
-        out.serves = true;
+        out.applies = true;
         out.first = out.arm;
         out.first.n = 3;
         out.first.tip = {identity_pose().R, centre};

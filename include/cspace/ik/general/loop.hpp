@@ -44,12 +44,12 @@ struct GeneralPlan {
     // Whether by the arm's nature solutions share the hidden angle.
     bool paired[formulations] = {};
     // Hidden angles where each has roots whatever the goal, and the arm nothing: how many, and which.
-    static constexpr int most_ghosts = 4;
+    static constexpr int most_spurious = 4;
     int spurious_roots[formulations] = {};
-    double spurious[formulations * most_ghosts] = {};
+    double spurious[formulations * most_spurious] = {};
 };
 
-// The plan of an arm, and where it cannot serve alone those of two neighbours (perturbed_arms.hpp).
+// The plan of an arm, and where it does not suffice alone those of two neighbours (perturbed_arms.hpp).
 struct GeneralArm {
     Chain chain;       // the arm as given, of up to six joints
     GeneralPlan plan;  // virtual joints behind its own complete it to six (virtual_joints.hpp)

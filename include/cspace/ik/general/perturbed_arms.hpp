@@ -35,7 +35,7 @@ inline void forget_spurious_roots(GeneralPlan& plan) {
     for (int& count : plan.spurious_roots) count = 0;
 }
 
-// What serves the one serves the other.
+// What suffices for one suffices for the other.
 inline void make_perturbed_arms(GeneralArm& arm) {
     make_general_plan(perturb_chain(arm.plan.chain, disturbance), arm.perturbed[0]);
     arm.perturbed[1] = arm.perturbed[0];
@@ -160,7 +160,7 @@ inline void solve_tilted(const GeneralPlan& plan, const Posed& goal, const Tried
 }
 
 // Whether the arm's own plan does well on its poses.
-inline bool serves_alone(const GeneralPlan& plan) {
+inline bool suffices_alone(const GeneralPlan& plan) {
     constexpr int poses = 24, light = 70;
     int doubtful = 0, work = 0;
     for (int k = 0; k < poses && doubtful < 2 && work <= light * poses; ++k) {
@@ -172,11 +172,11 @@ inline bool serves_alone(const GeneralPlan& plan) {
 }
 
 // Whether it does with one of the best formulations asked first: their prices come of few poses.
-inline bool serves_in_some_order(GeneralPlan& plan) {
+inline bool suffices_in_some_order(GeneralPlan& plan) {
     constexpr int best = 3;
     for (int k = 0; k < best && (k == 0 || k < plan.regular); ++k) {
         std::swap(plan.order[0], plan.order[k]);
-        if (serves_alone(plan)) return true;
+        if (suffices_alone(plan)) return true;
         std::swap(plan.order[0], plan.order[k]);
     }
     return false;
@@ -190,7 +190,7 @@ inline void solve_with_wrist(const GeneralArm& arm, const Posed& goal, Solutions
 }
 
 inline void solve_general(const GeneralArm& arm, const Posed& goal, Solutions& out) {
-    if (arm.position_first.serves) return solve_with_wrist(arm, goal, out);
+    if (arm.position_first.applies) return solve_with_wrist(arm, goal, out);
     if (arm.has_perturbed) solve_perturbed(arm, goal, out);
     if (arm.has_perturbed && out.complete) return;
     Tried tried_all;
@@ -202,7 +202,7 @@ inline void solve_general(const GeneralArm& arm, const Posed& goal, Solutions& o
 // other goals.
 inline void propose_solutions(const GeneralArm& arm, const Posed& goal, Solutions& out) {
     constexpr int best = 3;
-    if (arm.position_first.serves) return solve_with_wrist(arm, goal, out);
+    if (arm.position_first.applies) return solve_with_wrist(arm, goal, out);
     if (arm.has_perturbed) return solve_perturbed(arm, goal, out);
     solve_by_plan(arm.plan, goal, out, best);
 }

@@ -1,5 +1,5 @@
-// Which formulations of the loop serve an arm, and in what order; and all solutions of a goal by as many of
-// them as it takes.
+// Which formulations of the loop apply to an arm, and in what order; and all solutions of a goal by as many
+// of them as it takes.
 #pragma once
 
 #include <initializer_list>
@@ -213,7 +213,7 @@ inline void rank_formulations(const FormulationTrial (&trial)[formulations], Gen
 
 // The hidden angles of a formulation at which it has roots for each of three goals: factors that come of axes
 // almost parallel or almost meeting, where no solution need be.
-inline void find_ghosts(const Posed* goal, int number, GeneralPlan& plan) {
+inline void find_spurious_roots(const Posed* goal, int number, GeneralPlan& plan) {
     constexpr double fine = 1e-8, same = 1e-7;
     if (plan.slides == 2) return;
     HiddenAngles hidden[3];
@@ -229,10 +229,10 @@ inline void find_ghosts(const Posed* goal, int number, GeneralPlan& plan) {
         return false;
     };
     int& spurious_roots = plan.spurious_roots[number];
-    for (int j = 0; j < hidden[0].count && spurious_roots < GeneralPlan::most_ghosts; ++j) {
+    for (int j = 0; j < hidden[0].count && spurious_roots < GeneralPlan::most_spurious; ++j) {
         const HiddenAngle& root = hidden[0].root[j];
         if (has(hidden[1], root) && has(hidden[2], root))
-            plan.spurious[number * GeneralPlan::most_ghosts + spurious_roots++] = root.angle;
+            plan.spurious[number * GeneralPlan::most_spurious + spurious_roots++] = root.angle;
     }
 }
 
@@ -255,7 +255,7 @@ inline void make_general_plan(const Chain& chain, GeneralPlan& plan) {
     for (int k = 0; k < best && k < plan.regular; ++k)
         try_formulation(plan, goal, FormulationTrial::most_poses, plan.order[k], trial[plan.order[k]]);
     rank_formulations(trial, plan);
-    for (int k = 0; k < plan.regular; ++k) find_ghosts(goal, plan.order[k], plan);
+    for (int k = 0; k < plan.regular; ++k) find_spurious_roots(goal, plan.order[k], plan);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

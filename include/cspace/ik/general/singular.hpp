@@ -83,7 +83,7 @@ inline void look_at_perturbed_goals(const GeneralArm& arm, const Chain& chain, c
     if (search_perturbed_goals(chain, goal, 1, propose, out, &met, certain && out.count == 0))
         out.complete = false;
     // A wrist's list is complete but where solutions merge or joints are free, which goals nearby show.
-    if (certain && there == 0 && arm.position_first.serves) return;
+    if (certain && there == 0 && arm.position_first.applies) return;
     // Self-motions attract whatever comes down near them.
     const int starts = out.count || certain ? 16 : 48;
     if (out.count == 0 || !certain) search_by_descent(chain, goal, 1, starts, out, max_solutions, &met);

@@ -230,8 +230,8 @@ inline bool follow_angles(const Loop& loop, const Elimination& e, const HiddenAn
 }
 
 // Of roots that are there for every goal no solutions are expected.
-inline void expect_no_ghosts(const GeneralPlan& plan, int number, HiddenAngles& hidden) {
-    const double* const angles = plan.spurious + number * GeneralPlan::most_ghosts;
+inline void expect_no_spurious_roots(const GeneralPlan& plan, int number, HiddenAngles& hidden) {
+    const double* const angles = plan.spurious + number * GeneralPlan::most_spurious;
     for (int k = 0; k < hidden.count; ++k) {
         HiddenAngle& root = hidden.root[k];
         const double spread = root.order > 2 ? order_seen : as_isolated;  // of several on one place
@@ -254,7 +254,7 @@ inline Certificate solve_by_hidden_angle(const GeneralPlan& plan, const Posed& g
     seen.sign = loop.sign;
     seen.work = hidden.evaluations;
     if (hidden.alias > regular_alias) return seen;
-    expect_no_ghosts(plan, number, hidden);
+    expect_no_spurious_roots(plan, number, hidden);
     bool close[max_roots], folds = false;
     seen.clusters = mark_close(hidden, close);
     for (int k = 0; k < hidden.count; ++k) folds |= hidden.root[k].width > 0;

@@ -47,7 +47,8 @@ inline bool with_virtual_wrist(const Chain& chain, Chain& best) {
     }
     if (chain.n == 5) six.axis[5] = cross(chain.axis[3], last);
     six.axis[5] = (1 / norm(six.axis[5])) * six.axis[5];
-    if (!position_first(six).serves || !(completed_conditioning(six, chain.n) > regular_enough)) return false;
+    if (!position_first(six).applies || !(completed_conditioning(six, chain.n) > regular_enough))
+        return false;
     best = six;
     return true;
 }
@@ -89,13 +90,13 @@ CSPACE_ONCE bool make_general_arm(const Chain& chain, GeneralArm& arm) {
     arm.plan.chain = six;
     if (is_always_singular(six, 1, tolerance::axis_relation)) return false;
     arm.position_first = position_first(six);
-    if (arm.position_first.serves)
+    if (arm.position_first.applies)
         describe_formulation(six, arm.plan);
     else
         make_general_plan(six, arm.plan);
     arm.plan.length = length;
-    if (arm.position_first.serves) return true;
-    if (!alone && !serves_in_some_order(arm.plan)) make_perturbed_arms(arm);
+    if (arm.position_first.applies) return true;
+    if (!alone && !suffices_in_some_order(arm.plan)) make_perturbed_arms(arm);
     return arm.plan.regular > 0 || arm.has_perturbed;
 }
 

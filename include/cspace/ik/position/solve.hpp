@@ -123,7 +123,7 @@ void find_solutions(const Chain& chain, const Vec3d& goal, bool measure_miss, Po
     const double size = scale.size;
     const TipGap<n> g = tip_gap<n>(chain, goal, scale);
     add_candidates(g, found);
-    if (found.count == 0 && measure_miss) found.out_of_reach = size * nearest_configuration(g, found.nearest);
+    if (found.count == 0 && measure_miss) found.out_of_reach = size * minimize_tip_gap(g, found.nearest);
     for (int i = 0; i < n; ++i) {
         if (!g.prismatic[i]) continue;
         found.nearest[i] *= size;

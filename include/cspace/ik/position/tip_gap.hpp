@@ -132,7 +132,7 @@ double follow(const TipGap<n>& g, int dimension, double* q) {
 }  // namespace nearest
 
 template <int n>
-double nearest_configuration(const TipGap<n>& g, double* q) {
+double minimize_tip_gap(const TipGap<n>& g, double* q) {
     int swept[2];
     const int dimension = nearest::swept_joints(g, swept);
     const auto angle = [](int step) { return 2 * pi * (step + 0.37) / sweep_steps - pi; };

@@ -69,7 +69,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
     record_point(tracer, at.q, true);
     for (int k = 0; k < most_steps; ++k) {
         CurvePoint next;
-        if (!step_along(tracer, at, ahead, stride, next)) return ArcEnd::lost;
+        if (!step_along_arc(tracer, at, ahead, stride, next)) return ArcEnd::lost;
         int side = 0, stop = stop_at_limit(tracer, at, next, side);
         if (stop_between_turns(tracer, at, next)) stop = -1;
         if (at.tangent[p] * next.tangent[p] < 0 &&

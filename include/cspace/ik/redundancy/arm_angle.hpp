@@ -17,7 +17,7 @@
 namespace cspace::ik {
 
 struct SwivelArm {
-    bool serves = false;
+    bool applies = false;
     Chain chain;
     Vec3d shoulder, elbow, wrist;  // S, E, W at zero, in base
     Vec3d tip_to_wrist;            // W in the tip
@@ -65,7 +65,7 @@ inline Vec3d meeting_of(const Chain& chain, int first, double& away) {
     return meeting;
 }
 
-// Sets `serves` where the axes meet to rounding. On an arm that is only approximately S-R-S a swivel is not
+// Sets `applies` where the axes meet to rounding. On an arm that is only approximately S-R-S a swivel is not
 // exact.
 inline SwivelArm make_swivel_arm(const Chain& chain) {
     constexpr double meets = 1e-12, crosses = 1e-3;
@@ -87,7 +87,7 @@ inline SwivelArm make_swivel_arm(const Chain& chain) {
     for (const int i : {0, 1, 4, 5}) turns = turns && norm(cross(chain.axis[i], chain.axis[i + 1])) > crosses;
     const Vec3d upper = arm.shoulder - arm.elbow, fore = arm.wrist - arm.elbow;
     const bool bends = norm(upper) > crosses * arm.length && norm(cross(fore, h4)) > crosses * arm.length;
-    arm.serves = turns && bends && off[0] <= meets * arm.length && off[1] <= meets * arm.length;
+    arm.applies = turns && bends && off[0] <= meets * arm.length && off[1] <= meets * arm.length;
     return arm;
 }
 
@@ -95,18 +95,18 @@ inline SwivelArm make_swivel_arm(const Chain& chain) {
 // about h3 determines q3.
 template <class V>
 CSPACE_INLINE SphericalTurns<V> three_turns(const Vec3d* axis, const Mat3<V>& R) {
-    const Care care;
+    const ClosedFormSettings settings;
     const Vec3d along = dot(axis[1], axis[2]) * axis[1];  // the part of h3 that q2 does not change
     const Vec3d lean = axis[2] - along, turned = cross(axis[1], axis[2]);
     const Vec3<V> goal = R * fill_vec3<V>(axis[2]);
     const TwoAngles<V> middle =
         linear_equation<V>(fill_lanes<V>(dot(axis[0], lean)), fill_lanes<V>(dot(axis[0], turned)),
-                           dot(fill_vec3<V>(axis[0]), goal) - dot(axis[0], along), 1.0, care, {1, 0});
+                           dot(fill_vec3<V>(axis[0]), goal) - dot(axis[0], along), 1.0, settings, {1, 0});
     SphericalTurns<V> out;
     out.ok = middle.ok;
     for (int k = 0; k < 2; ++k) {
         out.turn[k][1] = middle.root[k];
-        outer_turns(axis, middle.root[k], R, care.free, out.turn[k][0], out.turn[k][2]);
+        outer_turns(axis, middle.root[k], R, settings.free, out.turn[k][0], out.turn[k][2]);
     }
     return out;
 }
@@ -140,8 +140,9 @@ CSPACE_NOINLINE void solve_swivel(const SwivelArm& arm, const Posed& goal, V swi
     // |upper + e^{h4 q4} fore|² = |w|²
     const Vec3d along = dot(h4, fore) * h4, lean = fore - along;
     const double r = 0.5 * (dot(w, w) - dot(upper, upper) - dot(fore, fore)) - dot(upper, along);
-    const TwoAngles<double> bend = linear_equation<double>(dot(upper, lean), dot(upper, cross(h4, fore)), r,
-                                                           arm.length * arm.length, Care{}, {1, 0});
+    const TwoAngles<double> bend =
+        linear_equation<double>(dot(upper, lean), dot(upper, cross(h4, fore)), r, arm.length * arm.length,
+                                ClosedFormSettings{}, {1, 0});
     const bool reaches = bend.ok && norm(w) > tolerance::free_joint * arm.length;
     const Vec3d zero = reaches ? swivel_zero(arm, w) : Vec3d{1, 0, 0};
     const Vec3d n = reaches ? (1 / norm(w)) * w : Vec3d{0, 0, 1};

@@ -52,7 +52,7 @@ inline void put_on_curve(const Tracer& tracer, CurvePoint& at) {
     }
 }
 // Position of a solution on the chord of a step, from 0 to 1; −1 if it is off the chord. A chord deviates
-// from the curve by less than the width of the tube, and no other arc enters the tube: see step_along.
+// from the curve by less than the width of the tube, and no other arc enters the tube: see step_along_arc.
 inline double part_of_chord(const Chain& chain, const double* from, const double* to, const double* q) {
     constexpr double tube = 0.06;
     constexpr double rounding = 1e-9;  // of a share of the chord
@@ -138,8 +138,8 @@ inline bool try_step(const Tracer& tracer, const CurvePoint& from, const Ahead& 
 // One step. It is shortened until it stays close to the curve and the Jacobian changes little, so that two
 // arcs that nearly cross are distinguished. At a crossing the step continues straight to the far side.
 // Returns false where the curve cannot be followed.
-inline bool step_along(const Tracer& tracer, const CurvePoint& from, Ahead& ahead, double& stride,
-                       CurvePoint& to) {
+inline bool step_along_arc(const Tracer& tracer, const CurvePoint& from, Ahead& ahead, double& stride,
+                           CurvePoint& to) {
     constexpr double shortest = 1e-7, crossing = 1e-5, most_change = 0.5;
     constexpr double straight = 1e-3;  // a bend this small restrains no step
     const int n = tracer.arm->chain.n;

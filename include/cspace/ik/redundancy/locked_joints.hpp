@@ -100,7 +100,7 @@ CSPACE_ONCE Solutions solve_arm_quickly(const Arm& arm, const Posed& goal) {
     if (arm.has_plan) {
         double T[16], q[max_branches * 6];
         kinematics::write_matrix(goal, T);
-        if (solve_quickly(arm.plan, T, q, out.branch, &out.count) == FastPath::settled) {
+        if (solve_fast_path(arm.plan, T, q, out.branch, &out.count) == FastPath::settled) {
             out.status = out.count ? Status::exact : Status::unreachable;
             for (int k = 0; k < out.count; ++k) {
                 for (int i = 0; i < 6; ++i) out.q[k][i] = q[6 * k + i];

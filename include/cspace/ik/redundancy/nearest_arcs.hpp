@@ -190,7 +190,7 @@ CSPACE_INLINE void look_ahead(ArcLanes<V>& arcs, int size, mask_of<V> moved) {
     }
 }
 
-// Tries a step of every lane. Returns the lanes in which it stayed close to the arc, as in step_along;
+// Tries a step of every lane. Returns the lanes in which it stayed close to the arc, as in step_along_arc;
 // factor: of the next strides, at most, by how the Jacobian changed.
 template <int N, class V>
 CSPACE_INLINE mask_of<V> try_steps(const ArcSearch& search, const Pose<V>& goal, ArcLanes<V>& arcs,

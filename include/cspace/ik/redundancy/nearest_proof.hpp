@@ -18,23 +18,23 @@
 
 namespace cspace::ik {
 
-// The kinematics of the two halves of an arm at a configuration, one half per lane; joints as in Halves.
-struct HalvesMotion {
+// The kinematics of the two halves of an arm at a configuration, one half per lane; joints as in SplitChain.
+struct SplitChainMotion {
     using V = Pack<2>;
-    Vec3<V> axis[Halves::longest], linear[Halves::longest];  // of each joint, at the middle
-    double error[6];                                         // what is missing between the frames
+    Vec3<V> axis[SplitChain::longest], linear[SplitChain::longest];  // of each joint, at the middle
+    double error[6];                                                 // what is missing between the frames
     double aligned;  // trace of the rotation between them: 3 at the goal
 };
 
 // 1 − φ″ or its factors as of factor_ldl, one block per half; the upper triangle counts.
-using HalvesMatrix = Pack<2>[Halves::longest][Halves::longest];
+using SplitChainMatrix = Pack<2>[SplitChain::longest][SplitChain::longest];
 
-// An iterate of Newton's method; joints as in Halves.
-struct HalvesPoint {
+// An iterate of Newton's method; joints as in SplitChain.
+struct SplitChainPoint {
     using V = Pack<2>;
-    V q[Halves::longest], gap[Halves::longest];  // gap: from the seed
+    V q[SplitChain::longest], gap[SplitChain::longest];  // gap: from the seed
     double lambda[6] = {};
-    HalvesMatrix bent;  // 1 − φ″ before the last step
+    SplitChainMatrix bent;  // 1 − φ″ before the last step
 };
 
 }  // namespace cspace::ik
@@ -67,7 +67,7 @@ CSPACE_INLINE V there_and_back() {
 
 // Sines and cosines of all joints, in two packs of four angles.
 template <class V>
-CSPACE_INLINE void turns_of(const Halves& arm, const V* q, V* s, V* c) {
+CSPACE_INLINE void turns_of(const SplitChain& arm, const V* q, V* s, V* c) {
     double angle[8], sine[8], cosine[8];
     for (int k = 0; k < 4; ++k) store_lanes(angle + 2 * k, load_lanes<V>(arm.turning[k]) * q[k]);
     for (int k = 0; k < 8; k += 4) {
@@ -82,8 +82,8 @@ CSPACE_INLINE void turns_of(const Halves& arm, const V* q, V* s, V* c) {
     }
 }
 
-CSPACE_INLINE void move_halves(const Halves& arm, const Posed& goal, double per_length, const Pack<2>* q,
-                               HalvesMotion& out) {
+CSPACE_INLINE void move_split_chain(const SplitChain& arm, const Posed& goal, double per_length,
+                                    const Pack<2>* q, SplitChainMotion& out) {
     using V = Pack<2>;
     V s[4], c[4];
     turns_of(arm, q, s, c);
@@ -122,7 +122,8 @@ CSPACE_INLINE void move_halves(const Halves& arm, const Posed& goal, double per_
 // 1 − φ″ for the weights lambda. The entry of joints a ≤ b of a half, with a the one farther from the middle,
 // is force · (axis a × linear b) + ½ moment · (axis a × axis b). For the half that moves against its joints a
 // and b are exchanged.
-CSPACE_INLINE void bend_halves(const HalvesMotion& motion, const double* lambda, HalvesMatrix& bent) {
+CSPACE_INLINE void bend_split_chain(const SplitChainMotion& motion, const double* lambda,
+                                    SplitChainMatrix& bent) {
     using V = Pack<2>;
     const V way = there_and_back<V>();
     const Vec3<V> force = {lambda[0] * way, lambda[1] * way, lambda[2] * way};
@@ -137,7 +138,8 @@ CSPACE_INLINE void bend_halves(const HalvesMotion& motion, const double* lambda,
 }
 
 // The factors of `bent` minus `less` on the diagonal; false unless it is positive definite by `margin`.
-CSPACE_INLINE bool factor_halves(const HalvesMatrix& bent, double less, double margin, HalvesMatrix& out) {
+CSPACE_INLINE bool factor_split_chain(const SplitChainMatrix& bent, double less, double margin,
+                                      SplitChainMatrix& out) {
     for (int a = 0; a < 4; ++a)
         for (int b = a; b < 4; ++b) out[a][b] = a == b ? bent[a][a] - less : bent[a][b];
     return all(factor_ldl(out, 4, margin));
@@ -145,15 +147,15 @@ CSPACE_INLINE bool factor_halves(const HalvesMatrix& bent, double less, double m
 
 // One Newton step for the nearest point and its weights. Returns the largest joint change of the full step,
 // and NaN where no such step exists.
-CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
+CSPACE_INLINE double step_split_chain(const SplitChainMotion& motion, SplitChainPoint& at) {
     using V = Pack<2>;
     constexpr double flat = 0.05;
-    HalvesMatrix factor;
-    bend_halves(motion, at.lambda, at.bent);
-    if (!factor_halves(at.bent, 0, flat, factor)) {
+    SplitChainMatrix factor;
+    bend_split_chain(motion, at.lambda, at.bent);
+    if (!factor_split_chain(at.bent, 0, flat, factor)) {
         for (int a = 0; a < 4; ++a)
             for (int b = a; b < 4; ++b) at.bent[a][b] = fill_lanes<V>(a == b);
-        factor_halves(at.bent, 0, flat, factor);
+        factor_split_chain(at.bent, 0, flat, factor);
     }
     // With y = L⁻¹ [Jᵀ, gap]: J (1 − φ″)⁻¹ Jᵀ λ = error + J (1 − φ″)⁻¹ gap.
     V y[4][7], scaled[4][7], sum[6][7];
@@ -188,9 +190,9 @@ CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
     return max(get_lane(largest, 0), get_lane(largest, 1));
 }
 
-// Whether no solution is nearer to the seed than this point. Third derivatives: see halves_at. The bound
+// Whether no solution is nearer to the seed than this point. Third derivatives: see split_chain_at. The bound
 // allows for a prismatic joint as far out as at the seed and beyond.
-CSPACE_INLINE bool is_proven_nearest(const Halves& arm, const HalvesPoint& at) {
+CSPACE_INLINE bool is_proven_nearest(const SplitChain& arm, const SplitChainPoint& at) {
     using V = Pack<2>;
     constexpr double margin = 0.02;  // what the last step, and rounding, may change
     V square = fill_lanes<V>(0.0);
@@ -203,11 +205,11 @@ CSPACE_INLINE bool is_proven_nearest(const Halves& arm, const HalvesPoint& at) {
         reach = reach + load_lanes<V>(arm.slid[k]) * (abs(at.q[k]) + 2 * distance);
     const V third = force * reach + moment * load_lanes<V>(arm.turn);
     const double most = max(get_lane(third, 0), get_lane(third, 1));
-    HalvesMatrix factor;
-    return factor_halves(at.bent, most * distance * (2.0 / 3.0) + margin, 0, factor);
+    SplitChainMatrix factor;
+    return factor_split_chain(at.bent, most * distance * (2.0 / 3.0) + margin, 0, factor);
 }
 
-CSPACE_INLINE void put_joints(const Halves& arm, const HalvesPoint& at, double* q) {
+CSPACE_INLINE void put_joints(const SplitChain& arm, const SplitChainPoint& at, double* q) {
     for (int k = 0; k < 4; ++k)
         for (int half = 0; half < 2; ++half)
             if (arm.joint[k][half] >= 0) q[arm.joint[k][half]] = get_lane(at.q[k], half);
@@ -215,34 +217,34 @@ CSPACE_INLINE void put_joints(const Halves& arm, const HalvesPoint& at, double* 
 
 // Newton's method from a seed close to the manifold, and the proof; false if either fails. All joints must
 // have the same weight.
-CSPACE_INLINE bool nearest_by_proof(const Halves& arm, const Posed& goal, double length, const double* seed,
-                                    double* q) {
+CSPACE_INLINE bool nearest_by_proof(const SplitChain& arm, const Posed& goal, double length,
+                                    const double* seed, double* q) {
     using V = Pack<2>;
     constexpr double close = 0.25, settled = 1e-6, left = 1e-10, there = 1e-14;
     constexpr int most_steps = 7;
-    HalvesPoint at;
+    SplitChainPoint at;
     for (int k = 0; k < 4; ++k) {
         at.gap[k] = at.q[k] = fill_lanes<V>(0.0);
         for (int half = 0; half < 2; ++half)
             if (arm.joint[k][half] >= 0) set_lane(at.q[k], half, seed[arm.joint[k][half]]);
     }
-    HalvesMotion motion;
+    SplitChainMotion motion;
     bool done = false;
     double before = 1;
     for (int k = 0; k < most_steps && !done; ++k) {
-        move_halves(arm, goal, 1 / length, at.q, motion);
+        move_split_chain(arm, goal, 1 / length, at.q, motion);
         if (!(motion.aligned > 2)) return false;
         if (k == 0 && largest_of(motion.error, 6) < there) {
             put_joints(arm, at, q);  // the seed itself
             return true;
         }
-        const double largest = step_halves(motion, at);
+        const double largest = step_split_chain(motion, at);
         if (!(largest < close)) return false;
         done = largest <= settled && largest * largest <= left * before;  // each step is less of the last one
         before = largest;
     }
     if (!done || !is_proven_nearest(arm, at)) return false;
-    move_halves(arm, goal, 1 / length, at.q, motion);
+    move_split_chain(arm, goal, 1 / length, at.q, motion);
     put_joints(arm, at, q);
     return largest_of(motion.error, 6) < tolerance::reached && motion.aligned > 2;
 }

@@ -138,7 +138,7 @@ inline bool search_nearest(const Redundant& arm, const Posed& goal, const Target
 
 // The nearest of all configurations, limits aside, where one close to the seed is proven to be it.
 inline bool nearest_proven(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
-    if (!arm.halves.exist || !nearest_by_proof(arm.halves, goal, arm.length, seed, q)) return false;
+    if (!arm.split_chain.exist || !nearest_by_proof(arm.split_chain, goal, arm.length, seed, q)) return false;
     for (int i = 0; i < arm.chain.n; ++i) q[i] = wrap_joint(arm.chain, i, q[i]);
     return true;
 }

@@ -26,14 +26,13 @@ struct Redundant {
     int rank = 6;                                 // of the Jacobian where nothing special happens
     int redundancy_degree = 0;                    // how many joints are held: n − rank
     LockedArm locked;                             // with the default choice of them
-    Halves halves;  // where all joints count alike and none is missing to rank 6
+    SplitChain split_chain;  // where all joints count alike and none is missing to rank 6
 };
 
 // Whether the limits can stop a joint. A revolute joint with a range of 2π or more is never stopped.
 inline bool is_stopped(const Redundant& arm, int i) {
-    constexpr double turn = 6.283185307179586;
     if (arm.chain.prismatic[i]) return std::isfinite(arm.lower[i]) || std::isfinite(arm.upper[i]);
-    return arm.upper[i] - arm.lower[i] < turn;
+    return arm.upper[i] - arm.lower[i] < 2 * pi;
 }
 
 }  // namespace cspace::ik
@@ -283,7 +282,7 @@ CSPACE_ONCE Redundant make_redundant(const Chain& chain, const double* lower, co
     if (arm.redundancy_degree) choose_locks(arm);
     bool alike = arm.rank == 6;
     for (int i = 0; i < chain.n; ++i) alike = alike && weight[i] == 1;
-    if (alike) arm.halves = make_halves(chain, arm.length);
+    if (alike) arm.split_chain = make_split_chain(chain, arm.length);
     return arm;
 }
 

@@ -15,7 +15,7 @@ namespace cspace::ik {
 // Lengths are divided by the size of the arm. Lane 0: the joints from the base to the middle. Lane 1: the
 // joints from the tip back, with the opposite sense. A joint rotates about (translates along) the z axis of
 // its frame.
-struct Halves {
+struct SplitChain {
     static constexpr int longest = 4;
     bool exist = false;                              // for arms of up to eight joints
     bool slides = false;                             // whether any joint does
@@ -38,13 +38,13 @@ inline double to_the_three_halves(int k) { return k * std::sqrt(double(k)); }
 // length: size of the arm. The point of each joint is the nearest of its axis to the next one towards the
 // middle, which gives good bounds of the third derivatives. Each is at most the cube of all angles before a
 // link times the length of the link: (Σ |x_j|)³ ≤ k^(3/2) |x|³ for k of them.
-inline Halves halves_at(const Chain& chain, double length, int front, const Vec3d& c) {
-    Halves out;
+inline SplitChain split_chain_at(const Chain& chain, double length, int front, const Vec3d& c) {
+    SplitChain out;
     out.exist = true;
     const Mat3d last[2] = {frame_along(chain.axis[front - 1]), frame_along(chain.axis[front])};
     for (int half = 0; half < 2; ++half) {
         const int count = half ? chain.n - front : front;
-        Vec3d point[Halves::longest];
+        Vec3d point[SplitChain::longest];
         Vec3d next = c;
         out.reach[half] = 0;
         out.turn[half] = to_the_three_halves(count);
@@ -58,7 +58,7 @@ inline Halves halves_at(const Chain& chain, double length, int front, const Vec3
             next = point[k];
         }
         Posed before = half ? chain.tip : identity_pose();
-        for (int k = 0; k < Halves::longest; ++k) {
+        for (int k = 0; k < SplitChain::longest; ++k) {
             const int i = half ? chain.n - 1 - k : k;
             const bool real = k < count;
             const Posed now = real ? Posed{frame_along(chain.axis[i]), point[k]} : before;
@@ -83,9 +83,9 @@ inline Halves halves_at(const Chain& chain, double length, int front, const Vec3
 }
 
 // Divides where the bounds are smallest, at a point of one of the axes next to the division.
-inline Halves make_halves(const Chain& chain, double length) {
-    constexpr int longest = Halves::longest;
-    Halves best;
+inline SplitChain make_split_chain(const Chain& chain, double length) {
+    constexpr int longest = SplitChain::longest;
+    SplitChain best;
     if (chain.n < 2 || chain.n > 2 * longest) return best;
     double least = std::numeric_limits<double>::infinity();
     for (int front = std::max(1, chain.n - longest); front <= std::min(longest, chain.n - 1); ++front)
@@ -93,7 +93,7 @@ inline Halves make_halves(const Chain& chain, double length) {
             for (int i = 0; i < chain.n; ++i) {
                 const Vec3d h = chain.axis[beside], p = chain.point[beside];
                 const Vec3d c = p + dot(h, chain.point[i] - p) * h;
-                const Halves found = halves_at(chain, length, front, c);
+                const SplitChain found = split_chain_at(chain, length, front, c);
                 const double most = max(found.reach[0], found.reach[1]);
                 if (!(most < least)) continue;
                 least = most;

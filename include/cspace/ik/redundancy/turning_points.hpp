@@ -143,7 +143,7 @@ CSPACE_NOINLINE void branches_at(const Sweep& sweep, V value, Branches<V>& b) {
     const Plan& plan = sweep.locked->arm.plan;
     V c, s;
     value_on_circle(sweep.in_form, value, c, s);
-    b = closed_form(plan, goal_at(sweep.in_form, c, s), care_of(plan));
+    b = closed_form(plan, goal_at(sweep.in_form, c, s), closed_form_settings(plan));
     for (int k = 0; k < max_branches; ++k) {
         V angles[6];
         for (int i = 0; i < 6; ++i) angles[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
@@ -238,9 +238,9 @@ inline void add_true_folds(const Redundant& arm, const Sweep& sweep, double valu
     constexpr double around_fold = 1e-3;  // of a square root's argument: as far as an idealised form is off
     const Plan& plan = sweep.locked->arm.plan;
     const Posed goal = goal_at(sweep.in_form, std::cos(value), std::sin(value));
-    Care care = care_of(plan);
-    care.band = around_fold;
-    const Branches<double> b = solve_closed_form(plan, goal, care);
+    ClosedFormSettings settings = closed_form_settings(plan);
+    settings.band = around_fold;
+    const Branches<double> b = solve_closed_form(plan, goal, settings);
     for (int k = 0; k < max_branches; ++k) {
         if (!b.ok[k]) continue;
         CurvePoint at;
@@ -289,7 +289,7 @@ CSPACE_ONCE FoldValues fold_values(const Redundant& whole, const Sweep& sweep) {
     if (!sweep.on_lanes || sweep.in_form.slides) return out;
     const Plan& plan = sweep.locked->arm.plan;
     const SphericalWrist& arm = plan.wrist;
-    if (plan.family != Family::spherical_wrist || arm.first.kind != FirstThree::first_meet ||
+    if (plan.family != Family::spherical_wrist || arm.first.kind != PieperCase::first_meet ||
         !has_square_wrist(arm.last))
         return out;
     out.exact = true;

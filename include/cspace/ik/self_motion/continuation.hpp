@@ -176,9 +176,9 @@ struct CurveBend {
 
 // One step of length h from q along its tangent; `at` belongs to q, then to the end. False if the curve bends
 // too much for this length. bend: of the curve at q, for a guess nearer to the end.
-inline bool step_along(const Chain& chain, const TipConstraint& constraint, const double* q,
-                       const double* tangent, double h, double* next, double* next_tangent, PoseError& at,
-                       const CurveBend& bend = {}) {
+inline bool step_along_self_motion(const Chain& chain, const TipConstraint& constraint, const double* q,
+                                   const double* tangent, double h, double* next, double* next_tangent,
+                                   PoseError& at, const CurveBend& bend = {}) {
     constexpr double least_cosine = 0.995, third = 1.0 / 6;
     for (int i = 0; i < chain.n; ++i) {
         const double way = tangent[i] + h * (0.5 * bend.second[i] + third * h * bend.third[i]);
@@ -230,7 +230,7 @@ inline bool start_direction(const Chain& chain, const TipConstraint& constraint,
     double next[max_joints], beyond[max_joints], best = -1;
     PoseError there = at;
     if (tangent_at(chain, at.jacobian, guess, tangent) &&
-        step_along(chain, constraint, q, tangent, h, next, beyond, there))
+        step_along_self_motion(chain, constraint, q, tangent, h, next, beyond, there))
         return true;
     for (int a = 0; a < n; ++a)
         for (int b = a + 1; b < n; ++b)
@@ -245,7 +245,7 @@ inline bool start_direction(const Chain& chain, const TipConstraint& constraint,
                 for (int i = 0; i < n; ++i)
                     way[i] = (next[i] - q[i]) / (h * unit_of(chain, i, constraint.length));
                 if (!(dot_n(way, way, n) > 0.25) || !tangent_at(chain, at.jacobian, way, trial) ||
-                    !step_along(chain, constraint, q, trial, h, next, beyond, there))
+                    !step_along_self_motion(chain, constraint, q, trial, h, next, beyond, there))
                     continue;
                 const double agrees = dot_n(trial, guess, n);
                 if (agrees <= best) continue;
@@ -285,7 +285,7 @@ CSPACE_ONCE CurveEnd follow_curve(const Chain& chain, const TipConstraint& const
         }
         const double last_margin = margin.positive;
         const auto attempt = [&](double step) {
-            return step_along(chain, constraint, q, t, step, next, next_t, at, bend);
+            return step_along_self_motion(chain, constraint, q, t, step, next, next_t, at, bend);
         };
         if (!halve_step(h, shortest, attempt)) return CurveEnd::lost;
         margin = margin_on_curve(at.jacobian);

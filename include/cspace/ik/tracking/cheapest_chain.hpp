@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cspace/ik/tracking/layers.hpp"
+#include "cspace/math/wrapping.hpp"
 
 namespace cspace::ik {
 
@@ -16,8 +17,7 @@ inline double squared_step(const Layers& layers, std::size_t a, std::size_t b) {
     double sum = 0;
     for (std::size_t j = 0; j < layers.dof; ++j) {
         double move = to[j] - from[j];
-        if (const double period = layers.period[j]; period > 0 && 2 * std::abs(move) > period)
-            move -= period * std::nearbyint(move / period);
+        if (layers.wraps[j] && std::abs(move) > pi) move = short_way(move);
         if (!(std::abs(move) <= layers.stride[j])) return std::numeric_limits<double>::infinity();
         sum += move * move;
     }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "cspace/ik/tracking/walker.hpp"
-#include "cspace/kinematics/singular_values.hpp"
+#include "cspace/math/singular_values.hpp"
 
 namespace cspace::ik {
 
@@ -36,7 +36,7 @@ inline double least_singular_value(const Path& path, const double* q) {
     double rows[6 * max_joints], sigma[6];
     for (int j = 0; j < path.n; ++j)
         for (int r = 0; r < 6; ++r) rows[r * path.n + j] = J[j].entry[r];
-    kinematics::singular_values(rows, 6, path.n, sigma);
+    singular_values(rows, 6, path.n, sigma);
     return sigma[path.n < 6 ? path.n - 1 : 5];
 }
 
@@ -90,7 +90,7 @@ inline void finish_branch(const Track& t, const Walker& w, Fate fate, int joint,
     write_row(t, w, w.q, last);
     for (int j = 0; j < t.path->n; ++j) {
         if (w.turns[j] == 0) continue;
-        const double shift = track::whole_turn * w.turns[j];
+        const double shift = 2 * pi * w.turns[j];
         last[t.column[j]] += shift;
         for (std::size_t k = 0; k < reached; ++k) row_of(t, w, k)[t.column[j]] += shift;
     }

@@ -14,7 +14,7 @@ struct Layers {
     std::size_t layers;
     int values;            // of the redundant joint in each layer
     const double* stride;  // (dof,): how far a joint may move between neighbouring layers
-    const double* period;  // (dof,): 2π where multiples of it count as one configuration, else 0
+    const bool* wraps;     // (dof,): whether multiples of 2π count as one configuration
     int reach;             // how many values the redundant joint may move between neighbouring layers
     bool is_ring;          // the last value is a neighbour of the first
     void (*poll)();        // called now and then; throws to stop

@@ -104,7 +104,6 @@ inline constexpr double least_share = 1e-8, least_length = 1e-11;
 inline constexpr double slack = 1e-11;         // of limits [rad, m]
 inline constexpr double singular_row = 1e-7;   // least diagonal entry that leaves joints free
 inline constexpr double near_singular = 0.01;  // singular value at an end that calls it a singularity
-inline constexpr double whole_turn = 6.283185307179586476925287;
 }  // namespace track
 
 CSPACE_INLINE double* row_of(const Track& t, const Walker& w, std::size_t row) {
@@ -207,13 +206,12 @@ inline Verdict judge_step(const Track& t, Walker& w, const Motion<double>& at) {
 // between them; false if none does.
 inline bool fit_turns(const Track& t, Walker& w, int j) {
     if (!t.whole_turns || t.path->slides[j]) return false;
-    constexpr double turn = track::whole_turn;
     const double turns = turns_within(w.least[j], w.most[j], t.lower[j] - track::slack,
                                       t.upper[j] + track::slack, 0, std::nan(""));
     if (std::isnan(turns)) return false;
     w.turns[j] = turns;
-    w.lower[j] = t.lower[j] - turn * w.turns[j];
-    w.upper[j] = t.upper[j] - turn * w.turns[j];
+    w.lower[j] = t.lower[j] - 2 * pi * w.turns[j];
+    w.upper[j] = t.upper[j] - 2 * pi * w.turns[j];
     return true;
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cspace/localization/graph/normal_equations.hpp"
+#include "cspace/math/plane.hpp"
 
 namespace cspace::localization {
 
@@ -155,8 +156,8 @@ void place_by_bearings(const PoseGraph<Space>& graph, GraphState<Space>& state,
             const Lines& sum = lines[k];
             const double determinant = sum.xx * sum.yy - sum.xy * sum.xy, trace = sum.xx + sum.yy;
             if (is_placed[k] || !(determinant > least_turn * trace * trace)) continue;
-            state.landmarks[k] = {(sum.yy * sum.x - sum.xy * sum.y) / determinant,
-                                  (sum.xx * sum.y - sum.xy * sum.x) / determinant};
+            const Point at = solve_two({sum.xx, sum.xy}, {sum.xy, sum.yy}, sum.x, sum.y);
+            state.landmarks[k] = {at.x, at.y};
         }
     }
 }

@@ -382,9 +382,9 @@ class ScanRobot : public ContactRobot {
             }
             const Near& b = ring[middle];
             const Point u = b.towards - a.towards, v = c.towards - a.towards;
-            const double p = read(b) - read(a), q = read(c) - read(a), det = cross(u, v);
-            if (std::abs(det) < 0.02) return;
-            const Point by{(p * v.y - q * u.y) / det, (q * u.x - p * v.x) / det};
+            const double p = read(b) - read(a), q = read(c) - read(a);
+            if (std::abs(cross(u, v)) < 0.02) return;
+            const Point by = solve_two(u, v, p, q);
             if (norm(by) <= 0.2 * scan_.tolerance(apart)) return;
             const Point to = at_ + std::min(1.0, 0.5 * stride * apart / norm(by)) * by;
             if (distance(to, before) > stride * apart || !step(to, log)) return;

@@ -44,10 +44,7 @@ struct Curvature {  // a symmetric matrix
         const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
         return {-std::sin(angle), std::cos(angle)};
     }
-    Point solve(Point b) const {
-        const double det = xx * yy - xy * xy;
-        return {(yy * b.x - xy * b.y) / det, (xx * b.y - xy * b.x) / det};
-    }
+    Point solve(Point b) const { return solve_two({xx, xy}, {xy, yy}, b.x, b.y); }
 };
 
 // weight · log |ρ² − s²| of the distance ρ to a point: a disc of radius s, the room around, or the goal with

@@ -110,10 +110,9 @@ class Contacts {
         constexpr double correction = 1e-6;  // of the extent: more leads to another point
         for (int i = 0; i < 2; ++i) {
             const Point da = s_.towards(a, p), ab = s_.towards(b, p) - da, ac = s_.towards(c, p) - da;
-            const double det = cross(ab, ac), ra = s_.distance_to(a, p);
-            if (!(std::abs(det) > firm)) return;
-            const double fb = s_.distance_to(b, p) - ra, fc = s_.distance_to(c, p) - ra;
-            const Point step{(fb * ac.y - fc * ab.y) / det, (fc * ab.x - fb * ac.x) / det};
+            if (!(std::abs(cross(ab, ac)) > firm)) return;
+            const double ra = s_.distance_to(a, p);
+            const Point step = solve_two(ab, ac, s_.distance_to(b, p) - ra, s_.distance_to(c, p) - ra);
             if (!(norm(step) <= correction * s_.extent)) return;
             p = p + step;
         }

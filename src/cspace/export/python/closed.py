@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cspace.export.python.base import Array, Solutions, accept_candidate, inverse, make_answer
-from cspace.export.python.steps import Care, Known, follow_steps
+from cspace.export.python.steps import Known, Settings, follow_steps
 
 STARTS = 16  # values of an angle that nothing fixes
 
@@ -21,14 +21,14 @@ def goal_in_form(form: dict[str, Any], T: Array) -> Known:
 
 
 def candidates(
-    arm: dict[str, Any], T: Array, care: Care, stray: float
+    arm: dict[str, Any], T: Array, settings: Settings, stray: float
 ) -> list[tuple[Array, tuple[str, ...]]]:
     """The ways through the steps as configurations, each with the angles that nothing fixes.
 
     Ways whose virtual joints stray from zero are left out.
     """
     form, found = arm["form"], []
-    for way in follow_steps(arm["steps"], goal_in_form(form, T), care):
+    for way in follow_steps(arm["steps"], goal_in_form(form, T), settings):
         q, real = np.zeros(len(arm["axes"])), True
         for i, angle in enumerate(arm["angles"](way)):
             value = form["sign"][i] * (angle - form["offset"][i])
@@ -50,12 +50,12 @@ def unconstrained_angles(arm: dict[str, Any], q: Array) -> dict[str, float]:
     return {name: float(sum(t[int(number) - 1] for number in name[1:])) for name in names}
 
 
-def sweep(arm: dict[str, Any], T: Array, care: Care, found: list[Array]) -> None:
+def sweep(arm: dict[str, Any], T: Array, settings: Settings, found: list[Array]) -> None:
     """Starts with each free angle turned around: solutions lie along a self-motion where an angle is free."""
-    for name in {name for _, free in candidates(arm, T, care, np.pi) for name in free}:
+    for name in {name for _, free in candidates(arm, T, settings, np.pi) for name in free}:
         for turn in 2 * np.pi * np.arange(1, STARTS) / STARTS:
-            turned = {**care.unconstrained, name: care.unconstrained[name] + turn}
-            for q, _ in candidates(arm, T, replace(care, unconstrained=turned), np.pi):
+            turned = {**settings.unconstrained, name: settings.unconstrained[name] + turn}
+            for q, _ in candidates(arm, T, replace(settings, unconstrained=turned), np.pi):
                 accept_candidate(arm, T, found, q, 20)
 
 
@@ -63,17 +63,17 @@ def solve_closed(arm: dict[str, Any], T: Array, unconstrained: Array) -> Solutio
     """Every way through the steps, refined on the true arm."""
     form = arm["form"]
     slack = 4 * form["deviation"]
-    care = Care(max(1e-10, slack), 0.0, max(1e-12, slack), unconstrained_angles(arm, unconstrained))
-    tries = [(care, 0.1 if form["idealised"] else 1e-3)]
+    settings = Settings(max(1e-10, slack), 0.0, max(1e-12, slack), unconstrained_angles(arm, unconstrained))
+    tries = [(settings, 0.1 if form["idealised"] else 1e-3)]
     if form["idealised"]:
-        tries.append((replace(care, spread=slack), 0.1))
+        tries.append((replace(settings, spread=slack), 0.1))
     found: list[Array] = []
     for each, stray in tries:
         for q, _ in candidates(arm, T, each, stray):
             accept_candidate(arm, T, found, q)
     if form["idealised"] and form["virtual_joints"] and not found:
-        for q, _ in candidates(arm, T, replace(care, band=float(np.sqrt(care.band))), np.pi):
+        for q, _ in candidates(arm, T, replace(settings, band=float(np.sqrt(settings.band))), np.pi):
             accept_candidate(arm, T, found, q)
     if form["idealised"] or form["virtual_joints"]:
-        sweep(arm, T, care, found)
+        sweep(arm, T, settings, found)
     return make_answer(arm, T, found)

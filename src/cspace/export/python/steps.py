@@ -42,7 +42,7 @@ Step = tuple[Callable[[Known], list[float]], tuple[str, ...]]  # the equations, 
 
 
 @dataclass
-class Care:
+class Settings:
     """How near merging solutions are taken in, how far held apart, below which size a lever fixes no joint,
     and the angles that nothing fixes.
     """
@@ -61,16 +61,16 @@ def sin(angle: float) -> float:
     return float(np.sin(angle))
 
 
-def follow_steps(steps: list[Step], goal: Known, care: Care) -> list[Known]:
+def follow_steps(steps: list[Step], goal: Known, settings: Settings) -> list[Known]:
     """Every way through the steps."""
     ways = [goal]
     for equations, names in steps:
-        ways = [way for known in ways for way in ways_of_step(equations, names, known, care)]
+        ways = [way for known in ways for way in ways_of_step(equations, names, known, settings)]
     return ways
 
 
 def ways_of_step(
-    equations: Callable[[Known], list[float]], names: tuple[str, ...], known: Known, care: Care
+    equations: Callable[[Known], list[float]], names: tuple[str, ...], known: Known, settings: Settings
 ) -> list[Known]:
     """What is known behind a step, for each of its solutions."""
 
@@ -81,8 +81,8 @@ def ways_of_step(
     found: list[tuple[float, ...]]
     if len(names) == 2:
         found = [*two_angles(values)]
-    elif (only := one_angle(np.array([values(angle) for angle in AROUND]), care, clip=bool(free))) is None:
-        found, free = [(care.unconstrained[names[0]],)], (*free, *names)
+    elif (only := one_angle(np.array([values(t) for t in AROUND]), settings, clip=bool(free))) is None:
+        found, free = [(settings.unconstrained[names[0]],)], (*free, *names)
     else:
         found = [(angle,) for angle in only]
     ways = [known.with_angles(names, angles) for angles in found]
@@ -92,7 +92,7 @@ def ways_of_step(
     return ways
 
 
-def one_angle(values: Array, care: Care, clip: bool) -> list[float] | None:
+def one_angle(values: Array, settings: Settings, clip: bool) -> list[float] | None:
     """The angles at which equations hold, None where they do not depend on it. values (5, m): at AROUND.
 
     clip: whether an equation out of reach is nearly met nevertheless, since an angle before it is free.
@@ -102,18 +102,18 @@ def one_angle(values: Array, care: Care, clip: bool) -> list[float] | None:
         return zeros_around(values[:, 0])
     levers, wanted = 2 * np.column_stack([waves[1].real, -waves[1].imag]), -waves[0].real
     U, size, V = np.linalg.svd(levers, full_matrices=False)
-    if size[0] <= care.free:
-        return None if clip or np.abs(wanted).max() < np.sqrt(care.band) else []
+    if size[0] <= settings.free:
+        return None if clip or np.abs(wanted).max() < np.sqrt(settings.band) else []
     along = (U.T @ wanted) / np.maximum(size, 1e-300)
     if len(size) > 1 and size[1] > NEARLY * size[0]:
         c, s = along @ V
         return [float(np.arctan2(s, c))]
     room = 1 - along[0] ** 2
-    if room < -care.band * (1 + 1 / size[0] ** 2):
+    if room < -settings.band * (1 + 1 / size[0] ** 2):
         if not clip:
             return []
         room = BENT
-    away = np.arctan2(np.sqrt(max(room, care.spread)), along[0])
+    away = np.arctan2(np.sqrt(max(room, settings.spread)), along[0])
     return [float(np.arctan2(V[0, 1], V[0, 0]) + way * away) for way in ((1, -1) if away % np.pi else (1,))]
 
 

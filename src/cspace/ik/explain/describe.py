@@ -19,7 +19,7 @@ from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.ik.explain.survey import invariant_directions, invariant_points, measure_relations
 from cspace.ik.explain.wrist import wrist_constants, wrist_steps
-from cspace.ik.geometry import FIRST_THREE
+from cspace.ik.geometry import PIEPER_CASES
 from cspace.ik.solver import Solver
 from cspace.kinematics import KinematicModel
 from cspace.model import Chain
@@ -93,10 +93,10 @@ def form_plan(
     constants = form.constants()
     summary = SUMMARIES[family]
     if family == SPHERICAL_WRIST:
-        kind = seen["first_three"]
+        kind = seen["pieper_case"]
         constants |= wrist_constants(form)
         steps = wrist_steps(form, kind)
-        summary += f"; of the first three, {FIRST_THREE[kind]}"
+        summary += f"; of the first three, {PIEPER_CASES[kind]}"
     else:
         steps = {
             THREE_PARALLEL: three_parallel_steps,

@@ -1,4 +1,4 @@
-"""Several tasks at once: the velocities that serve them best, and the configuration at the end."""
+"""Several tasks at once: the velocities, or the configuration, with the least weighted error."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cspace.kinematics import KinematicModel
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.spatial.checks import one_pose
 from cspace.tables import one_line, tabulate
-from cspace.tolerances import FARTHEST, SERVED, SETTLED
+from cspace.tolerances import FARTHEST, SETTLED, TASK_DONE
 
 MOST_STARTS = 1_000_000
 
@@ -25,12 +25,12 @@ MOST_STARTS = 1_000_000
 @tabulate()
 @dataclass(frozen=True, eq=False, repr=False)
 class TaskSolution:
-    """The configuration that serves several tasks best, as far as steps from the start can tell.
+    """The configuration with the least weighted error of several tasks, as far as steps find it.
 
     q (n,) [rad, m], inside the limits. T_world_base (4, 4): of a floating base where it ends, else as given.
     tasks: as given. position_error, rotation_error (k,) [m, rad]: of each task, zero for postures.
-    settled: whether no step serves better. iterations: how many steps it took from its start. Truthy if
-    every task but postures is within the tolerance.
+    settled: whether no step nearby reduces the error. iterations: how many steps it took from its start.
+    Truthy if every task but postures is within the tolerance.
     """
 
     robot: KinematicModel
@@ -54,7 +54,7 @@ class TaskSolution:
         worst = int(np.argmax(np.maximum(self.position_error, self.rotation_error)))
         kind = type(self.tasks[worst]).__name__
         left = f"{self.position_error[worst]:.3g} m and {np.degrees(self.rotation_error[worst]):.3g}°"
-        how = "no step nearby serves better" if self.settled else "the steps ran out"
+        how = "no step nearby is better" if self.settled else "the steps ran out"
         return f"task {worst} ({kind}) misses its target by {left}; {how}, after {self.iterations} steps"
 
     def __repr__(self) -> str:
@@ -72,7 +72,7 @@ def task_velocity(
     damping: float = 1e-6,
     T_world_base: Any = None,
 ) -> Array:
-    """The joint velocities that serve several weighted tasks best in the next step, inside the limits.
+    """The joint velocities within the limits whose next step leaves the least weighted error of tasks.
 
     min ½ Σ |W (J q̇ dt − gain · e)|² + ½ damping |q̇ dt|² over q̇, with q + q̇ dt in the limits and |q̇| in
     those of the velocities: a small quadratic program, solved exactly.
@@ -110,11 +110,11 @@ def ik_tasks(
     limits: Any = True,
     starts: int = 16,
     max_iterations: int = 500,
-    tolerance: float = SERVED,
+    tolerance: float = TASK_DONE,
     rng: int | np.random.Generator | None = None,
     T_world_base: Any = None,
 ) -> TaskSolution:
-    """The configuration that serves several weighted tasks best, from a start: arms, trees, floating bases.
+    """The configuration with the least error of weighted tasks: arms, trees, floating bases.
 
     min ½ Σ |W e(q)|² with q in the limits, by Levenberg–Marquardt steps that are quadratic programs.
 
@@ -142,10 +142,10 @@ def ik_tasks(
     def descend(begin: Array) -> tuple[float, TaskSolution]:
         q = np.clip(begin, bounds[0], bounds[1]) if bounds.size else begin.copy()
         T, errors, every = base.copy(), np.empty((len(rows), 2)), np.zeros((len(listed), 2))
-        used, settled, cost = _core._task_serve(robot, rows, postures, q, T, bounds, steps, SETTLED, errors)
+        used, settled, cost = _core._task_solve(robot, rows, postures, q, T, bounds, steps, SETTLED, errors)
         every[kept] = errors
-        served = bool((every <= done).all())
-        return cost, TaskSolution(robot, q, T, listed, every[:, 0], every[:, 1], settled, used, served)
+        reached = bool((every <= done).all())
+        return cost, TaskSolution(robot, q, T, listed, every[:, 0], every[:, 1], settled, used, reached)
 
     best_cost, best = descend(first)
     if not best and number > 1:

@@ -12,7 +12,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError, Renamed
 from cspace.ik.solver import Solver
-from cspace.math.wrapping import TURN
+from cspace.math.wrapping import wrap_near
 from cspace.tables import html_table, one_line, shown, tabulate
 from cspace.tolerances import FARTHEST, ON_LIMIT
 
@@ -46,7 +46,7 @@ class Interval:
     def __contains__(self, value: object) -> bool:
         number = float(value)  # type: ignore[arg-type]
         if not self._slides and math.isfinite(number):
-            number -= TURN * round((number - 0.5 * (self.lower + self.upper)) / TURN)
+            number = float(wrap_near(number, 0.5 * (self.lower + self.upper)))
         return self.lower - ON_LIMIT <= number <= self.upper + ON_LIMIT
 
 

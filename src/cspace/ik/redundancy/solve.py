@@ -52,7 +52,7 @@ def solve_freedom(
         near = rows_for_goals(options.near, "near", solver.dof, T.shape[:-2])
         seeds = np.ascontiguousarray(near.reshape(-1, solver.dof))
     if goal is None and not values and degree > 0:
-        _core._ik_serve_near(solver, About(freedom=freedom))
+        _core._ik_enable_near(solver, About(freedom=freedom))
     samples = SAMPLES
     if options.samples is not None:
         samples = whole_number(options.samples, "samples", 1, MOST_SAMPLES)
@@ -150,7 +150,7 @@ def solve_locked(
     if shape:
         return SolutionsBatch.of(solver, goals, q, count, status, About(locked=values), self_motion)
     if options.near is None:
-        _core._ik_serve_locked(solver, joints, About())
+        _core._ik_enable_locked(solver, joints, About())
     k = int(count[0])
     return Solutions.of(
         solver, goals, int(status[0]), q[0, :k], branch[0, :k], self_motion[0, :k], None, About(locked=values)

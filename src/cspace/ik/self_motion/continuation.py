@@ -18,7 +18,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.solver import Solver
 from cspace.ik.wrapping import into_limits, nearest_winding, revolute_joints, short_way
-from cspace.math.wrapping import TURN, wrap_near
+from cspace.math.wrapping import TURN, count_turns, wrap_near
 from cspace.model import Limits
 from cspace.tolerances import RESTING_JOINT
 
@@ -167,9 +167,7 @@ def trace_curve(
     ahead, along, end = _core._ik_follow(solver, q, np.ascontiguousarray(direction), whole_pose)
     start, ends, shift = 0, (end, end), None
     if end == CLOSED:
-        shift = np.where(
-            revolute_joints(solver.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0
-        )
+        shift = np.where(revolute_joints(solver.joint_types), TURN * count_turns(ahead[-1] - ahead[0]), 0.0)
     else:
         behind, back, other = _core._ik_follow(solver, q, -np.ascontiguousarray(direction), whole_pose)
         start, ends = len(behind) - 1, (other, end)

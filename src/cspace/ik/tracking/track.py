@@ -12,7 +12,7 @@ from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.goals.partial import plain_goal
-from cspace.ik.numeric.descend import ik_numeric
+from cspace.ik.numeric.descent import ik_numeric
 from cspace.ik.numeric.problem import Question, middle_configuration, pose_problem
 from cspace.ik.solver import as_solver
 from cspace.ik.tracking.result import Branch, Track

@@ -12,7 +12,7 @@ from cspace.localization.graph.answer import GraphAnswer
 from cspace.localization.graph.files import read_graph
 from cspace.localization.graph.g2o_writer import write_g2o
 from cspace.localization.graph.graph_arrays import GraphArrays
-from cspace.localization.graph.optimize import Request, optimize_graph
+from cspace.localization.graph.optimizer import Request, optimize_graph
 from cspace.tables import tabulate
 
 

@@ -63,16 +63,16 @@ struct TaskWork {
     std::vector<Vec3d> moments;
 };
 
-struct Served {
+struct TaskEnd {
     int steps;
-    bool settled;  // nothing nearby serves better
+    bool settled;  // no step nearby is better
 };
 
-namespace serving {
+namespace multi_task {
 inline constexpr double first_mu = 0.1, least_mu = 1e-9, largest_mu = 1e9, gained = 0.3, lost = 4.0;
 inline constexpr double floor = 1e-13;  // of the damping, so that there is always one best step
 inline constexpr double stride = 1.0;   // largest change of a joint, or of the turn of a base, in one step
-}  // namespace serving
+}  // namespace multi_task
 
 }  // namespace cspace::ik
 
@@ -262,7 +262,7 @@ inline void bound_step(const TaskProblem& problem, const double* q, const Most& 
         qp.upper[j] = std::max(qp.lower[j], qp.upper[j]);
     }
 }
-inline double longest_stride(std::size_t) { return serving::stride; }
+inline double longest_stride(std::size_t) { return multi_task::stride; }
 
 // Second-order correction after a step (Nocedal & Wright 2006, section 18.3). A soft posture task makes a
 // curved valley, on whose floor the frame tasks are satisfied. The shortest step for the frame tasks alone
@@ -270,7 +270,7 @@ inline double longest_stride(std::size_t) { return serving::stride; }
 inline void back_to_the_valley(const TaskProblem& problem, TaskWork& work, BoxQp& qp, double* step,
                                TaskPlace& there, TaskPlace& spare) {
     bound_step(problem, there.q.data(), longest_stride, qp);
-    if (!best_step(there, serving::floor, false, qp, step)) return;
+    if (!best_step(there, multi_task::floor, false, qp, step)) return;
     move_by(problem, there, step, spare);
     measure_tasks(problem, work, spare);
     if (spare.cost < there.cost) std::swap(there, spare);
@@ -278,18 +278,18 @@ inline void back_to_the_valley(const TaskProblem& problem, TaskWork& work, BoxQp
 
 // Minimises the task error locally, from at.q (within the limits) and at.T_world_base. settled: a step this
 // small ends the descent [rad, m].
-inline Served serve_tasks(const TaskProblem& problem, int most_steps, double settled, TaskPlace& at) {
+inline TaskEnd solve_tasks(const TaskProblem& problem, int most_steps, double settled, TaskPlace& at) {
     TaskWork work = task_work(problem);
     BoxQp qp(dof_of(problem));
     TaskPlace there, spare;
     std::vector<double> step(std::size_t(qp.n));
-    double mu = serving::first_mu;
+    double mu = multi_task::first_mu;
     measure_tasks(problem, work, at);
     InterruptPoll poll(8);
     for (int k = 0; k < most_steps; ++k) {
         poll.step();
         bound_step(problem, at.q.data(), longest_stride, qp);
-        if (!best_step(at, 2 * mu * at.cost + serving::floor, true, qp, step.data())) return {k, false};
+        if (!best_step(at, 2 * mu * at.cost + multi_task::floor, true, qp, step.data())) return {k, false};
         double reach = 0;
         for (const double d : step) reach = std::max(reach, std::fabs(d));
         move_by(problem, at, step.data(), there);
@@ -299,8 +299,8 @@ inline Served serve_tasks(const TaskProblem& problem, int most_steps, double set
         const bool better = there.cost < at.cost;
         if (better) std::swap(at, there);
         if (reach <= settled) return {k + 1, true};
-        mu = better ? std::max(serving::gained * mu, serving::least_mu) : serving::lost * mu;
-        if (mu > serving::largest_mu) return {k + 1, true};
+        mu = better ? std::max(multi_task::gained * mu, multi_task::least_mu) : multi_task::lost * mu;
+        if (mu > multi_task::largest_mu) return {k + 1, true};
     }
     return {most_steps, false};
 }

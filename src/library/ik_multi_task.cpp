@@ -1,12 +1,12 @@
-#include "ik_tasks.hpp"
+#include "ik_multi_task.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "cspace/ik/numeric/multi_task.hpp"
 #include "cspace/ik/numeric/resolved_rate.hpp"
-#include "cspace/ik/numeric/tasks.hpp"
 #include "cspace/kinematics/forward.hpp"
 #include "cspace/math/threads.hpp"
 
@@ -91,15 +91,15 @@ bool task_velocity(const TaskRows& rows, const double* q, const double* T_world_
     return true;
 }
 
-std::tuple<int, bool, double> serve_tasks(const TaskRows& rows, int most_steps, double settled, double* q,
+std::tuple<int, bool, double> solve_tasks(const TaskRows& rows, int most_steps, double settled, double* q,
                                           double* T_world_base, double* errors) {
     const TaskProblem problem = problem_from(rows);
     TaskPlace at = place_at(problem, q, T_world_base);
-    const Served served = serve_tasks(problem, most_steps, settled, at);
+    const TaskEnd end = solve_tasks(problem, most_steps, settled, at);
     std::copy(at.q.begin(), at.q.end(), q);
     kinematics::write_matrix(at.T_world_base, T_world_base);
     write_errors(at, errors);
-    return {served.steps, served.settled, at.cost};
+    return {end.steps, end.settled, at.cost};
 }
 
 void resolve_rates(const RateRows& given) {

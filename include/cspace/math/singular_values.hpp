@@ -1,4 +1,5 @@
-// The singular values of a Jacobian on lanes, by rotations that make its vectors orthogonal.
+// The singular values of matrices, one per lane, by rotations that make their vectors orthogonal. In
+// small_svd.hpp the lanes are the columns of one matrix.
 //
 // One-sided Jacobi (Hestenes 1958): each rotation makes two vectors orthogonal; when all are, their lengths
 // are the singular values. Small ones keep their relative digits (Demmel and Veselić 1992), which a
@@ -9,7 +10,7 @@
 
 #include "cspace/math/lanes.hpp"
 
-namespace cspace::kinematics::inline CSPACE_ISA {
+namespace cspace::inline CSPACE_ISA {
 
 // Rotates the vectors a and b of n entries, `step` apart, so that they become orthogonal; true where they
 // were not.
@@ -65,4 +66,4 @@ CSPACE_INLINE void singular_values(V* J, int rows, int columns, V* sigma) {
     }
 }
 
-}  // namespace cspace::kinematics::inline CSPACE_ISA
+}  // namespace cspace::inline CSPACE_ISA

@@ -24,14 +24,14 @@ struct TaskRows {
     int dof() const { return model.n_coordinates() + (floating ? 6 : 0); }
 };
 
-// The velocities qd (dof,) that serve the tasks best in one step of length dt; speed (n,): largest, or null;
-// errors (n_tasks, 2). False where the program is not solvable.
+// The velocities qd (dof,) with the least task error after one step of length dt; speed (n,): largest, or
+// null; errors (n_tasks, 2). False where the program is not solvable.
 bool task_velocity(const TaskRows& rows, const double* q, const double* T_world_base, const double* speed,
                    double dt, double damping, double* qd, double* errors);
 
-// Moves q and T_world_base to where the tasks are served best. Returns the number of steps, whether nothing
-// nearby serves better, and the cost.
-std::tuple<int, bool, double> serve_tasks(const TaskRows& rows, int most_steps, double settled, double* q,
+// Moves q and T_world_base to the least error of the tasks. Returns the number of steps, whether no step
+// nearby is better, and the cost.
+std::tuple<int, bool, double> solve_tasks(const TaskRows& rows, int most_steps, double settled, double* q,
                                           double* T_world_base, double* errors);
 
 // For each row of J (rows, 6, dof) and twist (rows, 6) the velocities qd (rows, dof); wish (rows, dof) or
