@@ -17,10 +17,11 @@ KINDS = [
     *("ur5e", "yam", "irb120", "kr6_r900", "puma560_urdf", "romeo_left_leg", "al5d", "so101"),
     *("crx10ia", "gen3_lite", "calibrated", "planar_1r", "planar_2r", "simplified_puma", "rpr"),
     *("scara", "stanford", "RRPRRR", "PRRPRR", "PPPRRR", "RRPRP", "neighbours"),
+    *("PRRR", "gantry", "rail"),
     *("wrist_12_meet", "wrist_23_meet", "wrist_12_parallel", "wrist_skew", "parallel_234", "parallel_123"),
 ]
 
-ASKED = KINDS if os.environ.get("CSPACE_EVERY_EXPORT") else ["irb120", "stanford", "rpr"]
+ASKED = KINDS if os.environ.get("CSPACE_EVERY_EXPORT") else ["irb120", "stanford", "rpr", "PRRR", "rail"]
 """The kinds that the tests compile and ask: to compile them all takes a quarter of an hour."""
 
 
@@ -32,7 +33,13 @@ def arm(name: str) -> Robot:
     if set(name) <= set("RP"):
         axes, points, T_zero = random_screws("X" * (len(name) - 1), rng)
         return Robot(from_screws(axes, points, T_zero, joint_types=name, name=f"Arm {name}"))
-    made = {"calibrated": calibrated, "neighbours": parallel_and_square, "coaxial": coaxial}
+    made = {
+        "calibrated": calibrated,
+        "neighbours": parallel_and_square,
+        "coaxial": coaxial,
+        "gantry": gantry,
+        "rail": rail,
+    }
     return made[name]() if name in made else cs.load_robot(name)
 
 
@@ -61,3 +68,21 @@ def coaxial() -> Robot:
     T_zero = np.eye(4)
     T_zero[:3, 3] = 1, 0, 0.4
     return Robot(from_screws([z, z, y, y], points, T_zero, name="coaxial"))
+
+
+def gantry() -> Robot:
+    """Three slides along the coordinate axes and a wrist."""
+    x, y, z = np.eye(3)
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = 0.1, 0.2, 0.4
+    points = [[0, 0, 0]] * 3 + [[0.1, 0.2, 0.3]] * 3
+    return Robot(from_screws([x, y, z, z, y, z], points, T_zero, joint_types="PPPRRR", name="gantry"))
+
+
+def rail() -> Robot:
+    """An arm of two joints with a wrist, on a rail."""
+    x, y, z = np.eye(3)
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = 0.7, 0.1, 0.5
+    points = [[0, 0, 0], [0, 0, 0], [0.1, 0, 0.5], [0.6, 0.1, 0.5], [0.6, 0.1, 0.5], [0.6, 0.1, 0.5]]
+    return Robot(from_screws([x, z, y, x, y, x], points, T_zero, joint_types="PRRRRR", name="rail"))

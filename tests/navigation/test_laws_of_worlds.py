@@ -15,7 +15,7 @@ from oracles.plane import shortest
 from touching_worlds import slanted_touch, triangle
 
 SHORTEST: Final = ("any_angle", "visibility_graph")
-CERTAIN: Final = (*SHORTEST, "exact_cells", "bug_1", "bug_2", "tangent_bug")
+CERTAIN: Final = (*SHORTEST, "exact_cells", "bug_1", "bug_2", "tangent_bug", "voronoi_bug")
 """Planners in the plane whose verdict is never open."""
 OPTIMAL: Final = ("dijkstra", "a_star", "jump_point_search", "d_star_lite", "wavefront")
 OTHERS: Final = ("weighted_a_star", "focal_search", "greedy_best_first", "theta_star", "brushfire")
@@ -104,6 +104,51 @@ def test_one_obstacle_more_opens_nothing_and_shortens_nothing(seed):
             assert not (route and length == math.inf), planner
             if route and planner in SHORTEST:
                 assert route.length >= length * (1 - 1e-12)
+
+
+def likenesses(obstacles: Any, side: float, rng: Any) -> list[tuple[Any, Any, float]]:
+    """Worlds like one, each with what to do to its points and by how much lengths grow."""
+
+    def told(change: Any, rings: Any = obstacles) -> tuple[Any, Any]:
+        corners = np.array([change(p) for p in ((0, 0), (side, side))])
+        bounds = (*corners.min(axis=0), *corners.max(axis=0))
+        return cs.PolygonWorld([np.array([change(p) for p in ring]) for ring in rings], bounds), change
+
+    def linear(matrix: Any, by: Any = (0, 0)) -> Any:
+        return lambda p: np.asarray(matrix, dtype=float) @ p + by
+
+    outlines = [np.roll(ring, rng.integers(3), axis=0)[:: rng.choice([-1, 1])] for ring in obstacles]
+    return [
+        (*told(linear(np.eye(2)), obstacles[::-1]), 1.0),
+        (*told(linear(np.eye(2)), outlines), 1.0),
+        (*told(linear(np.eye(2), (5, -3))), 1.0),
+        *((*told(linear(scale * np.eye(2))), scale) for scale in (2.0**-30, 0.25, 3.0, 1000.0)),
+        *((*told(linear(mirror)), 1.0) for mirror in MIRRORS),
+    ]
+
+
+@pytest.mark.parametrize("seed", range(CASES))
+def test_a_descent_of_a_potential_is_the_same_in_worlds_that_are_alike(seed):
+    """Where it does not pass a saddle, at which rounding decides, as it does between obstacles that touch."""
+    rng, side = np.random.default_rng([9, seed]), 8
+    while True:
+        obstacles = [triangle(rng, side) for _ in range(2)]
+        world, (start, goal) = cs.PolygonWorld(obstacles, (0, 0, side, side)), rng.uniform(0.3, 7.7, (2, 2))
+        if world.is_free(start) and world.is_free(goal):
+            break
+    route = cs.navigate(world, start, goal, "potential_field")
+    for other, change, scale in likenesses(obstacles, side, rng):
+        like = cs.navigate(other, change(start), change(goal), "potential_field")
+        assert like.status == route.status
+        assert like.length == pytest.approx(scale * route.length, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(CASES))
+def test_a_descent_of_a_potential_finds_no_way_where_there_is_none(seed):
+    obstacles, side, start, goal, length = touching_case(seed)
+    route = cs.navigate(cs.PolygonWorld(obstacles, (0, 0, side, side)), start, goal, "potential_field")
+    assert not (route and length == math.inf)
+    assert not route or route.length >= length * (1 - 1e-12)
 
 
 def grid_case(seed: int) -> tuple[Any, Any, Any]:
