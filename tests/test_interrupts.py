@@ -252,6 +252,15 @@ CALLS["resolved_rate"] = batch(
 CALLS["ik_many_starts"] = batch(
     "ur5e", 100, lambda robot, q, T: robot.ik_many_starts(T[0], starts=1_000_000, rng=1, threads=1)
 )
+
+
+@call
+def self_motion() -> Call:
+    robot = cs.load_robot("ur5e")
+    curve = robot.ik(robot.fk([0.3, -1.2, 1.4, -0.8, 0.0, 0.1])).self_motions[0]
+    return lambda: [curve.sample(100_000) for _ in range(3)]
+
+
 CALLS["on_threads"] = batch("jaco2", 600_000, lambda robot, q, T: robot.ik(T, threads=4))
 
 
