@@ -99,6 +99,9 @@ inline constexpr double sure_candidate = 1e-3;
 // of 1e-3 leaves 1e-6, a second one of 1e-6 leaves 1e-12. Larger steps come near singularities, which the
 // careful path looks at.
 inline constexpr double polish_reach = 1e-3, polished = 1e-7;
+// Largest first step [rad] after which none follows: second derivatives of the pose are at most 6 [1/rad], so
+// that less than 1e-15 is left of its error.
+inline constexpr double polished_at_once = 1e-8;
 
 // Squares of lengths between these bounds neither lost digits to underflow (below 2e-308) nor overflowed, and
 // their inverses do not either.

@@ -433,8 +433,10 @@ CSPACE_NOINLINE V descend_abreast(const Chain& chain, const Posed& goal, double 
 // takes long.
 template <class V>
 CSPACE_INLINE mask_of<V> polish_solution(const Chain& chain, const Pose<V>& goal, double length, V* q) {
-    const auto is_near = newton_step(chain, goal, length, q) < tolerance::polish_reach;
+    const V first = newton_step(chain, goal, length, q);
+    const mask_of<V> is_near = first < tolerance::polish_reach;
     for (int i = 0; i < chain.n; ++i) q[i] = keep_lanes(is_near, q[i]);
+    if (!any(is_near && first > tolerance::polished_at_once)) return is_near;
     return is_near && newton_step(chain, goal, length, q) < tolerance::polished;
 }
 
