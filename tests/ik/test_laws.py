@@ -61,7 +61,7 @@ def test_the_family_of_every_arm_is_recognised(name):
     family = "three parallel axes" if name in PARALLEL else "spherical wrist"
     assert seen.family == family
     assert seen.reversed == (name in SHOULDER)
-    assert ("held at zero" in seen.detail) == (name in SHORT)
+    assert ("locked at zero" in seen.detail) == (name in SHORT)
     assert seen.idealised < 1e-4
     if name in SPHERICAL:
         assert any(c.holds and c.text == "axes 4, 5, 6 meet in a point" for c in seen.conditions)

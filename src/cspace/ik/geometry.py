@@ -92,7 +92,8 @@ def geometry(robot: HasSolver) -> Geometry:
     family = FAMILIES[seen["family"]]
     detail = PIEPER_CASES[seen["pieper_case"]] if seen["family"] == 1 else PARALLEL[seen["family"]]
     if seen["virtual_joints"]:
-        detail += f"; completed to six by {seen['virtual_joints']} joints locked at zero"
+        n = seen["virtual_joints"]
+        detail += f"; completed to six by {n} joint{'s' * (n > 1)} locked at zero"
     return Geometry(family, detail, bool(seen["reversed"]), float(seen["deviation"]), tested)
 
 

@@ -197,7 +197,7 @@ def test_values_that_are_none_are_refused(value, error):
     found = panda.redundancy(panda.fk([0.3, 0.4, -0.2, -1.9, 0.3, 2.1, 0.6]))
     with pytest.raises(error, match="value"):
         found.feasible(value)
-    with pytest.raises(InputTypeError, match="parameter contains a ndarray"):
+    with pytest.raises(InputTypeError, match="parameter contains an ndarray"):
         panda.redundancy(found.goal, parameter=np.zeros(2))
     with pytest.raises(InputError, match="1 to 100000"):
         found.spread(10**9)
