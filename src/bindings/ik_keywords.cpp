@@ -42,6 +42,26 @@ unsigned read_locked(PyObject* names, PyObject* locked_values, double* at) {
     return joints;
 }
 
+// What answers say of themselves, with the values of the locked joints; null with an error.
+PyObject* name_locked(PyObject* about, unsigned joints, const double* at) {
+    PyObject *const none = PyTuple_New(0), *const values = PyDict_New();
+    PyObject* const keywords = values ? Py_BuildValue("{sO}", "locked", values) : nullptr;
+    bool is_good = none && keywords;
+    for (int i = 0; i < ik::max_joints && is_good; ++i) {
+        if (!(joints >> i & 1)) continue;
+        PyObject *const joint = PyLong_FromLong(i), *const value = PyFloat_FromDouble(at[i]);
+        is_good = joint && value && PyDict_SetItem(values, joint, value) == 0;
+        Py_XDECREF(joint);
+        Py_XDECREF(value);
+    }
+    PyObject* const made =
+        is_good ? PyObject_Call(reinterpret_cast<PyObject*>(Py_TYPE(about)), none, keywords) : nullptr;
+    Py_XDECREF(none);
+    Py_XDECREF(values);
+    Py_XDECREF(keywords);
+    return made;
+}
+
 }  // namespace
 
 PyObject* solve_near(PyObject* self, const double* goal, PyObject* near, bool within_limits) {
@@ -81,7 +101,11 @@ PyObject* solve_locked(PyObject* self, const double* goal, PyObject* locked) {
     if (!joints || set == known.end()) return nullptr;
     ik::SolutionStore store;
     ik::SolutionRows rows;
-    // Where nothing reaches the goal there is more to say.
-    if (!ik::solve_locked_goal(*set->plan, goal, at, store, rows) || !rows.count) return nullptr;
-    return new_solutions(self, goal, rows, object->locked_about);
+    if (!ik::solve_locked_goal(*set->plan, goal, at, store, rows)) return nullptr;
+    if (rows.count) return new_solutions(self, goal, rows, object->locked_about);
+    // The reason names the values.
+    PyObject* const about = name_locked(object->locked_about, joints, at);
+    PyObject* const out = about ? new_solutions(self, goal, rows, about) : nullptr;
+    Py_XDECREF(about);
+    return out;
 }

@@ -219,3 +219,18 @@ def test_headings_of_joints_are_names_in_every_function_that_takes_joints():
     assert np.array_equal(short.q, robot.ik(**part, locked={6: 0.2, 0: 0.1}, near=np.zeros(7)).q)
     with pytest.raises(InputError, match="twice"):
         robot.ik(T, locked={"q7": 0.1, name: 0.1})
+
+
+@pytest.mark.parametrize("name", ["panda", "gen3", "tiago_arm", "fetch_torso"])
+def test_goals_that_nothing_reaches_are_told_alike_one_by_one_and_in_a_batch(name):
+    robot = cs.load_robot(name)
+    T = robot.fk(robot.random_configuration(60, rng=4))
+    locked = {robot.joint_names[-1]: 0.3, 0: -0.2} if robot.dof == 8 else {robot.joint_names[-1]: 0.3}
+    batch = robot.ik(T, locked=locked)
+    empty = 0
+    for goal, expected in zip(T, batch, strict=True):
+        for s in (robot.ik(goal, locked=locked), pickle.loads(pickle.dumps(robot.ik(goal, locked=locked)))):
+            assert (s.status, s.reason, s.complete) == (expected.status, expected.reason, expected.complete)
+            assert len(s) == len(expected)
+            empty += not s
+    assert empty > 10
