@@ -82,9 +82,9 @@ def test_pairs_of_neighbours_and_pairs_that_always_touch_are_allowed():
     robot = cs.Robot(arm(SHAPES["sphere"]), tip="hand")
     reasons = {frozenset((a, b)): why for a, b, why in robot.collision.allowed}
     assert reasons[frozenset(("base", "upper"))] == "adjacent"
-    assert reasons[frozenset(("upper", "left"))] == "adjacent"
+    assert reasons[frozenset(("upper", "hand"))] == "adjacent"
     checked = {frozenset(robot.collision.links[k] for k in pair) for pair in robot.collision.pairs}
-    assert checked == {frozenset(("base", "hand")), frozenset(("base", "left"))}
+    assert checked == {frozenset(pair) for pair in (("base", "hand"), ("base", "left"), ("upper", "left"))}
     huge = robot.with_spheres({name: [[0, 0, 0, 5.0]] for name in ("base", "upper", "hand", "left")})
     reasons = {frozenset((a, b)): why for a, b, why in huge.collision.allowed}
     assert "random configurations" in reasons[frozenset(("base", "hand"))]
@@ -95,6 +95,35 @@ def test_pairs_of_neighbours_and_pairs_that_always_touch_are_allowed():
         allowed_pairs=(("hand", "base", "Never"),),
     )
     assert ("base", "hand", "Never") in cs.Robot(told, tip="hand").collision.allowed
+
+
+def cell(**welded):
+    """Two links of 0.9 m that turn about vertical axes, and boxes welded to the base or to a link."""
+    bar = Geometry("box", (0.9, 0.05, 0.05), from_rpy((0.5, 0, 0), (0, 0, 0)))
+    links = [Link("base"), Link("l1", collision=(bar,)), Link("l2", collision=(bar,))]
+    turn = {"axis": (0, 0, 1), "lower": -3.14, "upper": 3.14}
+    joints = [
+        Joint("j1", "revolute", "base", "l1", from_rpy((0, 0, 0), (0, 0, 0)), **turn),
+        Joint("j2", "revolute", "l1", "l2", from_rpy((1, 0, 0), (0, 0, 0)), **turn),
+    ]
+    for name, (parent, size, place) in welded.items():
+        links.append(Link(name, collision=(Geometry("box", size),)))
+        joints.append(Joint(f"{name}_weld", "fixed", parent, name, from_rpy(place, (0, 0, 0))))
+    return cs.Robot(Description("cell", tuple(links), tuple(joints)), tip="l2")
+
+
+@pytest.mark.parametrize("between", [0, 1, 2])
+def test_what_is_welded_to_a_link_is_checked_against_those_that_its_joints_carry(between):
+    post = {"post": ("base", (0.1, 0.1, 1), [0.6, 0, 0])}
+    for k in range(between):  # more welds between the base and the post change nothing
+        post = {f"plate{k}": ("base", (0.01, 0.01, 0.01), [0, 0, -2.0 - k])} | post
+    robot = cell(**post)
+    assert robot.contact([0.0, 1.5])[:2] == ("post", "l1")
+    assert robot.contact([1.5, 0.5]) is None
+    assert not robot.edge([-1, 0], [1, 0])
+    hooked = cell(hook=("l2", (0.1, 0.1, 0.1), [0.7, 0, 0]))
+    assert hooked.contact([1.5, 3.1])[:2] == ("l1", "hook")
+    assert hooked.contact([1.5, 2.0]) is None
 
 
 @pytest.mark.parametrize("seed", range(4))

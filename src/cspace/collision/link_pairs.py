@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -19,24 +19,21 @@ Allowed = tuple[str, str, str]
 """Two links, and why they are not checked against each other."""
 
 
-def adjacent_pairs(bodies: Sequence[int], parents: Sequence[int]) -> list[tuple[int, int]]:
-    """The pairs of links whose bodies are joined by one joint, or by bodies without links, by number.
+def adjacent_pairs(links: Sequence[str], parents: Mapping[str, str]) -> list[tuple[int, int]]:
+    """The pairs of links between which the tree has no other of these links, by number.
 
-    bodies: of each link, 0 the base and k + 1 what joint k carries, ascending. parents: per joint the joint
-    that carries it, −1 for the base.
+    parents: of each link of the tree but the root, the link that carries it. A link that is welded to another
+    one is no neighbour of those that the other one's joints carry.
     """
-    used = set(bodies)
-
-    def carrier(body: int) -> int:
-        while body > 0:
-            body = parents[body - 1] + 1
-            if body in used:
-                return body
-        return -1
-
-    above = {body: carrier(body) for body in used}
-    n = range(len(bodies))
-    return [(a, b) for a in n for b in n if above[bodies[b]] == bodies[a]]
+    number = {name: k for k, name in enumerate(links)}
+    pairs = []
+    for name, k in number.items():
+        above = parents.get(name)
+        while above is not None and above not in number:
+            above = parents.get(above)
+        if above is not None:
+            pairs.append((min(k, number[above]), max(k, number[above])))
+    return pairs
 
 
 def always_touching(

@@ -226,7 +226,8 @@ def robot_geometry(
     stand for. T_world_base (4, 4): the mount that the robot has.
 
     Links that a joint connects, and links that touch at each of 256 random configurations, are not checked
-    against each other; nor are pairs that the description allows. Raises DescriptionError for meshes that
+    against each other; nor are pairs that the description allows. What is welded to a link is checked against
+    the links that this one's joints carry. Raises DescriptionError for meshes that
     cannot be read, UnknownNameError for another geometry, InputError for a cover that is not positive.
     """
     check_geometry(geometry)
@@ -243,7 +244,7 @@ def robot_geometry(
         transform_points((robot.fk(samples, name) @ invert_pose(frames[name][1]))[:, None], own)
         for name, own in zip(links, split_rows(spheres[:, :3], sphere_links), strict=True)
     ]
-    adjacent = adjacent_pairs(link_bodies.tolist(), assembly.parent.tolist())
+    adjacent = adjacent_pairs(links, {joint.child: joint.parent for joint in description.joints})
     radii = split_rows(spheres[:, 3], sphere_links)
     without_pairs = RobotGeometry(
         robot=robot.name,
