@@ -122,10 +122,30 @@ def test_shapes_colours_and_meshes(tmp_path):
     assert mesh.mesh.file() == str(tmp_path / "meshes" / "link.stl")
 
 
-def test_planes_and_ellipsoids_are_left_out():
+def test_planes_and_ellipsoids_are_not_drawn():
     robot = from_mjcf(ARM)
     assert not robot.link("world").visual
     assert not robot.link("hand").visual
+
+
+def test_an_ellipsoid_collides_as_the_box_around_it():
+    (box,) = (
+        from_mjcf(world('<body name="b"><geom type="ellipsoid" size="0.1 0.05 0.02" pos="1 0 0"/></body>'))
+        .link("b")
+        .collision
+    )
+    assert box.shape == "box"
+    np.testing.assert_allclose(box.size, (0.2, 0.1, 0.04))
+    np.testing.assert_allclose(box.origin[:3, 3], (1, 0, 0))
+
+
+@pytest.mark.parametrize("geom", ['type="plane" size="1 1 1"', 'type="hfield"', 'type="sdf"'])
+def test_a_shape_that_links_do_not_have_is_logged_where_it_can_collide(geom, caplog):
+    assert not from_mjcf(world(f'<body name="b"><geom {geom} mass="0"/></body>')).link("b").collision
+    assert f"geom of type {geom.split(chr(34))[1]} can collide" in caplog.text
+    caplog.clear()
+    from_mjcf(world(f'<body name="b"><geom {geom} mass="0" contype="0" conaffinity="0"/></body>'))
+    assert not caplog.text
 
 
 def test_a_mass_that_only_a_mesh_could_tell_is_unknown():

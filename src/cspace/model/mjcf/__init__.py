@@ -22,7 +22,8 @@ def from_mjcf(source: str | os.PathLike[str] | bytes, *, package_paths: Sequence
     `pos` is not the body's origin. Hinges, slides and free joints are read, with default classes, includes,
     frames, all ways to say an orientation, `ref`, limits, equalities of joints (a mimic) and of bodies (a
     loop), keyframes (named poses), and masses, from <inertial> or from the geoms. Geoms of the groups 0 to 2
-    are visual, geoms that can touch are collision shapes; planes, height fields and ellipsoids are left out.
+    are visual, geoms that can touch are collision shapes, ellipsoids as the boxes around them; planes, height
+    fields and distance functions are left out, which is logged where they can touch.
     Meshes are not opened; a body whose mass only a mesh could tell has none.
     Raises DescriptionError with file and line for whatever is wrong, for ball joints, and for elements that
     make bodies (replicate, attach, composite, flexcomp).

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import os
 import posixpath
@@ -28,6 +29,8 @@ OTHERS: Final = ("plane", "hfield", "mesh", "sdf")
 
 FITTED: Final = "fitted"
 """A solid that MuJoCo fits to a mesh; its size is in no attribute."""
+
+LOG: Final = logging.getLogger("cspace")
 
 FIRST_HIDDEN_GROUP: Final = 3
 """MuJoCo's viewer shows the geoms of the groups below this one unless told otherwise."""
@@ -100,7 +103,27 @@ class Geoms:
         given = geom.given
         drawn = given.number("group", 0.0) < FIRST_HIDDEN_GROUP
         collides = given.number("contype", 1.0) != 0.0 or given.number("conaffinity", 1.0) != 0.0
-        return shape if drawn else None, shape if collides else None
+        return shape if drawn else None, self.solid(geom, shape) if collides else None
+
+    def solid(self, geom: Geom, shape: Geometry | None) -> Geometry | None:
+        """How a geom that can touch others collides: an ellipsoid as the box around it. None, which is logged,
+        where links have no such shape.
+        """
+        given = geom.given
+        if shape is None and geom.kind == "ellipsoid":
+            name, color = given.element.attributes.get("name", ""), self.color(given)
+            size = tuple(2.0 * x for x in geom.half)
+            return complain_at(
+                given.element, lambda: Geometry("box", size, geom.T_body_geom, name, None, color)
+            )
+        if shape is None:
+            LOG.warning(
+                "%s:%d: a geom of type %s can collide, but links have no such shape; it is left out",
+                given.element.path,
+                given.element.line,
+                given.word("type", "sphere", (*SOLIDS, *OTHERS)),
+            )
+        return shape
 
     def shape(self, geom: Geom) -> Geometry | None:
         """The geom as a shape of a link; planes, height fields and ellipsoids are none."""
