@@ -157,7 +157,9 @@ def test_a_plan_is_verified_or_says_where_it_touches(arms):
         {name: [[0, 0, 0.15, 0.01]] for name in ("base", "one", "two", "three", "four")}
     )
     assert cs.plan(thin, start, goal, scene)
-    assert cs.plan(thin, start, goal, scene, verify="mesh")  # spheres are then its exact shapes
+    spheres = cs.plan(thin, start, goal, scene, verify="mesh")  # these are then its exact shapes
+    assert "without meshes" in spheres.reason
+    assert "spheres as given" in spheres.reason
     judge = MeshJudge(robot, scene)
     found = cs.plan(thin, start, goal, scene, verify=judge)
     assert found.status == "undetermined"

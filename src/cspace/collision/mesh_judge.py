@@ -23,7 +23,7 @@ from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError, MissingExtraError, name_type
 from cspace.kinematics import Assembly
 from cspace.model import Description
-from cspace.shapes import Box, Capsule, Cylinder, HalfSpace, PointCloud, Shape, Sphere
+from cspace.shapes import Box, Capsule, Cylinder, HalfSpace, Mesh, PointCloud, Shape, Sphere
 from cspace.shapes.shape import IDENTITY
 from cspace.tables import one_line, shown, tabulate
 from cspace.tolerances import LARGEST_NUMBER, POINT_RADIUS
@@ -126,6 +126,14 @@ class MeshJudge:
     def joint_names(self) -> tuple[str, ...]:
         """The joints of the configurations."""
         return self._geometry.joint_names
+
+    @property
+    def basis(self) -> str:
+        """What the links are checked as, in words."""
+        links = set(self._geometry.links)
+        if any(isinstance(piece.shape, Mesh) and piece.owner in links for piece in self._pieces):
+            return "with meshes"
+        return f"without meshes, which {self._geometry.robot} lacks (links are {self._geometry.source}),"
 
     def __repr__(self) -> str:
         counts = f"{len(self._pieces)} shapes, {len(self._pairs)} pairs checked"

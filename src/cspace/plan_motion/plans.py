@@ -200,7 +200,7 @@ def _verify_plan(found: Plan, planner: ArmPlanner, judge: MeshJudge) -> Plan:
     verdict = judge.judge_path(found.path)
     stats = {**found.stats, "mesh_samples": verdict.samples, "mesh_step": verdict.step}
     if verdict:
-        return replace(found, reason=f"{found.reason}; with meshes {verdict.reason}", stats=stats)
+        return replace(found, reason=f"{found.reason}; {judge.basis} {verdict.reason}", stats=stats)
     reason = (
         f"a path of length {shown(found.cost)} is free for the spheres of the robot, but not for its meshes:"
         f" {verdict.reason}; plan with a larger margin, or cover the meshes more closely"
