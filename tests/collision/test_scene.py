@@ -170,3 +170,13 @@ def test_a_half_space_cannot_be_attached():
     scene = cs.Scene([cs.HalfSpace(name="floor")])
     with pytest.raises(InputError, match="'floor' is a half space"):
         scene.attach("floor", "tool0", np.eye(4))
+
+
+def test_many_objects_without_names_get_numbers_that_are_free():
+    scene = cs.Scene([cs.Sphere(0.01, [0, 0, k], name="sphere_2" if k == 0 else "") for k in range(3000)])
+    assert len(scene) == 3000
+    assert set(scene.names) == {f"sphere_{k}" for k in range(1, 3001)}
+    less = scene.remove("sphere_7", "sphere_3")
+    assert less.add(cs.Sphere(0.01)).names[-1] == "sphere_3"
+    assert less.add(cs.Sphere(0.01), cs.Sphere(0.01)).names[-1] == "sphere_7"
+    assert less.add(cs.Box([1, 1, 1])).names[-1] == "box_1"

@@ -53,7 +53,7 @@ SHELL_WORDS: Final[Mapping[str, str]] = MappingProxyType(
         ", with inf for none": "",
         "robot.with_spheres(…)": "--spheres FILE",
         'load the robot with geometry="skeleton"': "--geometry skeleton",
-        "robot.escape leads out of it": "move it away from there",
+        "robot.escape may lead out of it": "move it away from there",
         "permit it by scene.allow": "list the pair under allowed in the scene: ",
     }
 )

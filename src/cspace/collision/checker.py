@@ -11,11 +11,12 @@ import numpy.typing as npt
 
 from cspace._core import CollisionChecker, CollisionRobot, CollisionScene, compile_solids
 from cspace.arrays import Array, bounded_number
-from cspace.collision.exact_solids import join_shapes, place_shape, split_shapes
+from cspace.collision.exact_solids import PlacedShapes, join_shapes, place_shape, split_shapes
 from cspace.collision.pack_scene import SOLIDS, PackedScene, pack_obstacles
 from cspace.collision.robot_geometry import NO_PAIRS, RobotGeometry
 from cspace.collision.scene import Scene
 from cspace.errors import InputError, InputTypeError, name_type
+from cspace.shapes import Shape
 from cspace.tolerances import LARGEST_NUMBER
 
 KEPT_CHECKERS: Final = 8
@@ -154,6 +155,17 @@ def touching_pairs(scene: Scene) -> set[frozenset[str]]:
     return pairs
 
 
+def place_attached(name: str, solid: Shape, T_joint_frame: Array) -> PlacedShapes:
+    """A carried object as checks take it; InputError, with its name, where it is too fine to be covered."""
+    try:
+        return place_shape(solid, ATTACHED_COVER, T_joint_frame)
+    except InputError as error:
+        raise InputError(
+            f"{name!r} cannot be carried: it is covered by spheres that stick out by {1000 * ATTACHED_COVER:g} mm,"
+            f" of which it needs too many; attach simpler shapes in its place ({error})"
+        ) from error
+
+
 def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
     """The robot with the objects that it carries: shapes of the bodies that carry them.
 
@@ -171,7 +183,7 @@ def add_attached(geometry: RobotGeometry, scene: Scene) -> CheckedRobot:
         checked |= {frozenset((name, links[k])) for k in range(len(links)) if bodies[k] != joint + 1}
         links.append(name)
         bodies.append(joint + 1)
-        parts.append(place_shape(solid, ATTACHED_COVER, T_joint_frame))
+        parts.append(place_attached(name, solid, T_joint_frame))
     checked -= touching_pairs(scene)
     order = sorted(range(len(links)), key=lambda k: bodies[k])
     names = tuple(links[k] for k in order)

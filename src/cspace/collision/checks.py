@@ -177,21 +177,23 @@ def edge(
     verdict = VERDICTS[code]
     if found is not None:
         pair = checker.name_pair(found)
-        reason = f"{pair[0]} touches {pair[1]} at {shown(at)} of the way"
+        reason = f"{pair[0]} touches {pair[1]} at {shown(at)} of the way{geometry.remark}"
         return Edge(verdict, True, at, pair, reason)
     if verdict == "undecided":
         reason = "the motion passes an obstacle too closely to prove it free; add clearance or a margin"
+        reason += geometry.remark
         return Edge(verdict, False, float("nan"), None, reason)
     return Edge(verdict, resolution is None, float("nan"), None, "")
 
 
 def explain_contacts(robot: HasGeometry, rows: Array, scene: Scene | None, margin: float = 0.0) -> str:
     """What configurations (n, dof) touch, the most frequent pairs first, in words."""
-    checker = checker_of(read_geometry(robot), scene, margin)
+    geometry = read_geometry(robot)
+    checker = checker_of(geometry, scene, margin)
     found = (checker.core.find_contact(q) for q in rows)
     pairs = Counter(" touches ".join(checker.name_pair(pair)) for pair in found if pair is not None)
     named = ", ".join(f"{name} ({n})" for name, n in pairs.most_common(MOST_CAUSES))
-    return named + (" and others" if len(pairs) > MOST_CAUSES else "")
+    return named + (" and others" if len(pairs) > MOST_CAUSES else "") + geometry.remark
 
 
 def as_configurations(geometry: RobotGeometry, q: ArrayLike, subject: str = "q") -> Array:

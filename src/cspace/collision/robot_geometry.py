@@ -101,6 +101,11 @@ class RobotGeometry:
         return len(self.solids) + self.counted_spheres
 
     @property
+    def remark(self) -> str:
+        """What reasons say of shapes that are not those of the robot; "" where they are."""
+        return f"; links are {SKELETON}, not the robot's shapes" if self.source == SKELETON else ""
+
+    @property
     def counted_spheres(self) -> int:
         """The number of spheres that count, beside those that only help to cover a solid."""
         return int((self.sphere_solids < 0).sum())
@@ -334,8 +339,8 @@ def meets_always(geometry: RobotGeometry, pair: tuple[int, int], samples: Array)
     """Whether two links whose spheres touch in all samples do so as they are: solids are less than covers."""
     if not len(geometry.solids):
         return True
-    travel = geometry.lower + geometry.upper
-    if not np.isfinite(travel[list(geometry.prismatic)]).all():
+    slides = list(geometry.prismatic)
+    if not np.isfinite([geometry.lower[slides], geometry.upper[slides]]).all():
         return True  # no checks are made for such a robot
     pairs = np.array([pair], dtype=np.int64)
     core = geometry.compile(geometry.link_bodies, geometry.shapes, geometry.sphere_links, pairs)

@@ -51,6 +51,7 @@ class Scene(Renamed):
 
     def __init__(self, objects: Iterable[Shape] = (), *, allowed: Iterable[Sequence[str]] = ()) -> None:
         self._attached: dict[str, Attachment] = {}
+        self._tried: dict[str, int] = {}  # numbers that unnamed objects of a kind have taken, at least
         self.version = next(VERSIONS)
         shapes = check_shapes(objects)
         self._objects: dict[str, Shape] = {shape.name: shape for shape in shapes}
@@ -126,6 +127,7 @@ class Scene(Renamed):
         Raises UnknownNameError for an object that does not exist.
         """
         new = self._copy()
+        new._tried = {}
         for name in names:
             del new._objects[new[name].name]
             new._attached.pop(name, None)
@@ -220,13 +222,16 @@ class Scene(Renamed):
     def _copy(self) -> Scene:
         new = Scene()
         new._objects, new._attached = dict(self._objects), dict(self._attached)
-        new._allowed = self._allowed
+        new._allowed, new._tried = self._allowed, dict(self._tried)
         return new
 
     def _insert(self, shape: Shape) -> None:
         name = shape.name
         if not name:
-            name = next(n for i in count(1) if (n := f"{shape.kind}_{i}") not in self._objects)
+            first = self._tried.get(shape.kind, 0) + 1
+            number = next(i for i in count(first) if f"{shape.kind}_{i}" not in self._objects)
+            self._tried[shape.kind] = number
+            name = f"{shape.kind}_{number}"
             shape = shape.renamed(name)
         if name in self._objects:
             raise InputError(f"two objects of the scene have the name {name!r}; names must differ")

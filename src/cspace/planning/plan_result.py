@@ -57,11 +57,14 @@ class Plan(Renamed):
         | {"length": "use cost", "trajectory": "a path has no times, only corners"}
     )
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reason", add_remark(self.reason, self.space))
+
     @classmethod
-    def _of_fields(cls, **fields: Any) -> Plan:
+    def _of_fields(cls, *, reason: str, space: ArmSpace, **fields: Any) -> Plan:
         """As Plan(**fields), in a sixth of its time."""
         made = object.__new__(cls)
-        made.__dict__.update(fields)
+        made.__dict__.update(fields, reason=add_remark(reason, space), space=space)
         return made
 
     def __bool__(self) -> bool:
@@ -106,3 +109,9 @@ class Plan(Renamed):
             return one_line("Plan", f"{self.status}: {self.reason}")
         proof = "certified" if self.certified else "not certified"
         return one_line("Plan", f"found: {len(self)} corners, cost {shown(self.cost)}, {proof}")
+
+
+def add_remark(reason: str, space: ArmSpace) -> str:
+    """The reason, with what the links are taken for where that is not their shapes."""
+    remark = space.geometry.remark
+    return reason if remark in reason else reason + remark

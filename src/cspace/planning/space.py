@@ -129,7 +129,8 @@ class ArmSpace:
             text = f"{a} touches {b}, {1000 * -nearest.distance:.3g} mm deep"
         else:
             text = f"{a} is closer to {b} than the margin of {1000 * self.margin:.3g} mm"
-        return f"{text}; robot.escape leads out of it, or permit it by scene.allow({a!r}, {b!r})"
+        way = f"robot.escape may lead out of it, or permit it by scene.allow({a!r}, {b!r})"
+        return f"{text}; {way}{self.geometry.remark}"
 
     def _is_fixed(self, link: str) -> bool:
         """Whether a link or an attached object is fixed to the base."""

@@ -106,8 +106,9 @@ class Geoms:
         return shape if drawn else None, self.solid(geom, shape) if collides else None
 
     def solid(self, geom: Geom, shape: Geometry | None) -> Geometry | None:
-        """How a geom that can touch others collides: an ellipsoid as the box around it. None, which is logged,
-        where links have no such shape.
+        """How a geom that can touch others collides: an ellipsoid as the box around it.
+
+        None, which is logged, where links have no such shape.
         """
         given = geom.given
         if shape is None and geom.kind == "ellipsoid":
