@@ -161,8 +161,8 @@ def place_attached(name: str, solid: Shape, T_joint_frame: Array) -> PlacedShape
         return place_shape(solid, ATTACHED_COVER, T_joint_frame)
     except InputError as error:
         raise InputError(
-            f"{name!r} cannot be carried: spheres that stick out by {1000 * ATTACHED_COVER:g} mm cover it, and it"
-            f" needs too many; attach simpler shapes in its place ({error})"
+            f"{name!r} cannot be carried: spheres that stick out by {1000 * ATTACHED_COVER:g} mm cover it,"
+            f" and it needs too many; attach simpler shapes in its place ({error})"
         ) from error
 
 
