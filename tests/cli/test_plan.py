@@ -235,11 +235,11 @@ def test_a_bad_scene_is_a_bad_file(tmp_path, text):
 
 
 def test_a_search_without_end_heeds_the_time_limit(tmp_path):
-    """Two walls divide the plane of an arm; the budget of motions would last for hours."""
+    """Two walls divide the plane of an arm of three joints; the budget of motions would last for hours."""
     file = tmp_path / "halves.toml"
-    cs.Scene([cs.Box([3.0, 0.1, 1.0], [1.9 * side, 0, 0]) for side in (-1, 1)]).save(file)
+    cs.Scene([cs.Box([4.0, 0.1, 1.0], [2.4 * side, 0, 0]) for side in (-1, 1)]).save(file)
     began = time.perf_counter()
-    line = "plan planar_2r --geometry skeleton --from pi/2 0 --to -pi/2 0"
+    line = "plan planar_3r --geometry skeleton --from pi/2 0 0 --to -pi/2 0 0"
     result = cspace(f"{line} --scene {file} --option edges=1000000000000 --time-limit 1")
     assert result.code == Exit.TIME_LIMIT, result.err
     assert time.perf_counter() - began < 5

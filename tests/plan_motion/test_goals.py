@@ -72,7 +72,7 @@ def test_several_poses_have_the_rows_of_each(name):
     none = cs.plan(robot, start, [far] * 5)
     assert none.status == "unreachable"
     assert none.reason.startswith("pose 0: no IK solution")
-    assert none.reason.endswith("and 2 more")
+    assert "and 2 more" in none.reason
 
 
 def test_rows_outside_limits_and_rows_of_nan_are_left_out():

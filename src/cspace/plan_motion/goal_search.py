@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -14,12 +14,16 @@ from cspace._core import TimeOver
 from cspace.arrays import Array
 from cspace.plan_motion.find import explain_goals, find_goals
 from cspace.plan_motion.goals import Goals
-from cspace.planning import ArmPlanner, ArmSpace, Plan
+from cspace.plan_motion.separation import REASON, Separation
+from cspace.planning import ArmPlanner, ArmSpace, Plan, RRTConnect
 from cspace.planning.arm_planner import Seed
 from cspace.planning.time_limits import TimeLimit
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
+
+QUICK_EDGES: Final = 4096
+"""Motions after which a proof for two joints is worth its time."""
 
 LATE = "the time limit was used up before a configuration of the goal was found"
 
@@ -63,11 +67,33 @@ class GoalSearch:
             return Goals(np.empty((0, self.space.dof)), LATE, is_whole=False)
 
     def _plan_rows(self, starts: Array, goals: Goals) -> Plan:
-        if self.limit.is_endless or goals.is_given:
-            return self.planner.plan(self.space, starts, goals.rows, rng=self.rng)
-        limited = self.planner.with_options({"time_limit": self.limit.left})
+        if self.space.dof != 2 or not goals.is_whole:
+            return self._search(self.planner, starts, goals)
+        quick = find_quick(self.planner)
+        found = self._search(quick, starts, goals)
+        if quick is not self.planner and found.stats.get("edges", 0) <= QUICK_EDGES // 2:
+            return replace(found, planner=self.planner)
+        if found.status == "undetermined" and Separation(self.space, self.limit.left).divides(
+            starts, goals.rows
+        ):
+            return make_negative(self.space, self.planner, "unreachable", REASON)
+        return found if quick is self.planner else self._search(self.planner, starts, goals, self.limit)
+
+    def _search(
+        self, planner: ArmPlanner, starts: Array, goals: Goals, limit: TimeLimit | None = None
+    ) -> Plan:
+        """A plan by a planner; limit: what is left of the time, unless it began with the search."""
+        if self.limit.is_endless or (goals.is_given and limit is None):
+            return planner.plan(self.space, starts, goals.rows, rng=self.rng)
+        limited = planner.with_options({"time_limit": self.limit.left})
         found = limited.plan(self.space, starts, goals.rows, rng=self.rng)
-        return replace(found, planner=self.planner)
+        return replace(found, planner=planner)
+
+
+def find_quick(planner: ArmPlanner) -> ArmPlanner:
+    """The planner with a budget after which a proof is worth its time; itself without a larger one."""
+    is_larger = isinstance(planner, RRTConnect) and planner.edges > QUICK_EDGES
+    return planner.with_options({"edges": QUICK_EDGES}) if is_larger else planner
 
 
 def make_negative(space: ArmSpace, planner: ArmPlanner, status: str, reason: str) -> Plan:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import inf
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,7 @@ from cspace.plan_motion.find import POSE_ROWS
 from cspace.plan_motion.goal_search import GoalSearch, make_negative
 from cspace.plan_motion.goals import GoalLike, Goals
 from cspace.plan_motion.poses import solve_each_pose
+from cspace.plan_motion.separation import REASON, Separation
 from cspace.planning import ArmPlanner, ArmSpace, Plan, Plans, find_planner
 from cspace.planning.edge_planner import join_problems
 from cspace.robot import Robot
@@ -58,9 +59,10 @@ def plan(
     spheres (needs the extra `mesh`); a path that fails is not returned. A collision.MeshJudge of a robot with
     the same joints may be given instead, such as the one with meshes where this one has given spheres.
 
-    The Plan is truthy if a way was found, and says why where not: "unreachable" if no IK solution exists or
-    all of them touch something, "undetermined" if the planner's budget was used up, if only samples of
-    infinitely many IK solutions were tried, or if the meshes touch something on the path.
+    The Plan is truthy if a way was found, and says why where not: "unreachable" if no IK solution exists, if
+    all of them touch something, or if a proof shows that two joints cannot get there; "undetermined" if the
+    planner's budget was used up, if only samples of infinitely many IK solutions were tried, or if the meshes
+    touch something on the path.
     Raises InputError for a start or a given goal that touches something or is outside the limits,
     UnknownNameError for an unknown planner, InputTypeError for an unknown option.
     """
@@ -109,8 +111,12 @@ def plan_many(
         _check_each(wanted, space.dof)
     rows = _repeat_starts(space.as_rows(starts, "starts"), len(wanted))
     if is_array and len(rows) and wanted.shape == rows.shape:  # one configuration each
-        problems = ArmProblems(rows, None, space.as_rows(wanted, "goals"), None)
-        plans = chosen.plan_each(space, problems, rng=rng, threads=count)
+        ends = space.as_rows(wanted, "goals")
+        plans = chosen.plan_each(space, ArmProblems(rows, None, ends, None), rng=rng, threads=count)
+        if space.dof == 2:
+            plans = _prove_unreachable(
+                plans, chosen, space, rows, [ends[k : k + 1] for k in range(len(ends))]
+            )
     else:
         plans = _plan_to_goals(robot, chosen, space, rows, wanted, rng, count)
     return plans if judge is None else _verify_plans(plans, chosen, judge)
@@ -148,7 +154,28 @@ def _plan_to_goals(
         if status == "invalid_goal" and not sets[k].is_given:
             search = GoalSearch(robot, planner, space, rng, left[k])
             others[k] = search.plan_to_more(starts[k : k + 1], sets[k])
-    return found._replace(len(sets), others, planned)
+    plans = found._replace(len(sets), others, planned)
+    if space.dof != 2:
+        return plans
+    return _prove_unreachable(
+        plans, planner, space, starts, [each.rows if each.is_whole else None for each in sets]
+    )
+
+
+def _prove_unreachable(
+    plans: Plans, planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Sequence[Array | None]
+) -> Plans:
+    """The plans of two joints, those unreachable of which it can be proved that there is no way."""
+    open_ends = [k for k, each in enumerate(plans.status) if each == "undetermined" and goals[k] is not None]
+    if not open_ends:
+        return plans
+    proof = Separation(space)
+    others = {
+        k: make_negative(space, planner, "unreachable", REASON)
+        for k in open_ends
+        if proof.divides(starts[k : k + 1], cast(Array, goals[k]))
+    }
+    return plans._replace(len(plans), others, range(len(plans)))
 
 
 def _find_each(
