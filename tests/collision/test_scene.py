@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -180,3 +181,9 @@ def test_many_objects_without_names_get_numbers_that_are_free():
     assert less.add(cs.Sphere(0.01)).names[-1] == "sphere_3"
     assert less.add(cs.Sphere(0.01), cs.Sphere(0.01)).names[-1] == "sphere_7"
     assert less.add(cs.Box([1, 1, 1])).names[-1] == "box_1"
+
+
+@pytest.mark.parametrize("path", ["cell.toml", Path("cell.toml")])
+def test_a_path_in_place_of_objects_is_told_how_files_are_read(path):
+    with pytest.raises(InputTypeError, match=r"objects is 'cell.toml'; Scene.load\(path\) reads a file"):
+        cs.Scene(path)

@@ -265,6 +265,8 @@ def check_shapes(objects: Iterable[Shape]) -> list[Shape]:
     """The shapes of a list; InputTypeError for anything else in it."""
     if isinstance(objects, Shape):
         raise InputTypeError("objects is one shape; write a list of shapes, in brackets")
+    if isinstance(objects, (str, os.PathLike)):
+        raise InputTypeError(f"objects is {str(objects)!r}; Scene.load(path) reads a file")
     try:
         found = list(objects)
     except TypeError:
