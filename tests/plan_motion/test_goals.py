@@ -95,7 +95,7 @@ def test_farther_goals_are_reached_where_the_nearest_ones_are_walled_in():
     assert plan.goal == 4
     assert plan.stats["edges"] > 2048
     np.testing.assert_array_equal(plan.path[-1], [1.1, 1.9])
-    shut = cs.plan(robot, [1.0, 0.0], near, cage, edges=4000)
+    shut = cs.planning.RRTConnect(edges=4000).plan(ArmSpace(robot, cage), [1.0, 0.0], near)
     assert shut.status == "undetermined"
     assert shut.stats["edges"] == 4000
 

@@ -288,7 +288,7 @@ def test_the_time_limit_counts_for_configurations_of_goals():
         plan = cs.plan(robot, start, goal, scene, time_limit=0.002)
         assert time.perf_counter() - begin < 0.06
         assert plan.status == "undetermined"
-        assert plan.reason == "the time limit was used up before a configuration of the goal was found"
+        assert "the time limit was used up before a configuration of the goal was found" in plan.reason
     begin = time.perf_counter()
     plans = cs.plan_many(robot, start, [*goals, start + 0.01], scene, time_limit=0.002)
     assert time.perf_counter() - begin < 0.15

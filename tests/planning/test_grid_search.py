@@ -237,7 +237,7 @@ def test_a_grid_without_a_path_says_so_and_the_exact_space_proves_it():
     begin, goal = np.array([0.0, 0.0]), np.array([2.0, 0.0])
     assert cs.configuration_space(robot, cage, link_radius=0.03).connected(begin, goal).status == "separate"
     for options in ORDERS:
-        plan = cs.plan(robot, begin, goal, cage, planner="grid_search", step=0.1, **options)
+        plan = GridSearch(step=0.1, **options).plan(ArmSpace(robot, cage), begin, goal)
         assert (plan.status, len(plan)) == ("undetermined", 0)
         assert "the grid of 56 × 56 cells holds no path: no open node is left after" in plan.reason
         assert "the search came within" in plan.reason

@@ -10,7 +10,7 @@ import pytest
 import cspace as cs
 from collision.motion_bench import problems, published_robot
 from cspace.errors import InputError, InputTypeError, RoadmapError
-from cspace.planning import PRM, ArmSpace, LazyPRM, PRMStar, Roadmap
+from cspace.planning import PRM, ArmSpace, LazyPRM, PRMStar, Roadmap, find_planner
 from oracles import collision as oracle
 from planning.test_aorrtc import planar_arm, shortest_on_grid
 from planning.test_rrt_connect import cell, judge_path, wall_arm
@@ -294,14 +294,15 @@ def shut_in():
 @pytest.mark.parametrize("planner", PLANNERS)
 def test_a_failure_says_how_far_the_roadmap_leads(planner):
     robot, scene = shut_in()
-    plan = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=200)
+    space, ends = ArmSpace(robot, scene), ([1.0, 0.0], [-2.0, 0.0])
+    plan = find_planner(planner, {"samples": 200}).plan(space, *ends)
     assert plan.status == "undetermined"
     assert "the roadmap joins the start with" in plan.reason
     assert "they come within" in plan.reason
     assert "more samples (samples=) may join them" in plan.reason
     assert "blocked" in plan.reason
     for edges in (0, 1, 7):
-        few = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], scene, planner=planner, samples=200, edges=edges)
+        few = find_planner(planner, {"samples": 200, "edges": edges}).plan(space, *ends)
         assert few.status == "undetermined"
         assert f"the edge budget was used up after {edges} motions" in few.reason
     assert cs.plan(robot, [2.0, 0.0], [2.5, 0.0], scene, planner=planner, samples=1)

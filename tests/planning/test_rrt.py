@@ -8,7 +8,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError
-from cspace.planning import AORRTC, PLANNERS, RRT, ArmSpace, InformedRRTStar, RRTStar
+from cspace.planning import AORRTC, PLANNERS, RRT, ArmSpace, InformedRRTStar, RRTStar, find_planner
 from oracles import collision as oracle
 from planning.test_aorrtc import planar_arm, shortest_on_grid
 from planning.test_rrt_connect import cell, judge_path, wall_arm
@@ -120,7 +120,7 @@ def test_rrt_star_is_cheaper_than_rrt():
 def test_what_cannot_be_reached_says_why(name):
     robot = wall_arm()
     cage = cs.Scene([cs.Sphere(0.02, [0.5 * np.cos(t), 0.5 * np.sin(t), 0]) for t in (0.5, 1.5)])
-    shut = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], cage, planner=name, edges=1000)
+    shut = find_planner(name, {"edges": 1000}).plan(ArmSpace(robot, cage), [1.0, 0.0], [-2.0, 0.0])
     assert shut.status == "undetermined"
     assert "the edge budget was used up after" in shut.reason
     assert "the tree came within" in shut.reason

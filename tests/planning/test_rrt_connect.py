@@ -152,7 +152,7 @@ def test_what_cannot_be_reached_says_why():
         assert hard.status == "undetermined"
         assert "used up" in hard.reason
     cage = [cs.Sphere(0.02, [0.5 * np.cos(t), 0.5 * np.sin(t), 0]) for t in (0.5, 1.5)]
-    shut = cs.plan(robot, [1.0, 0.0], [-2.0, 0.0], cs.Scene(cage), edges=2000)
+    shut = RRTConnect(edges=2000).plan(ArmSpace(robot, cs.Scene(cage)), [1.0, 0.0], [-2.0, 0.0])
     assert shut.status == "undetermined"
     assert "the trees came within" in shut.reason
     assert "blocked" in shut.reason

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 QUICK_EDGES: Final = 4096
 """Motions after which a proof for two joints is worth its time."""
 
+PROOF_SECONDS: Final = 0.5
+"""Time that must be left for such a proof: it takes half of that."""
+
 LATE = "the time limit was used up before a configuration of the goal was found"
 
 
@@ -71,13 +74,17 @@ class GoalSearch:
             return self._search(self.planner, starts, goals)
         quick = find_quick(self.planner)
         found = self._search(quick, starts, goals)
-        if quick is not self.planner and found.stats.get("edges", 0) <= QUICK_EDGES // 2:
-            return replace(found, planner=self.planner)
-        if found.status == "undetermined" and Separation(self.space, self.limit.left).divides(
-            starts, goals.rows
-        ):
+        if found.status == "undetermined" and self._are_separated(starts, goals):
             return make_negative(self.space, self.planner, "unreachable", REASON)
-        return found if quick is self.planner else self._search(self.planner, starts, goals, self.limit)
+        is_cut = quick is not self.planner and found.stats.get("edges", 0) > QUICK_EDGES // 2
+        if is_cut and self.limit.left > 0.0:
+            return self._search(self.planner, starts, goals, self.limit)
+        return found if quick is self.planner else replace(found, planner=self.planner)
+
+    def _are_separated(self, starts: Array, goals: Goals) -> bool:
+        """Whether a proof says that there is no way for two joints, where there is time for one."""
+        left = self.limit.left
+        return left > PROOF_SECONDS and Separation(self.space, left).divides(starts, goals.rows)
 
     def _search(
         self, planner: ArmPlanner, starts: Array, goals: Goals, limit: TimeLimit | None = None
