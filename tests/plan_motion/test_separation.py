@@ -74,3 +74,14 @@ def test_walls_divide_the_circle_of_a_joint():
     many = cs.plan_many(robot, [up, up, near], [down, near, down], walls, edges=9000)
     assert list(many.status) == ["unreachable", "found", "unreachable"]
     assert cs.plan_many(robot, up, [position, near], walls, edges=9000)[0].status == "unreachable"
+
+
+def test_short_time_limits_leave_no_time_for_a_proof_alone_or_among_many():
+    robot = cs.load_robot("planar_2r")
+    walls = cs.Scene([cs.Box([3.0, 0.1, 1.0], [1.9 * side, 0, 0]) for side in (-1, 1)])
+    up, down = [np.pi / 2, 0.0], [-np.pi / 2, 0.0]
+    alone = cs.plan(robot, up, down, walls, time_limit=0.02)
+    many = cs.plan_many(robot, [up], [down], walls, time_limit=0.02)
+    assert alone.status == many[0].status == "undetermined"
+    assert "time limit" in alone.reason
+    assert "time limit" in many[0].reason

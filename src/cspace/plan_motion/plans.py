@@ -15,7 +15,7 @@ from cspace.arrays import Array, whole_number
 from cspace.collision import MeshJudge, Scene
 from cspace.errors import InputError, InputTypeError, name_type, suggest
 from cspace.plan_motion.find import POSE_ROWS
-from cspace.plan_motion.goal_search import GoalSearch, make_negative
+from cspace.plan_motion.goal_search import PROOF_SECONDS, GoalSearch, make_negative
 from cspace.plan_motion.goals import GoalLike, Goals
 from cspace.plan_motion.poses import solve_each_pose
 from cspace.plan_motion.separation import REASON, Separation
@@ -165,9 +165,9 @@ def _plan_to_goals(
 def _prove_unreachable(
     plans: Plans, planner: ArmPlanner, space: ArmSpace, starts: Array, goals: Sequence[Array | None]
 ) -> Plans:
-    """The plans of two joints, those unreachable of which it can be proved that there is no way."""
+    """The plans of two joints, those unreachable of which it is proved, in time, that there is no way."""
     open_ends = [k for k, each in enumerate(plans.status) if each == "undetermined" and goals[k] is not None]
-    if not open_ends:
+    if not open_ends or getattr(planner, "time_limit", inf) <= PROOF_SECONDS:
         return plans
     proof = Separation(space)
     others = {
